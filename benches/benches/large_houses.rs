@@ -8,7 +8,7 @@
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
 use dwell_houses::generate::{HomeKind, HouseSpec, generate};
-use dwell_render::{Camera, Channels, CpuRenderer, Frame, FrameMut, Preset, View};
+use dwell_render::{Camera, CpuRenderer, Frame, FrameMut, ImageChannels, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
@@ -248,7 +248,7 @@ impl World {
                 View::new(camera, Pose::from_position_yaw(eye, yaw))
             })
             .collect();
-        let frame = |view: &View| Frame::new(&view.camera, Channels::default());
+        let frame = |view: &View| Frame::new(&view.camera, ImageChannels::default());
         Self {
             triangles: count,
             scene,

@@ -6,7 +6,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use dwell_render::{Camera, Channels, CpuRenderer, Frame, FrameMut, Preset, View};
+use dwell_render::{Camera, CpuRenderer, Frame, FrameMut, ImageChannels, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, Pose, State};
@@ -55,7 +55,7 @@ impl World {
         }
     }
 
-    fn bench(&self, bencher: Bencher, preset: Preset, channels: Channels, threads: usize) {
+    fn bench(&self, bencher: Bencher, preset: Preset, channels: ImageChannels, threads: usize) {
         let views: Vec<View> = self
             .views
             .iter()
@@ -92,19 +92,19 @@ static SUNCG: LazyLock<Option<World>> = LazyLock::new(|| {
     Some(World::new(dwell_houses::open(root.to_str()?).unwrap().0))
 });
 
-const DEPTH: Channels = Channels {
+const DEPTH: ImageChannels = ImageChannels {
     depth: true,
-    ..Channels::NONE
+    ..ImageChannels::NONE
 };
 
 #[divan::bench(args = [1, 2])]
 fn apartment_flat(bencher: Bencher, threads: usize) {
-    APARTMENT.bench(bencher, Preset::Flat, Channels::default(), threads);
+    APARTMENT.bench(bencher, Preset::Flat, ImageChannels::default(), threads);
 }
 
 #[divan::bench(args = [1, 2])]
 fn apartment_lit(bencher: Bencher, threads: usize) {
-    APARTMENT.bench(bencher, Preset::Lit, Channels::default(), threads);
+    APARTMENT.bench(bencher, Preset::Lit, ImageChannels::default(), threads);
 }
 
 #[divan::bench(args = [1, 2])]
@@ -115,7 +115,7 @@ fn apartment_depth(bencher: Bencher, threads: usize) {
 #[divan::bench(args = [1, 2], ignore = SUNCG.is_none())]
 fn suncg_flat(bencher: Bencher, threads: usize) {
     if let Some(world) = &*SUNCG {
-        world.bench(bencher, Preset::Flat, Channels::default(), threads);
+        world.bench(bencher, Preset::Flat, ImageChannels::default(), threads);
     }
 }
 

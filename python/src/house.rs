@@ -202,7 +202,7 @@ impl PyHouse {
     #[pyo3(signature = (table="coarse"))]
     fn semantic_classes(&self, py: Python<'_>, table: &str) -> PyResult<Vec<String>> {
         py.engine(|| {
-            let known: Result<dwell_render::Classes, _> = serde_json::from_value(table.into());
+            let known: Result<dwell_render::ClassSet, _> = serde_json::from_value(table.into());
             let classes = known.map_err(|_| {
                 Fault::Config(format!(
                     "no table of classes {table:?}; there are coarse, fine and nyu40"

@@ -4,7 +4,7 @@ use crate::doorway::Doorway;
 use crate::errors::Fault;
 use crate::house::PyHouse;
 use crate::world::PyWorld;
-use dwell_render::{Dollhouse, DollhouseConfig, Map};
+use dwell_render::{Dollhouse, DollhouseConfig, StoreyMap};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, LevelId};
 use glam::Vec3;
@@ -24,7 +24,7 @@ pub(crate) fn map<'py>(
 ) -> PyResult<(Picture<'py>, f32, f32, f32)> {
     let (rgb, map) = world.get().look(py, |running| {
         let world = &running.world;
-        let map = Map::new(world.house(), LevelId(level), longest_edge)?;
+        let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
         let (renderer, threads) = (world.engines().renderer(), Threads::requested(None)?);
         Ok((
             map.picture(renderer, world.rays(), world.state(), threads)?,

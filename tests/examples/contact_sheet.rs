@@ -4,7 +4,7 @@
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 
-use dwell_render::{Camera, Channels, CpuRenderer, Frame, Preset, View};
+use dwell_render::{Camera, CpuRenderer, Frame, ImageChannels, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, Pose, Room, State};
@@ -51,7 +51,7 @@ impl Stage {
             preset: Preset::Lit,
             ..View::new(camera, pose)
         };
-        let mut frame = Frame::new(&camera, Channels::default());
+        let mut frame = Frame::new(&camera, ImageChannels::default());
         let mut targets = [frame.as_mut()];
         let threads = Threads::default();
         self.renderer

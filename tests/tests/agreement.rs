@@ -12,7 +12,7 @@
 use dwell::sensors::{self, Data, Observation};
 use dwell::{Engines, PictureRequest, Place, World, WorldConfig, viewpoints};
 use dwell_physics::AgentControl;
-use dwell_render::{BackEnd, Camera, Channels, Frame, Preset, Sighting, View, sightings};
+use dwell_render::{BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, sightings};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -216,7 +216,7 @@ fn colours_agree_within_a_bound_of_flip() {
 struct Fault {
     name: &'static str,
     state: fn(&House, &mut State),
-    view: fn(&mut View, &[Sighting]),
+    view: fn(&mut View, &[VisibleObject]),
     picture: fn(&mut [u8]),
 }
 
@@ -243,7 +243,7 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
             preset: Preset::Lit,
             ..View::new(camera(), place)
         };
-        let render = |view: View, channels: Channels| {
+        let render = |view: View, channels: ImageChannels| {
             let mut frame = Frame::new(&view.camera, channels);
             let cpu = stage.engines.renderer();
             let frames = &mut [frame.as_mut()];
@@ -251,15 +251,15 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
                 .unwrap();
             frame
         };
-        let ids = Channels {
+        let ids = ImageChannels {
             instance: true,
-            ..Channels::NONE
+            ..ImageChannels::NONE
         };
         let things = sightings(&render(view, ids).instance, WIDTH);
         (fault.view)(&mut view, &things);
-        let colors = Channels {
+        let colors = ImageChannels {
             rgb: true,
-            ..Channels::NONE
+            ..ImageChannels::NONE
         };
         let mut rgb = render(view, colors).rgb;
         (fault.picture)(&mut rgb);

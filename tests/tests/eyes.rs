@@ -8,7 +8,7 @@ use dwell::{
     WorldConfig, camera_mount,
 };
 use dwell_physics::AgentControl;
-use dwell_render::{Camera, Channels, Preset};
+use dwell_render::{Camera, ImageChannels, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, House, LawSpec, Pose, ShoeboxMaterials};
@@ -71,9 +71,9 @@ fn eye(camera: Camera) -> PictureRequest {
     }
 }
 
-const DEPTH: Channels = Channels {
+const DEPTH: ImageChannels = ImageChannels {
     depth: true,
-    ..Channels::NONE
+    ..ImageChannels::NONE
 };
 
 /// Where the eye was a share of the last step ago; the agent turned evenly, about its own axis.
@@ -157,9 +157,9 @@ fn an_edge_blurs_over_its_speed_times_the_exposure() {
     let exposure_s = 0.03;
     let world = turning(vec![law("motion_blur", &[("exposure_s", exposure_s)])]);
     let camera = Camera::from_fov(320, 64, 60.0).unwrap();
-    let rgb = Channels {
+    let rgb = ImageChannels {
         rgb: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     };
     let row = |world: &World| -> Vec<u8> {
         let frame = world.picture(&eye(camera), rgb, Threads::ONE).unwrap().1;
@@ -196,9 +196,9 @@ fn an_edge_blurs_over_its_speed_times_the_exposure() {
 fn a_rolling_shutter_shears_upright_edges() {
     let line_s = 1e-3;
     let camera = Camera::from_fov(320, 64, 60.0).unwrap();
-    let ids = Channels {
+    let ids = ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     };
     let edge = |world: &World| -> Vec<f32> {
         let frame = world.picture(&eye(camera), ids, Threads::ONE).unwrap().1;
@@ -232,10 +232,10 @@ fn a_rolling_shutter_shears_upright_edges() {
 fn motion_blur_is_the_mean_over_the_exposure() {
     let world = moving(vec![law("motion_blur", &[("exposure_s", 0.02)])]);
     let camera = Camera::from_fov(40, 24, 90.0).unwrap();
-    let channels = Channels {
+    let channels = ImageChannels {
         rgb: true,
         depth: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     };
     let blurred = world
         .picture(&eye(camera), channels, Threads::exactly(2))

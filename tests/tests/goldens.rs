@@ -5,7 +5,7 @@
 use dwell::sensors::{Data, Observation, SensorSpec};
 use dwell::{Engines, PictureRequest, Place, World};
 use dwell_physics::AgentControl;
-use dwell_render::{Dollhouse, DollhouseConfig, Map, Preset, Projection};
+use dwell_render::{Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, House, HouseData, Pose, StructureKind};
 use dwell_tests::golden::views::{self, ROOMS};
@@ -80,7 +80,7 @@ fn plans(golden: &mut Golden) {
         ..DollhouseConfig::default()
     };
     for level in house.levels.ids() {
-        let map = Map::new(house, level, 128).unwrap();
+        let map = StoreyMap::new(house, level, 128).unwrap();
         let plan = map.picture(renderer, rays, state, Threads::ONE).unwrap();
         golden.check_color(
             &format!("plan_map_{}", level.0),

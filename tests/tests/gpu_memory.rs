@@ -1,8 +1,8 @@
 //! What a batch takes from the heap: after the first ones of a kind no more than its lists, and nothing that grows.
 
 use dwell_render::{
-    BatchLimits, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, Preset, View,
-    adapters,
+    BatchLimits, Camera, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, Preset, RenderJob,
+    View, VisibilityPath, adapters,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -32,20 +32,20 @@ fn later_batches_take_little_from_the_heap() {
         .collect();
     let camera = Camera::from_fov(EDGE, EDGE, 90.0).unwrap();
     let mut frames: Vec<Frame> = (0..VIEWS)
-        .map(|_| Frame::new(&camera, Channels::default()))
+        .map(|_| Frame::new(&camera, ImageChannels::default()))
         .collect();
     let rooms: Vec<Vec3> = house
         .rooms
         .iter()
         .map(|room| room.bounds.center())
         .collect();
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         let gpu = Gpu::open_adapter(&first, BatchLimits::NONE).unwrap();
         let renderer = GpuRenderer::new(gpu, cpu.clone(), path).unwrap();
         let mut taken = Vec::new();
         for _ in 0..8 {
             let region = Region::new(HEAP);
-            let mut jobs: Vec<Job<'_>> = frames
+            let mut jobs: Vec<RenderJob<'_>> = frames
                 .iter_mut()
                 .enumerate()
                 .map(|(k, frame)| {
@@ -54,7 +54,7 @@ fn later_batches_take_little_from_the_heap() {
                         preset: [Preset::Flat, Preset::Lit][k % 2],
                         ..View::new(camera, Pose::new(rooms[k % rooms.len()], turn))
                     };
-                    Job::new(&worlds[k].0, &worlds[k].1, view, frame.as_mut())
+                    RenderJob::new(&worlds[k].0, &worlds[k].1, view, frame.as_mut())
                 })
                 .collect();
             renderer.render_batch(&mut jobs, Threads::ONE).unwrap();

@@ -4,7 +4,7 @@
 
 use dwell::{Engines, World, WorldConfig};
 use dwell_houses::with_robot;
-use dwell_render::{Camera, Channels, Frame, View};
+use dwell_render::{Camera, Frame, ImageChannels, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, JointCommand, JointId, Pose, ShoeboxMaterials, space};
 use glam::{DQuat, DVec3, Vec3};
@@ -62,7 +62,7 @@ fn eyes_see_the_links_where_kinematics_say() {
         for _ in 0..80 {
             world.step(&[]).unwrap();
         }
-        let mut frame = Frame::new(&camera, Channels::ALL);
+        let mut frame = Frame::new(&camera, ImageChannels::ALL);
         let renderer = world.engines().renderer();
         let (views, mut frames) = ([View::new(camera, eye)], [frame.as_mut()]);
         renderer

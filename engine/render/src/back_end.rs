@@ -1,16 +1,16 @@
 //! Who renders: the processor, or a graphics adapter.
 
-use crate::cpu::{CpuRenderer, Job};
+use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
 use crate::frame::{FrameMut, Preset};
-use crate::gpu::{Gpu, GpuRenderer, Path, Submitted};
+use crate::gpu::{Gpu, GpuRenderer, PendingBatch, VisibilityPath};
 use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Who renders, as files and people say it: `cpu`; `gpu` for the likely quickest adapter that is not software; or
 /// `gpu:NAME` for the first whose name or place on the bus holds `NAME` (`gpu:vulkan/NAME` among those of one interface). `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
-/// [`Path`]; otherwise the one that a short measurement finds quicker is taken.
+/// [`VisibilityPath`]; otherwise the one that a short measurement finds quicker is taken.
 ///
 /// ```
 /// use dwell_render::BackEnd;
@@ -31,7 +31,7 @@ pub enum BackEnd {
         /// What its name holds; nothing for the likely quickest that is not software.
         name: Option<String>,
         /// How it finds what pixels see first; nothing for the quicker way.
-        path: Option<Path>,
+        path: Option<VisibilityPath>,
     },
 }
 
@@ -49,7 +49,11 @@ impl std::str::FromStr for BackEnd {
             None => (head, None),
             Some((kind, word)) => (kind, Some(word)),
         };
-        let found = path.map(|word| Path::ALL.into_iter().find(|path| path.word() == word));
+        let found = path.map(|word| {
+            VisibilityPath::ALL
+                .into_iter()
+                .find(|path| path.word() == word)
+        });
         match (kind, found) {
             ("gpu", None | Some(Some(_))) if name.as_deref() != Some("") => Ok(Self::Gpu {
                 name,
@@ -122,7 +126,11 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`CpuRenderer::render_batch`] and [`GpuRenderer::render_batch`].
-    pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
+    pub fn render_batch(
+        &self,
+        jobs: &mut [RenderJob<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
         match self {
             Self::Cpu(cpu) => cpu.render_batch(jobs, threads),
             Self::Gpu(gpu) => gpu.render_batch(jobs, threads),
@@ -141,9 +149,9 @@ impl Renderer {
     /// As [`GpuRenderer::submit`].
     pub fn submit(
         &self,
-        jobs: &[Job<'_>],
+        jobs: &[RenderJob<'_>],
         threads: Threads,
-    ) -> Result<Option<Submitted>, RenderError> {
+    ) -> Result<Option<PendingBatch>, RenderError> {
         match self {
             Self::Gpu(gpu) if jobs.iter().all(|job| self.can_submit(job.view.preset)) => {
                 gpu.submit(jobs, threads).map(Some)
@@ -158,7 +166,7 @@ impl Renderer {
     /// As [`GpuRenderer::collect`]; [`RenderError::OtherRenderer`] for a batch of another renderer.
     pub fn collect(
         &self,
-        submitted: Submitted,
+        submitted: PendingBatch,
         frames: &mut [FrameMut<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {

@@ -9,19 +9,19 @@ const STEPS: usize = 8192;
 const INTEGERS: f32 = 8_388_608.0;
 
 /// Both directions.
-pub(crate) struct Srgb {
+pub(crate) struct SrgbTables {
     decode: [f32; 256],
     encode: [u8; STEPS],
 }
 
-static TABLES: LazyLock<Srgb> = LazyLock::new(|| Srgb {
+static TABLES: LazyLock<SrgbTables> = LazyLock::new(|| SrgbTables {
     decode: std::array::from_fn(|byte| linear_from_srgb(byte as f32 / 255.0)),
     encode: std::array::from_fn(|k| {
         (srgb_from_linear(k as f32 / (STEPS - 1) as f32) * 255.0 + 0.5) as u8
     }),
 });
 
-impl Srgb {
+impl SrgbTables {
     /// The tables.
     pub(crate) fn tables() -> &'static Self {
         &TABLES
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn every_byte_survives_linear_light() {
-        let tables = Srgb::tables();
+        let tables = SrgbTables::tables();
         for byte in 0..=255_u8 {
             assert_eq!(tables.encode(tables.decode(byte)), byte);
         }
@@ -80,7 +80,7 @@ mod tests {
 
     #[test]
     fn the_table_stays_within_a_step_of_the_formula() {
-        let tables = Srgb::tables();
+        let tables = SrgbTables::tables();
         for k in 0..=1_000_000 {
             let linear = k as f32 / 1_000_000.0;
             let exact = srgb_from_linear(linear) * 255.0;

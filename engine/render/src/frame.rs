@@ -68,7 +68,7 @@ impl View {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[expect(clippy::struct_excessive_bools, reason = "a set of images")]
-pub struct Channels {
+pub struct ImageChannels {
     /// Colour.
     pub rgb: bool,
     /// Depth.
@@ -85,7 +85,7 @@ pub struct Channels {
     pub flow: bool,
 }
 
-impl Channels {
+impl ImageChannels {
     /// Every image.
     pub const ALL: Self = Self {
         rgb: true,
@@ -122,7 +122,7 @@ impl Channels {
     }
 }
 
-impl Default for Channels {
+impl Default for ImageChannels {
     /// Colour, depth and instance.
     fn default() -> Self {
         Self {
@@ -136,7 +136,7 @@ impl Default for Channels {
 
 /// Where camera and things were a while ago, for [`FrameMut::flow`].
 #[derive(Clone, Copy, Debug)]
-pub struct Before<'a> {
+pub struct PreviousFrame<'a> {
     /// Where the camera stood.
     pub world_from_camera: Pose,
     /// Where parts were that have moved since, by part; the others stood where they stand.
@@ -161,7 +161,7 @@ pub struct FrameMut<'a> {
     pub normals: Option<&'a mut [f32]>,
     /// Reflectance of the surface, linear, 0 to 1; zeros for nothing. Shape (height, width, 3).
     pub albedo: Option<&'a mut [f32]>,
-    /// How the seen point has moved in the image since [`Before`], pixels to the right and down; zeros where it was not seen
+    /// How the seen point has moved in the image since [`PreviousFrame`], pixels to the right and down; zeros where it was not seen
     /// by the camera. Shape (height, width, 2).
     pub flow: Option<&'a mut [f32]>,
 }
@@ -255,12 +255,12 @@ pub struct Frame {
 
 impl Frame {
     /// Black images of the right size.
-    pub fn new(camera: &Camera, channels: Channels) -> Self {
+    pub fn new(camera: &Camera, channels: ImageChannels) -> Self {
         Self::of_pixels(camera.pixels(), channels)
     }
 
     /// Black images of so many pixels, such as those of some rows.
-    pub(crate) fn of_pixels(pixels: usize, channels: Channels) -> Self {
+    pub(crate) fn of_pixels(pixels: usize, channels: ImageChannels) -> Self {
         let mut frame = Self::default();
         macro_rules! fill {
             ($image:ident, $parts:expr) => {
@@ -275,8 +275,8 @@ impl Frame {
     }
 
     /// The images that it holds.
-    pub fn channels(&self) -> Channels {
-        let mut channels = Channels::NONE;
+    pub fn channels(&self) -> ImageChannels {
+        let mut channels = ImageChannels::NONE;
         macro_rules! note {
             ($image:ident, $parts:expr) => {
                 channels.$image = !self.$image.is_empty();

@@ -1,7 +1,7 @@
 //! What a camera sees: by the `cpu` back end, and by graphics cards.
 //!
 //! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
-//! colour, depth, ids of things, ids of their classes. [`Map`] is a storey from above, [`Dollhouse`] one from outside.
+//! colour, depth, ids of things, ids of their classes. [`StoreyMap`] is a storey from above, [`Dollhouse`] one from outside.
 //!
 //! # Textures
 //! Bilinear on the level of an image whose texels are about as large as what a pixel covers; on lit pictures up to eight
@@ -40,27 +40,28 @@ mod camera;
 mod color;
 mod cpu;
 mod error;
-mod footprint;
 mod frame;
 mod gpu;
 pub mod laws;
 mod light;
-mod look;
 mod map;
+mod material;
 mod semantic;
-mod sightings;
-mod surfaces;
 mod texture;
+mod texture_filter;
+mod triangle_table;
+mod visible_objects;
 
 pub use back_end::{BackEnd, Renderer};
 pub use camera::{Camera, Projection};
-pub use cpu::{CpuRenderer, Job};
+pub use cpu::{CpuRenderer, RenderJob};
 pub use error::RenderError;
-pub use frame::{Before, Channels, Frame, FrameMut, Preset, View};
+pub use frame::{Frame, FrameMut, ImageChannels, Preset, PreviousFrame, View};
 pub use gpu::{
-    Adapter, AdapterKind, BatchLimits, Gpu, GpuRenderer, Path, PathSpeeds, Submitted, adapters,
+    Adapter, AdapterKind, BatchLimits, Gpu, GpuRenderer, PendingBatch, VisibilityPath,
+    VisibilityPathSpeeds, adapters,
 };
 pub use laws::{Optics, Shutter};
-pub use map::{Dollhouse, DollhouseConfig, Map};
-pub use semantic::{Classes, EntityClasses, semantic_classes};
-pub use sightings::{OrientedBox, Sighting, sightings};
+pub use map::{Dollhouse, DollhouseConfig, StoreyMap};
+pub use semantic::{ClassSet, EntityClasses, semantic_classes};
+pub use visible_objects::{OrientedBox, VisibleObject, sightings};

@@ -10,7 +10,7 @@ const VOID: i32 = 0;
 /// `otherprop` of NYU-40.
 const OTHER_PROP: i32 = 40;
 
-struct Table {
+struct ClassTable {
     names: Vec<String>,
     /// By name and by alias.
     class: BTreeMap<String, i32>,
@@ -21,9 +21,9 @@ struct Table {
 }
 
 /// `assets/categories.csv`: column 1 is the name, column 6 its aliases with `;` between, 7 and 8 the NYU-40 class.
-static TABLE: LazyLock<Table> = LazyLock::new(|| {
+static TABLE: LazyLock<ClassTable> = LazyLock::new(|| {
     let text = include_str!("../../../assets/categories.csv");
-    let mut table = Table {
+    let mut table = ClassTable {
         names: vec!["void".to_owned()],
         class: BTreeMap::new(),
         nyu40_of_row: vec![VOID],
@@ -55,7 +55,7 @@ static TABLE: LazyLock<Table> = LazyLock::new(|| {
 /// Which names things are classed by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Classes {
+pub enum ClassSet {
     /// `table`, `chair`, ...: the rows of `assets/categories.csv`.
     Coarse = 0,
     /// `coffee_table`, `office_chair`, ...: the finest name that the house's file gives.
@@ -64,7 +64,7 @@ pub enum Classes {
     Nyu40 = 2,
 }
 
-impl Classes {
+impl ClassSet {
     /// All tables.
     pub const ALL: [Self; 3] = [Self::Coarse, Self::Fine, Self::Nyu40];
 
@@ -138,9 +138,9 @@ impl Classes {
     }
 }
 
-/// The classes of the semantic image; a pixel's value is a position in this list. See [`Classes::names`].
+/// The classes of the semantic image; a pixel's value is a position in this list. See [`ClassSet::names`].
 pub fn semantic_classes(house: &House) -> Vec<String> {
-    Classes::Coarse.names(house)
+    ClassSet::Coarse.names(house)
 }
 
 /// The class of every entity of a house.
@@ -151,13 +151,13 @@ pub struct EntityClasses {
 }
 
 impl EntityClasses {
-    pub(crate) fn new(house: &House, table: Classes) -> Self {
+    pub(crate) fn new(house: &House, table: ClassSet) -> Self {
         let strange = table.strange(house);
         let named = |name: &str| {
             let row = TABLE.class.get(name).copied().unwrap_or(VOID);
             match table {
-                Classes::Nyu40 => TABLE.nyu40_of_row[row as usize],
-                Classes::Coarse | Classes::Fine => row,
+                ClassSet::Nyu40 => TABLE.nyu40_of_row[row as usize],
+                ClassSet::Coarse | ClassSet::Fine => row,
             }
         };
         let mut classes = vec![VOID];
@@ -170,8 +170,8 @@ impl EntityClasses {
         }));
         classes.extend(house.objects.iter().map(|object| {
             match table {
-                Classes::Nyu40 => Classes::nyu40(object),
-                Classes::Coarse | Classes::Fine => table
+                ClassSet::Nyu40 => ClassSet::nyu40(object),
+                ClassSet::Coarse | ClassSet::Fine => table
                     .known(object)
                     .or_else(|| strange.get(table.name(object)).copied())
                     .unwrap_or(VOID),
@@ -203,7 +203,7 @@ mod tests {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let names = semantic_classes(&house);
         assert_eq!(names[0], "void");
-        let classes = EntityClasses::new(&house, Classes::Coarse).classes;
+        let classes = EntityClasses::new(&house, ClassSet::Coarse).classes;
         let words: Vec<&str> = classes
             .iter()
             .map(|class| names[*class as usize].as_str())
@@ -228,7 +228,7 @@ mod tests {
     #[test]
     fn the_forty_classes_have_their_numbers() {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
-        let names = Classes::Nyu40.names(&house);
+        let names = ClassSet::Nyu40.names(&house);
         assert_eq!(names.len(), 41);
         assert!(names.iter().all(|name| !name.is_empty()));
         // N. Silberman et al., ECCV 2012, with the 40 classes of S. Gupta et al., CVPR 2013.
@@ -242,7 +242,7 @@ mod tests {
         ] {
             assert_eq!(names[number], name);
         }
-        let classes = EntityClasses::new(&house, Classes::Nyu40).classes;
+        let classes = EntityClasses::new(&house, ClassSet::Nyu40).classes;
         assert_eq!(classes, [0, 2, 22, 1, 1, 1, 1, 31]);
     }
 
@@ -250,7 +250,7 @@ mod tests {
     #[test]
     fn fine_classes_tell_apart_what_coarse_ones_join() {
         let (house, _) = dwell_houses::open("builtin:studio").unwrap();
-        let [coarse, fine] = [Classes::Coarse, Classes::Fine];
+        let [coarse, fine] = [ClassSet::Coarse, ClassSet::Fine];
         let tables =
             [coarse, fine].map(|table| (table.names(&house), EntityClasses::new(&house, table)));
         for (id, object) in house.objects.iter_ids() {
@@ -268,7 +268,7 @@ mod tests {
                 object.category.fine.is_empty() || same(&object.category.fine, b),
                 "{b}"
             );
-            let nyu = EntityClasses::new(&house, Classes::Nyu40).of(entity);
+            let nyu = EntityClasses::new(&house, ClassSet::Nyu40).of(entity);
             assert!((1..=40).contains(&nyu));
         }
     }

@@ -5,7 +5,7 @@
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
 
-use crate::color::Srgb;
+use crate::color::SrgbTables;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::interrupt::{self, PollEvery};
 use dwell_scene::parallel::Threads;
@@ -24,12 +24,12 @@ pub(crate) struct Textures {
     /// Where each level starts. Shape (image and level,).
     offsets: Vec<u32>,
     /// Shape (image,).
-    images: Vec<Image>,
+    images: Vec<MipImage>,
 }
 
 /// One image with its levels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Image {
+pub(crate) struct MipImage {
     first_level: u32,
     pub(crate) last_level: u32,
     /// Of the largest level.
@@ -59,7 +59,7 @@ impl Textures {
     }
 
     fn add(&mut self, texture: &Texture) {
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         let first_level = self.offsets.len() as u32;
         let texels: Vec<[u8; 4]> = texture.rgba().as_chunks::<4>().0.to_vec();
         let first = texels.first().copied().unwrap_or([255; 4]);
@@ -83,10 +83,10 @@ impl Textures {
             if size == (1, 1) {
                 break;
             }
-            (current, size) = halve(&current, size);
+            (current, size) = next_mip_level(&current, size);
         }
         let last_level = self.offsets.len() as u32 - 1 - first_level;
-        self.images.push(Image {
+        self.images.push(MipImage {
             first_level,
             last_level,
             width,
@@ -120,7 +120,7 @@ impl Textures {
     /// As rows: of each level its first texel, width and height; of each image its first level, last level and whether some
     /// texel lets light through. Then all texels, as bytes R, G, B, A.
     pub(crate) fn flat(&self) -> (Vec<PackedRow>, Vec<PackedRow>, Vec<[u8; 4]>) {
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         let levels = self.images.iter().flat_map(|image| {
             (0..=image.last_level).map(|level| {
                 let offset = self.offsets[(image.first_level + level) as usize];
@@ -128,7 +128,7 @@ impl Textures {
                 [offset, size(image.width), size(image.height), 0]
             })
         });
-        let image = |image: &Image| {
+        let image = |image: &MipImage| {
             [
                 image.first_level,
                 image.last_level,
@@ -156,13 +156,13 @@ impl Textures {
     }
 
     #[inline]
-    pub(crate) fn image(&self, texture: u32) -> &Image {
+    pub(crate) fn image(&self, texture: u32) -> &MipImage {
         &self.images[texture as usize]
     }
 
     /// Linear colour and alpha between four texels of a level.
     #[inline]
-    pub(crate) fn mixed(&self, image: &Image, level: u32, at: Corners) -> Vec4 {
+    pub(crate) fn mixed(&self, image: &MipImage, level: u32, at: BilinearTaps) -> Vec4 {
         let offset = self.offsets[image.first_level.wrapping_add(level) as usize];
         let [a, b, c, d] = at.texels.map(|texel| {
             let [r, g, b, a] = self.texels[offset.wrapping_add(texel) as usize];
@@ -175,12 +175,12 @@ impl Textures {
 
 /// Four texels of a level, the upper two first, and the weights of the right and the lower ones.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corners {
+pub(crate) struct BilinearTaps {
     pub(crate) texels: [u32; 4],
     pub(crate) weights: [f32; 2],
 }
 
-impl Image {
+impl MipImage {
     /// Pixels across and down.
     #[inline]
     pub(crate) fn size(&self) -> Vec2 {
@@ -189,14 +189,14 @@ impl Image {
 
     /// The texels around texture coordinates, of a level.
     #[inline(always)]
-    pub(crate) fn place(&self, level: u32, u: f32, v: f32) -> Corners {
-        // As [`halve`] makes them.
+    pub(crate) fn place(&self, level: u32, u: f32, v: f32) -> BilinearTaps {
+        // As [`next_mip_level`] makes them.
         let size = |edge: u32| edge.wrapping_shr(level).max(1);
         let (width, height) = (size(self.width), size(self.height));
         let (left, right, across) = neighbours(u, width);
         let (upper, lower, down) = neighbours(-v, height);
         let (upper, lower) = (upper.wrapping_mul(width), lower.wrapping_mul(width));
-        Corners {
+        BilinearTaps {
             texels: [
                 upper.wrapping_add(left),
                 upper.wrapping_add(right),
@@ -218,13 +218,13 @@ fn mix(a: Vec4, b: Vec4, weight: f32) -> Vec4 {
 const FULL: f32 = 65_535.0;
 
 /// A texel of bytes: R, G, B sRGB-encoded, alpha linear.
-fn linear(srgb: &Srgb, [r, g, b, a]: [u8; 4]) -> [u16; 4] {
+fn linear(srgb: &SrgbTables, [r, g, b, a]: [u8; 4]) -> [u16; 4] {
     let light = |byte: u8| (srgb.decode(byte) * FULL + 0.5) as u16;
     [light(r), light(g), light(b), u16::from(a) * 257]
 }
 
 /// The bytes of which [`linear`] makes a texel.
-fn encoded(srgb: &Srgb, [r, g, b, a]: [u16; 4]) -> [u8; 4] {
+fn encoded(srgb: &SrgbTables, [r, g, b, a]: [u16; 4]) -> [u8; 4] {
     let [r, g, b] = srgb.encode3([r, g, b].map(|light| f32::from(light) / FULL));
     [r, g, b, (a / 257) as u8]
 }
@@ -269,8 +269,11 @@ fn neighbours(coordinate: f32, size: u32) -> (u32, u32, f32) {
 }
 
 /// Half the size in either direction, each texel the mean of those that it covers, in linear light and weighted by alpha.
-fn halve(texels: &[[u8; 4]], (width, height): (usize, usize)) -> (Vec<[u8; 4]>, (usize, usize)) {
-    let srgb = Srgb::tables();
+fn next_mip_level(
+    texels: &[[u8; 4]],
+    (width, height): (usize, usize),
+) -> (Vec<[u8; 4]>, (usize, usize)) {
+    let srgb = SrgbTables::tables();
     let size = ((width / 2).max(1), (height / 2).max(1));
     let mut halved = Vec::with_capacity(size.0 * size.1);
     // An odd edge gives its last row to its neighbours.
@@ -324,7 +327,7 @@ mod tests {
 
     fn bytes(all: &Textures, uv: Vec2, area: f32) -> [u8; 3] {
         let [r, g, b, _] = all.sample(0, uv, area).to_array();
-        Srgb::tables().encode3([r, g, b])
+        SrgbTables::tables().encode3([r, g, b])
     }
 
     #[test]
@@ -349,7 +352,7 @@ mod tests {
 
     #[test]
     fn every_byte_survives_as_linear_light() {
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         for byte in 0..=255_u8 {
             let texel = [byte, 255 - byte, byte, byte];
             assert_eq!(encoded(srgb, linear(srgb, texel)), texel);
@@ -369,7 +372,7 @@ mod tests {
         let mean = texture.mean_linear();
         let all = single(7, 5, texture.rgba().to_vec());
         let found = bytes(&all, Vec2::new(0.3, 0.9), 1e9);
-        let expected = Srgb::tables().encode3(mean);
+        let expected = SrgbTables::tables().encode3(mean);
         for k in 0..3 {
             // Odd edges weigh the middle texels a little more, and each level rounds.
             assert!(

@@ -8,7 +8,7 @@
 mod common;
 
 use common::{Builder, World, look, point, quad};
-use dwell_render::{Camera, Channels, Frame, FrameMut, Job, Preset, RenderError, View};
+use dwell_render::{Camera, Frame, FrameMut, ImageChannels, Preset, RenderError, RenderJob, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{
@@ -97,7 +97,7 @@ fn bits_are_equal_for_any_number_of_threads_and_any_company() {
     for threads in [1, 2, 7] {
         let mut frames: Vec<Frame> = views
             .iter()
-            .map(|view| Frame::new(&view.camera, Channels::ALL))
+            .map(|view| Frame::new(&view.camera, ImageChannels::ALL))
             .collect();
         let mut targets: Vec<FrameMut<'_>> = frames.iter_mut().map(Frame::as_mut).collect();
         let threads = Threads::exactly(threads);
@@ -130,8 +130,8 @@ fn worlds_over_one_house_share_a_batch() {
     world.scene.update(&world.state);
     let expected_second = world.shot(&view);
     assert_ne!(expected_first.depth, expected_second.depth);
-    let mut frames = vec![Frame::new(&view.camera, Channels::ALL); 3];
-    let mut jobs: Vec<Job<'_>> = frames
+    let mut frames = vec![Frame::new(&view.camera, ImageChannels::ALL); 3];
+    let mut jobs: Vec<RenderJob<'_>> = frames
         .iter_mut()
         .enumerate()
         .map(|(k, frame)| {
@@ -140,7 +140,7 @@ fn worlds_over_one_house_share_a_batch() {
             } else {
                 (&first_scene, &first_state)
             };
-            Job::new(scene, state, view, frame.as_mut())
+            RenderJob::new(scene, state, view, frame.as_mut())
         })
         .collect();
     world
@@ -157,7 +157,7 @@ fn wanted_images_do_not_depend_on_one_another() {
     let world = furnished();
     let view = views()[3];
     let all = world.shot(&view);
-    let only = |channels: Channels| {
+    let only = |channels: ImageChannels| {
         let mut frame = Frame::new(&view.camera, channels);
         world
             .renderer
@@ -171,10 +171,10 @@ fn wanted_images_do_not_depend_on_one_another() {
             .unwrap();
         frame
     };
-    let none = Channels::NONE;
-    assert_eq!(only(Channels { rgb: true, ..none }).rgb, all.rgb);
+    let none = ImageChannels::NONE;
+    assert_eq!(only(ImageChannels { rgb: true, ..none }).rgb, all.rgb);
     assert_eq!(
-        only(Channels {
+        only(ImageChannels {
             depth: true,
             ..none
         })
@@ -182,7 +182,7 @@ fn wanted_images_do_not_depend_on_one_another() {
         all.depth
     );
     assert_eq!(
-        only(Channels {
+        only(ImageChannels {
             instance: true,
             ..none
         })
@@ -190,14 +190,14 @@ fn wanted_images_do_not_depend_on_one_another() {
         all.instance
     );
     assert_eq!(
-        only(Channels {
+        only(ImageChannels {
             semantic: true,
             ..none
         })
         .semantic,
         all.semantic
     );
-    let surfaces = only(Channels {
+    let surfaces = only(ImageChannels {
         normals: true,
         albedo: true,
         ..none
@@ -220,7 +220,7 @@ fn every_depth_is_a_number_between_near_and_far() {
 fn what_does_not_fit_is_refused_by_name() {
     let world = furnished();
     let view = views()[0];
-    let mut frame = Frame::new(&view.camera, Channels::ALL);
+    let mut frame = Frame::new(&view.camera, ImageChannels::ALL);
     let render = |view: &View, frame: FrameMut<'_>| {
         world.renderer.render(
             &world.scene,

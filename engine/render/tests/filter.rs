@@ -1,7 +1,7 @@
 //! How textures are filtered that are seen at grazing angles, against the mean of many rays a pixel.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell_render::{Camera, Channels, CpuRenderer, Frame, Preset, View};
+use dwell_render::{Camera, CpuRenderer, Frame, ImageChannels, Preset, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::space::rotation_from_forward;
@@ -64,9 +64,9 @@ fn view(preset: Preset, yaw: f32, ahead_m: f32) -> View {
 fn filtered(renderer: &CpuRenderer, view: &View) -> Vec<f32> {
     let house = renderer.house();
     let (scene, state) = (RayScene::new(house.clone()), State::new(house));
-    let channels = Channels {
+    let channels = ImageChannels {
         albedo: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     };
     let mut frame = Frame::new(&view.camera, channels);
     let frames = &mut [frame.as_mut()];

@@ -8,7 +8,7 @@
 mod common;
 
 use common::{Builder, World, look};
-use dwell_render::{Camera, Channels, Frame, Job, Preset, View};
+use dwell_render::{Camera, Frame, ImageChannels, Preset, RenderJob, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{Daytime, House, Light, LightShape, Mesh, Pose, ShoeboxMaterials, Sky};
@@ -97,7 +97,7 @@ fn full_pictures_have_the_same_bits_for_any_number_of_threads_and_rows() {
     let world = room(&[(Vec3::new(1.0, 0.0, 1.0), Vec3::new(2.0, 1.0, 2.0))]);
     let view = view(Preset::Full);
     let shot = |threads: usize| {
-        let mut frame = Frame::new(&view.camera, Channels::default());
+        let mut frame = Frame::new(&view.camera, ImageChannels::default());
         let threads = Threads::exactly(threads);
         let frames = &mut [frame.as_mut()];
         world
@@ -115,7 +115,7 @@ fn full_pictures_have_the_same_bits_for_any_number_of_threads_and_rows() {
         rgb: Some(&mut rgb),
         ..dwell_render::FrameMut::default()
     };
-    let job = Job {
+    let job = RenderJob {
         scene: &world.scene,
         state: &world.state,
         view,

@@ -328,7 +328,7 @@ fn a_storey_from_above_shows_what_stands_on_its_floor() {
         Pose::from_position(Vec3::new(1.0, 0.0, 0.5)),
     );
     let world = builder.build();
-    let map = dwell_render::Map::new(&world.house, dwell_scene::LevelId(0), 500).unwrap();
+    let map = dwell_render::StoreyMap::new(&world.house, dwell_scene::LevelId(0), 500).unwrap();
     let frame = world.shot(&map.view);
     let width = map.view.camera.width() as usize;
     let at = |x: f32, z: f32| {

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Builder, World, look, meets, quad};
-use dwell_render::{Before, Camera, Channels, Frame, Job, View, sightings};
+use dwell_render::{Camera, Frame, ImageChannels, PreviousFrame, RenderJob, View, sightings};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -25,15 +25,15 @@ fn cuboid(half: Vec3) -> Mesh {
 }
 
 /// The flow of a view whose camera and things were elsewhere before.
-fn flow(world: &World, view: &View, before: Before<'_>) -> Vec<Vec2> {
-    let channels = Channels {
+fn flow(world: &World, view: &View, before: PreviousFrame<'_>) -> Vec<Vec2> {
+    let channels = ImageChannels {
         flow: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     };
     let mut frame = Frame::new(&view.camera, channels);
-    let mut job = [Job {
+    let mut job = [RenderJob {
         before: Some(before),
-        ..Job::new(&world.scene, &world.state, *view, frame.as_mut())
+        ..RenderJob::new(&world.scene, &world.state, *view, frame.as_mut())
     }];
     world.renderer.render_batch(&mut job, Threads::ONE).unwrap();
     frame.flow.chunks_exact(2).map(Vec2::from_slice).collect()
@@ -54,7 +54,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
     let world = builder.build();
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let from = |x: f32, y: f32, z: f32| Before {
+    let from = |x: f32, y: f32, z: f32| PreviousFrame {
         world_from_camera: Pose::from_position(Vec3::new(x, y, z)),
         moved: &[],
         agents: &[],
@@ -73,7 +73,7 @@ fn translation_before_a_plane_flows_as_worked_out() {
         assert!((flow - radius * 0.2 / 2.2).length() < 1e-3, "{flow}");
     }
     // It turned to the left by 0.1 rad: a pixel at the angle a from the axis was at a - 0.1 (to the right is positive).
-    let turned = Before {
+    let turned = PreviousFrame {
         world_from_camera: Pose::new(Vec3::ZERO, rotation_from_yaw_pitch(-0.1, 0.0)),
         ..from(0.0, 0.0, 0.0)
     };
@@ -121,7 +121,7 @@ fn what_moves_flows_and_what_rests_does_not() {
     let part = world.house.objects[thing].first_part;
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let before = Before {
+    let before = PreviousFrame {
         world_from_camera: Pose::IDENTITY,
         moved: &[(part, was)],
         agents: &[],
@@ -151,7 +151,7 @@ fn nothing_flows_as_if_it_were_far_away() {
     let world = Builder::empty().build();
     let camera = Camera::equirectangular(64).unwrap();
     let view = View::new(camera, Pose::IDENTITY);
-    let before = Before {
+    let before = PreviousFrame {
         world_from_camera: Pose::new(Vec3::new(1.0, 2.0, 3.0), rotation_from_yaw_pitch(0.3, 0.0)),
         moved: &[],
         agents: &[],
@@ -263,9 +263,10 @@ fn lists_of_things_agree_with_brute_force() {
                 let expected = (0..camera.pixels())
                     .filter(|pixel| meets_it(*pixel))
                     .count() as i64;
-                let alone = world
-                    .renderer
-                    .pixels_alone(&world.scene, &world.state, &view, entity);
+                let alone =
+                    world
+                        .renderer
+                        .unoccluded_pixels(&world.scene, &world.state, &view, entity);
                 // A ray through an edge may count either way.
                 assert!(
                     (i64::from(alone) - expected).abs() <= 1,
@@ -277,7 +278,7 @@ fn lists_of_things_agree_with_brute_force() {
             assert_eq!(
                 world
                     .renderer
-                    .pixels_alone(&world.scene, &world.state, &view, EntityId(0)),
+                    .unoccluded_pixels(&world.scene, &world.state, &view, EntityId(0)),
                 0
             );
         }
@@ -306,7 +307,7 @@ fn half_hidden_is_half_the_pixels() {
     let seen = things.iter().find(|thing| thing.entity == entity).unwrap();
     let alone = world
         .renderer
-        .pixels_alone(&world.scene, &world.state, &view, entity);
+        .unoccluded_pixels(&world.scene, &world.state, &view, entity);
     // 2 m at 4 m: 16 by 16 pixels.
     assert_eq!((seen.pixels, alone), (128, 256));
     assert_eq!((seen.first, seen.end), ([24, 24], [32, 40]));
@@ -400,7 +401,7 @@ fn cameras_see_agents_bodies() {
     assert!((normal - Vec3::Z).length() < 0.2);
     let alone = world
         .renderer
-        .pixels_alone(&world.scene, &world.state, &view, other);
+        .unoccluded_pixels(&world.scene, &world.state, &view, other);
     assert_eq!(alone, seen.pixels);
     let bounds = world.renderer.oriented_box(&world.state, other).unwrap();
     assert!(
@@ -409,7 +410,7 @@ fn cameras_see_agents_bodies() {
     );
     assert!(bounds.world_from_box.rotation.dot(Quat::IDENTITY).abs() > 1.0 - 1e-6);
     // The other one steps towards the eye: flow grows outwards from the middle.
-    let before = Before {
+    let before = PreviousFrame {
         world_from_camera: pose,
         moved: &[],
         agents: &[Vec3::new(1.0, 0.0, 2.5), Vec3::new(4.2, 0.0, 2.5)],

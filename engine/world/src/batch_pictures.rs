@@ -6,7 +6,7 @@ use crate::exposure::Take;
 use crate::pictures::PictureRequest;
 use crate::requests::Picture;
 use crate::world::World;
-use dwell_render::{Job, Renderer, Submitted};
+use dwell_render::{PendingBatch, RenderJob, Renderer};
 use dwell_scene::parallel::Threads;
 use std::sync::Arc;
 
@@ -114,7 +114,7 @@ fn stand_up((orders, open): (Vec<Order<'_>>, usize), threads: Threads) -> Vec<Ta
         .collect()
 }
 
-fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<Job<'a>> {
+fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<RenderJob<'a>> {
     let mut jobs = Vec::with_capacity(taking.len());
     for Taking {
         world,
@@ -163,7 +163,7 @@ pub(crate) fn take<'a>(
 #[derive(Debug)]
 pub(crate) struct UnderWay {
     renderer: Arc<Renderer>,
-    submitted: Submitted,
+    submitted: PendingBatch,
     /// Whose they are: the environment, and the picture's place there. In the order of their work.
     takes: Vec<(usize, usize, Take)>,
 }

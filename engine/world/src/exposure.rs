@@ -4,7 +4,7 @@ use crate::past::between;
 use crate::pictures::{PictureRequest, Shot};
 use crate::world::World;
 use dwell_render::laws::mean_color;
-use dwell_render::{Camera, Frame, FrameMut, Job};
+use dwell_render::{Camera, Frame, FrameMut, RenderJob};
 use dwell_scene::State;
 use dwell_scene::rays::RayScene;
 
@@ -74,7 +74,7 @@ impl Take {
         &'a mut self,
         world: &'a World,
         frame: FrameMut<'a>,
-        jobs: &mut Vec<Job<'a>>,
+        jobs: &mut Vec<RenderJob<'a>>,
     ) {
         let Self {
             shot,
@@ -88,10 +88,10 @@ impl Take {
             if part.rows.is_some() || part.share > 0.0 {
                 view.world_from_camera = between(&view.world_from_camera, &shot.was, part.share);
             }
-            jobs.push(Job {
+            jobs.push(RenderJob {
                 before: world.before(shot.was),
                 rows: part.rows,
-                ..Job::new(scene, state, view, part.frame)
+                ..RenderJob::new(scene, state, view, part.frame)
             });
         }
     }

@@ -4,7 +4,7 @@ use crate::env::Env;
 use crate::error::WorldError;
 use crate::sensors::Dtype;
 use crate::world::World;
-use dwell_render::{Camera, Channels};
+use dwell_render::{Camera, ImageChannels};
 use std::fs::read_to_string;
 use std::path::Path;
 
@@ -58,8 +58,8 @@ fn world_bytes(world: &World) -> u64 {
     WORLD_BYTES + bodies * BODY_BYTES + pieces * PIECE_BYTES
 }
 
-fn picture_bytes(camera: &Camera, channels: Channels) -> u64 {
-    let Channels {
+fn picture_bytes(camera: &Camera, channels: ImageChannels) -> u64 {
+    let ImageChannels {
         rgb,
         depth,
         instance,

@@ -3,7 +3,7 @@
 use crate::error::WorldError;
 use crate::exposure::Take;
 use crate::world::World;
-use dwell_render::{Before, Camera, Channels, Frame, Optics, Preset, View};
+use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousFrame, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 
@@ -72,7 +72,7 @@ impl World {
     pub fn picture(
         &self,
         request: &PictureRequest,
-        mut channels: Channels,
+        mut channels: ImageChannels,
         threads: Threads,
     ) -> Result<(Camera, Frame), WorldError> {
         channels.normals |= channels.depth && self.optics(&request.place).needs_normals();
@@ -88,9 +88,9 @@ impl World {
     }
 
     /// Nothing where nothing has been before.
-    pub(crate) fn before(&self, world_from_camera: Pose) -> Option<Before<'_>> {
+    pub(crate) fn before(&self, world_from_camera: Pose) -> Option<PreviousFrame<'_>> {
         let past = self.past();
-        past.known.then_some(Before {
+        past.known.then_some(PreviousFrame {
             world_from_camera,
             moved: &past.moved,
             agents: &past.feet,

@@ -2,7 +2,7 @@
 
 use crate::sensors::EyeCamera;
 use crate::world::World;
-use dwell_render::{Camera, Channels, Frame};
+use dwell_render::{Camera, Frame, ImageChannels};
 use dwell_scene::AgentId;
 
 /// A view that some sensor wants.
@@ -11,7 +11,7 @@ pub struct ViewRequest {
     /// From where.
     pub eye: EyeCamera,
     /// Which images.
-    pub channels: Channels,
+    pub channels: ImageChannels,
 }
 
 /// All that the sensors of one world want in one step. Equal wishes are merged.
@@ -25,7 +25,7 @@ pub struct Requests {
 
 impl Requests {
     /// Asks for images of a view.
-    pub fn view(&mut self, eye: &EyeCamera, channels: Channels) {
+    pub fn view(&mut self, eye: &EyeCamera, channels: ImageChannels) {
         match self.views.iter_mut().find(|view| view.eye == *eye) {
             Some(view) => view.channels = view.channels.and(channels),
             None => self.views.push(ViewRequest {

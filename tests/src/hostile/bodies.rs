@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, WorldConfig};
 use dwell_houses::{HousesError, LoadReport};
-use dwell_render::{Camera, Channels, Preset};
+use dwell_render::{Camera, ImageChannels, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, Pose};
@@ -51,10 +51,10 @@ pub fn live_in(house: House) {
         place: Place::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Lit,
     };
-    let channels = Channels {
+    let channels = ImageChannels {
         rgb: true,
         depth: true,
-        ..Channels::default()
+        ..ImageChannels::default()
     };
     let _ = world.picture(&request, channels, Threads::ONE);
 }

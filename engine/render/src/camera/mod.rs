@@ -26,7 +26,7 @@ use std::f32::consts::{PI, TAU};
 /// # Ok::<(), dwell_render::RenderError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Plain", into = "Plain")]
+#[serde(try_from = "CameraFile", into = "CameraFile")]
 pub struct Camera {
     width: u32,
     height: u32,
@@ -38,7 +38,7 @@ pub struct Camera {
 /// A camera as files hold it.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Plain {
+struct CameraFile {
     width: u32,
     height: u32,
     projection: Projection,
@@ -56,15 +56,15 @@ fn default_far() -> f32 {
     Camera::DEFAULT_FAR_M
 }
 
-impl TryFrom<Plain> for Camera {
+impl TryFrom<CameraFile> for Camera {
     type Error = RenderError;
-    fn try_from(plain: Plain) -> Result<Self, RenderError> {
+    fn try_from(plain: CameraFile) -> Result<Self, RenderError> {
         Self::new(plain.width, plain.height, plain.projection)?
             .with_range(plain.near_m, plain.far_m)
     }
 }
 
-impl From<Camera> for Plain {
+impl From<Camera> for CameraFile {
     fn from(camera: Camera) -> Self {
         let Camera {
             width,

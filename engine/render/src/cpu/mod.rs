@@ -1,30 +1,30 @@
 //! The `cpu` back end: ray casting, always there, the same bits for any number of threads.
 
-mod alone;
-mod band;
-mod dice;
-mod full;
-mod lanes;
+mod camera_rays;
+mod flat_shading;
 mod motion;
-mod rays;
+mod path_tracer;
+mod sampler;
 mod shade;
 mod shadow;
+mod tile;
+mod unoccluded;
 
 use crate::error::RenderError;
-use crate::frame::{Before, FrameMut, Preset, View};
-use crate::light::{HouseLight, Inputs, Lighting};
-use crate::look::Look;
-use crate::semantic::{Classes, EntityClasses};
-use crate::surfaces::Surfaces;
+use crate::frame::{FrameMut, Preset, PreviousFrame, View};
+use crate::light::{HouseLight, Lighting, LightingInputs};
+use crate::material::ShadingMaterial;
+use crate::semantic::{ClassSet, EntityClasses};
 use crate::texture::Textures;
-use band::Band;
+use crate::triangle_table::TriangleTable;
+pub(crate) use camera_rays::SEEN;
 use dwell_scene::bvh::{Ray, TriangleBvh};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
-pub(crate) use rays::SEEN;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use tile::ImageTile;
 
 /// Rows of an image that one thread takes at a time; a multiple of a packet's edge.
 const BAND_ROWS: usize = 8;
@@ -55,8 +55,8 @@ const BAND_ROWS: usize = 8;
 pub struct CpuRenderer {
     house: Arc<House>,
     pub(crate) textures: Textures,
-    pub(crate) looks: Vec<Look>,
-    pub(crate) surfaces: Surfaces,
+    pub(crate) looks: Vec<ShadingMaterial>,
+    pub(crate) surfaces: TriangleTable,
     /// Class of every entity, by each table.
     classes: [EntityClasses; 3],
     /// Around the surface of each part, in its own space. Shape (part,).
@@ -71,7 +71,7 @@ pub struct CpuRenderer {
 
 /// One view of one world, for a batch.
 #[derive(Debug)]
-pub struct Job<'a> {
+pub struct RenderJob<'a> {
     /// The world's surfaces, up to date with `state`.
     pub scene: &'a RayScene,
     /// The world.
@@ -79,14 +79,14 @@ pub struct Job<'a> {
     /// The view.
     pub view: View,
     /// Where things were before, for flow; without it nothing has moved.
-    pub before: Option<Before<'a>>,
+    pub before: Option<PreviousFrame<'a>>,
     /// The first row and the one behind the last, of those that are wanted; `None`: all.
     pub rows: Option<(u32, u32)>,
     /// Where its images go: of the rows that are wanted.
     pub frame: FrameMut<'a>,
 }
 
-impl<'a> Job<'a> {
+impl<'a> RenderJob<'a> {
     /// All rows of a view in which nothing has moved.
     pub fn new(scene: &'a RayScene, state: &'a State, view: View, frame: FrameMut<'a>) -> Self {
         Self {
@@ -112,9 +112,9 @@ impl CpuRenderer {
     /// Prepares textures, colours and the tables of all triangles of a house, to be shared by all worlds over it.
     pub fn new(house: &Arc<House>) -> Self {
         let textures = Textures::new(house);
-        let mut looks = Look::all(house, &textures);
-        looks.push(Look::body());
-        let surfaces = Surfaces::new(house, &looks);
+        let mut looks = ShadingMaterial::all(house, &textures);
+        looks.push(ShadingMaterial::body());
+        let surfaces = TriangleTable::new(house, &looks);
         tracing::debug!(
             texture_bytes = textures.bytes(),
             triangle_bytes = surfaces.bytes(),
@@ -122,7 +122,7 @@ impl CpuRenderer {
             "cpu renderer prepared"
         );
         Self {
-            classes: Classes::ALL.map(|table| EntityClasses::new(house, table)),
+            classes: ClassSet::ALL.map(|table| EntityClasses::new(house, table)),
             part_bounds: OnceLock::new(),
             house: house.clone(),
             textures,
@@ -159,8 +159,8 @@ impl CpuRenderer {
             });
         }
         let pairs = views.iter().zip(frames);
-        let mut jobs: Vec<Job<'_>> = pairs
-            .map(|(view, frame)| Job::new(scene, state, *view, frame.reborrow()))
+        let mut jobs: Vec<RenderJob<'_>> = pairs
+            .map(|(view, frame)| RenderJob::new(scene, state, *view, frame.reborrow()))
             .collect();
         self.render_batch(&mut jobs, threads)
     }
@@ -169,7 +169,11 @@ impl CpuRenderer {
     ///
     /// # Errors
     /// As [`Self::render`]; numbers in messages are positions in `jobs`.
-    pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
+    pub fn render_batch(
+        &self,
+        jobs: &mut [RenderJob<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
         for (k, job) in jobs.iter().enumerate() {
             self.check(k, job)?;
         }
@@ -197,7 +201,7 @@ impl CpuRenderer {
                     lightings[k].exposure(self.house_light(), eye),
                 )
             });
-            Band::split(job, light, &mut bands);
+            ImageTile::split(job, light, &mut bands);
         }
         threads.for_each(&mut bands, |_, band| band.render(self));
         drop(bands);
@@ -205,7 +209,7 @@ impl CpuRenderer {
         Ok(())
     }
 
-    pub(crate) fn check(&self, view: usize, job: &Job<'_>) -> Result<(), RenderError> {
+    pub(crate) fn check(&self, view: usize, job: &RenderJob<'_>) -> Result<(), RenderError> {
         if !Arc::ptr_eq(&self.house, job.scene.house()) {
             return Err(RenderError::OtherHouse { view });
         }
@@ -229,7 +233,7 @@ impl CpuRenderer {
     /// The light of a world as it stands: kept where all that it depends on is as it was, else made in the memory that was used
     /// longest ago; see [`Self::keep_lighting`].
     pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
-        let inputs = Inputs {
+        let inputs = LightingInputs {
             house: &self.house,
             fixed: self.house_light(),
             scene,
@@ -263,14 +267,14 @@ impl CpuRenderer {
     }
 
     /// The class of every entity, by a table.
-    pub fn classes(&self, table: Classes) -> &EntityClasses {
+    pub fn classes(&self, table: ClassSet) -> &EntityClasses {
         &self.classes[table as usize]
     }
 
     /// The class of an entity in the semantic image.
     #[inline]
     fn class(&self, entity: i32) -> i32 {
-        self.classes[Classes::Coarse as usize].of(entity)
+        self.classes[ClassSet::Coarse as usize].of(entity)
     }
 
     /// Around the surface of each part, in its own space; made at first use. Shape (part,).

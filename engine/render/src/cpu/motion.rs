@@ -1,14 +1,19 @@
 //! Where points of the image were before.
 
 use super::CpuRenderer;
-use super::rays::Sight;
+use super::camera_rays::PrimaryHit;
 use crate::camera::{Camera, Projection};
-use crate::frame::Before;
+use crate::frame::PreviousFrame;
 use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
 /// How a point that is seen at `image` has moved there, pixels; it was at `was` in the world.
-pub(super) fn flow(camera: &Camera, before: &Before<'_>, image: (f32, f32), was: Vec3) -> [f32; 2] {
+pub(super) fn flow(
+    camera: &Camera,
+    before: &PreviousFrame<'_>,
+    image: (f32, f32),
+    was: Vec3,
+) -> [f32; 2] {
     let eye = &before.world_from_camera;
     moved(camera, image, eye.rotation.inverse() * (was - eye.position))
 }
@@ -16,7 +21,7 @@ pub(super) fn flow(camera: &Camera, before: &Before<'_>, image: (f32, f32), was:
 /// As [`flow`] for what is seen in a direction infinitely far away.
 pub(super) fn far_flow(
     camera: &Camera,
-    before: &Before<'_>,
+    before: &PreviousFrame<'_>,
     image: (f32, f32),
     direction: Vec3,
 ) -> [f32; 2] {
@@ -51,7 +56,12 @@ fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
 
 impl CpuRenderer {
     /// Where in the world the point that is seen was before.
-    pub(super) fn point_before(&self, sight: &Sight, state: &State, before: &Before<'_>) -> Vec3 {
+    pub(super) fn point_before(
+        &self,
+        sight: &PrimaryHit,
+        state: &State,
+        before: &PreviousFrame<'_>,
+    ) -> Vec3 {
         let Some(instance) = sight.instance else {
             return sight.point;
         };

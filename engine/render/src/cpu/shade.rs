@@ -1,14 +1,14 @@
 //! The colour of a pixel.
 
 use super::CpuRenderer;
-use super::band::Band;
-use super::lanes::bits;
-use super::rays::Rays;
-use super::rays::{COLUMNS, LANES, Packet, SEEN, Sight};
-use crate::color::Srgb;
-use crate::footprint::{Footprint, GRAZING};
-use crate::light::{Incoming, Site, beside_surface, display, sky};
-use crate::look::Look;
+use super::camera_rays::CameraRays;
+use super::camera_rays::{COLUMNS, CameraPacket, LANES, PrimaryHit, SEEN};
+use super::flat_shading::bits;
+use super::tile::ImageTile;
+use crate::color::SrgbTables;
+use crate::light::{IncidentLight, ShadingPoint, display, room_lookup_point, sky};
+use crate::material::ShadingMaterial;
+use crate::texture_filter::{GRAZING, TextureFootprint};
 use dwell_scene::bvh::Ray;
 use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
@@ -25,7 +25,7 @@ pub(super) const MIRRORS: u32 = 2;
 pub(super) const OFF_SURFACE_M: f32 = 1e-3;
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
-struct Open {
+struct TransmittedPixel {
     lane: usize,
     /// Light so far.
     light: Vec3,
@@ -36,8 +36,8 @@ struct Open {
 }
 
 /// What a surface is like at a point, before light.
-pub(super) struct Skin<'a> {
-    pub(super) look: &'a Look,
+pub(super) struct ShadedSurface<'a> {
+    pub(super) look: &'a ShadingMaterial,
     /// Reflectance, linear.
     pub(super) color: Vec3,
     pub(super) opacity: f32,
@@ -47,7 +47,7 @@ pub(super) struct Skin<'a> {
     pose: Option<&'a Pose>,
 }
 
-impl Skin<'_> {
+impl ShadedSurface<'_> {
     /// The normal on the side that is seen along `direction`.
     pub(super) fn facing(&self, direction: Vec3) -> Vec3 {
         if self.normal.dot(direction) > 0.0 {
@@ -59,15 +59,15 @@ impl Skin<'_> {
 }
 
 /// The pixels of a packet whose rays passed a surface.
-struct OpenLanes {
+struct TransmittedLanes {
     count: usize,
-    lanes: [Open; LANES],
+    lanes: [TransmittedPixel; LANES],
 }
 
-impl OpenLanes {
+impl TransmittedLanes {
     const NONE: Self = Self {
         count: 0,
-        lanes: [Open {
+        lanes: [TransmittedPixel {
             lane: 0,
             light: Vec3::ZERO,
             rest: 0.0,
@@ -75,12 +75,12 @@ impl OpenLanes {
         }; LANES],
     };
 
-    fn push(&mut self, open: Open) {
+    fn push(&mut self, open: TransmittedPixel) {
         self.lanes[self.count] = open;
         self.count += 1;
     }
 
-    fn all(&self) -> &[Open] {
+    fn all(&self) -> &[TransmittedPixel] {
         &self.lanes[..self.count]
     }
 }
@@ -90,12 +90,12 @@ const SHADOW_RAYS: usize = 2;
 
 /// A surface that a pixel sees, whose shadows are not yet known.
 #[derive(Clone, Copy)]
-pub(super) struct Pending {
+pub(super) struct PendingShadows {
     lane: usize,
     /// How much of what lies behind it hides.
     opacity: f32,
     /// What it sends to the camera.
-    pub(super) incoming: Incoming<SHADOW_RAYS>,
+    pub(super) incoming: IncidentLight<SHADOW_RAYS>,
     /// Where its shadow rays end.
     pub(super) off: Vec3,
     /// Normal of the flat triangle towards the viewer.
@@ -104,11 +104,11 @@ pub(super) struct Pending {
     from: f32,
 }
 
-impl Pending {
+impl PendingShadows {
     const NONE: Self = Self {
         lane: 0,
         opacity: 1.0,
-        incoming: Incoming::NONE,
+        incoming: IncidentLight::NONE,
         off: Vec3::ZERO,
         facing: Vec3::ZERO,
         from: 0.0,
@@ -116,18 +116,18 @@ impl Pending {
 }
 
 /// What a surface sends to the camera.
-struct Sent {
-    incoming: Incoming<SHADOW_RAYS>,
+struct OutgoingLight {
+    incoming: IncidentLight<SHADOW_RAYS>,
     /// How much of what lies behind it hides.
     opacity: f32,
     off: Vec3,
     facing: Vec3,
 }
 
-impl Sent {
+impl OutgoingLight {
     fn plain(light: Vec3, opacity: f32) -> Self {
         Self {
-            incoming: Incoming::plain(light),
+            incoming: IncidentLight::plain(light),
             opacity,
             off: Vec3::ZERO,
             facing: Vec3::ZERO,
@@ -136,51 +136,56 @@ impl Sent {
 }
 
 /// Memory for many packets.
-pub(super) struct Palette {
+pub(super) struct ShadeScratch {
     pub(super) bytes: [[u8; 3]; LANES],
-    pending: [Pending; LANES],
-    open: OpenLanes,
-    next: OpenLanes,
+    pending: [PendingShadows; LANES],
+    open: TransmittedLanes,
+    next: TransmittedLanes,
 }
 
-impl Palette {
+impl ShadeScratch {
     pub(super) fn new() -> Self {
         Self {
             bytes: [[0; 3]; LANES],
-            pending: [Pending::NONE; LANES],
-            open: OpenLanes::NONE,
-            next: OpenLanes::NONE,
+            pending: [PendingShadows::NONE; LANES],
+            open: TransmittedLanes::NONE,
+            next: TransmittedLanes::NONE,
         }
     }
 }
 
 impl CpuRenderer {
     /// What is seen of a surface without light.
-    pub(super) fn skin<'a>(&'a self, rays: &Rays, state: &'a State, sight: &Sight) -> Skin<'a> {
+    pub(super) fn surface_at_hit<'a>(
+        &'a self,
+        rays: &CameraRays,
+        state: &'a State,
+        sight: &PrimaryHit,
+    ) -> ShadedSurface<'a> {
         let position = self.surfaces.position(sight.instance, sight.triangle);
-        self.skin_at(rays, state, sight, position)
+        self.surface_at_point(rays, state, sight, position)
     }
 
     #[inline]
-    pub(super) fn skin_at<'a>(
+    pub(super) fn surface_at_point<'a>(
         &'a self,
-        rays: &Rays,
+        rays: &CameraRays,
         state: &'a State,
-        sight: &Sight,
+        sight: &PrimaryHit,
         position: usize,
-    ) -> Skin<'a> {
+    ) -> ShadedSurface<'a> {
         let triangle = self.surfaces.triangle(position);
         let look = &self.looks[triangle.material as usize];
         let mut color = Vec3::from_array(look.base);
         let mut opacity = look.opacity;
-        let &Sight {
+        let &PrimaryHit {
             point,
             direction,
             depth,
             ..
         } = sight;
         let pose = self.surfaces.pose(sight.instance, state);
-        let standing = triangle.stand(pose);
+        let standing = triangle.posed(pose);
         let normal = standing.normal;
         if let Some(texture) = look.texture() {
             let (fixed, growing) = rays.pixel_area;
@@ -192,13 +197,13 @@ impl CpuRenderer {
                 self.textures.sample(texture, uv, texels)
             } else {
                 let size = self.textures.image(texture).size();
-                let footprint = Footprint::new(&standing, direction, area.sqrt(), size);
+                let footprint = TextureFootprint::new(&standing, direction, area.sqrt(), size);
                 footprint.sample(&self.textures, texture, uv)
             };
             color *= sample.truncate();
             opacity *= sample.w;
         }
-        Skin {
+        ShadedSurface {
             look,
             color,
             opacity,
@@ -211,8 +216,8 @@ impl CpuRenderer {
     #[inline]
     pub(super) fn normals(
         &self,
-        skin: &Skin<'_>,
-        sight: &Sight,
+        skin: &ShadedSurface<'_>,
+        sight: &PrimaryHit,
         position: usize,
         (u, v): (f32, f32),
     ) -> (Vec3, Vec3) {
@@ -231,14 +236,14 @@ impl CpuRenderer {
     }
 }
 
-impl Band<'_> {
+impl ImageTile<'_> {
     /// sRGB of the first `columns` by `rows` pixels of a packet, which afterwards no longer knows what they see first.
     pub(super) fn colors(
         &self,
         renderer: &CpuRenderer,
-        packet: &mut Packet,
+        packet: &mut CameraPacket,
         (columns, rows): (usize, usize),
-        palette: &mut Palette,
+        palette: &mut ShadeScratch,
     ) {
         palette.open.count = 0;
         let mut lanes = 0_u64;
@@ -266,7 +271,7 @@ impl Band<'_> {
             let (lane, light, opacity) = (one.lane, one.incoming.light, one.opacity);
             palette.bytes[lane] = self.encode(light);
             if opacity < OPAQUE {
-                palette.open.push(Open {
+                palette.open.push(TransmittedPixel {
                     lane,
                     light: light * opacity,
                     rest: 1.0 - opacity,
@@ -284,9 +289,9 @@ impl Band<'_> {
     fn color(
         &self,
         renderer: &CpuRenderer,
-        packet: &Packet,
+        packet: &CameraPacket,
         lane: usize,
-    ) -> Result<[u8; 3], Pending> {
+    ) -> Result<[u8; 3], PendingShadows> {
         let Some(sight) = packet.sight(lane) else {
             let direction = packet.direction(lane);
             if direction == Vec3::ZERO {
@@ -301,7 +306,7 @@ impl Band<'_> {
         if self.light.is_none() && sent.opacity >= OPAQUE {
             return Ok(self.encode(sent.incoming.light));
         }
-        Err(Pending {
+        Err(PendingShadows {
             lane,
             opacity: sent.opacity,
             incoming: sent.incoming,
@@ -313,14 +318,19 @@ impl Band<'_> {
 
     /// All that is seen through surfaces, front to back.
     #[cold]
-    fn behind(&self, renderer: &CpuRenderer, packet: &mut Packet, palette: &mut Palette) {
+    fn behind(
+        &self,
+        renderer: &CpuRenderer,
+        packet: &mut CameraPacket,
+        palette: &mut ShadeScratch,
+    ) {
         let bytes = &mut palette.bytes;
         let (mut open, mut next) = (&mut palette.open, &mut palette.next);
         for layer in 1..=LAYERS {
             let ways = open.all().iter().map(|open| (open.lane, open.from));
-            packet.go_on(&self.rays, self.scene, ways);
+            packet.advance_behind(&self.rays, self.scene, ways);
             next.count = 0;
-            for &Open {
+            for &TransmittedPixel {
                 lane, light, rest, ..
             } in open.all()
             {
@@ -338,7 +348,7 @@ impl Band<'_> {
                     bytes[lane] = self.encode(light + more * rest);
                     continue;
                 }
-                next.push(Open {
+                next.push(TransmittedPixel {
                     lane,
                     light: light + more * (opacity * rest),
                     rest: rest * (1.0 - opacity),
@@ -367,11 +377,11 @@ impl Band<'_> {
         } else {
             light
         };
-        Srgb::tables().encode3(shown.to_array())
+        SrgbTables::tables().encode3(shown.to_array())
     }
 
     /// Light that a surface sends to the camera, and how much of what lies behind it hides, once its shadows are known.
-    fn settle(&self, renderer: &CpuRenderer, sent: &Sent) -> (Vec3, f32) {
+    fn settle(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
         let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
             sent.incoming.arriving(|source| {
                 renderer.arrives(self.scene, lighting, source, (sent.off, sent.facing))
@@ -387,34 +397,34 @@ impl Band<'_> {
     fn surface(
         &self,
         renderer: &CpuRenderer,
-        sight: &Sight,
+        sight: &PrimaryHit,
         position: usize,
         mirrors: u32,
         weights: impl FnOnce() -> (f32, f32),
-    ) -> Sent {
-        let skin = renderer.skin_at(&self.rays, self.state, sight, position);
-        let &Sight {
+    ) -> OutgoingLight {
+        let skin = renderer.surface_at_point(&self.rays, self.state, sight, position);
+        let &PrimaryHit {
             point, direction, ..
         } = sight;
         let Some((lighting, exposure)) = &self.light else {
-            return Sent::plain(skin.color, skin.opacity);
+            return OutgoingLight::plain(skin.color, skin.opacity);
         };
         if skin.look.mirror && mirrors > 0 {
             let facing = skin.facing(direction);
             let light = self.reflected(renderer, sight, facing, mirrors - 1);
-            return Sent::plain(skin.color * light, skin.opacity);
+            return OutgoingLight::plain(skin.color * light, skin.opacity);
         }
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights());
-        let site = Site {
+        let site = ShadingPoint {
             point,
             normal: smooth,
-            looked_up: beside_surface(point, facing, direction),
+            room_lookup: room_lookup_point(point, facing, direction),
             entity: sight.id,
         };
         let incoming = lighting.incoming(renderer.house_light(), *exposure, &site);
         let mut incoming = incoming.on(skin.color);
-        incoming.light += self.glow(renderer, skin.look.emission, sight.id);
-        Sent {
+        incoming.light += self.emitted_light(renderer, skin.look.emission, sight.id);
+        OutgoingLight {
             incoming,
             opacity: skin.opacity,
             off: point + facing * OFF_SURFACE_M,
@@ -427,7 +437,7 @@ impl Band<'_> {
     fn reflected(
         &self,
         renderer: &CpuRenderer,
-        mirror: &Sight,
+        mirror: &PrimaryHit,
         facing: Vec3,
         mirrors: u32,
     ) -> Vec3 {
@@ -444,7 +454,7 @@ impl Band<'_> {
                 break;
             };
             let distance = hit.distance_m;
-            let sight = Sight {
+            let sight = PrimaryHit {
                 point: ray.origin + direction * distance,
                 direction,
                 // Patterns in a mirror are as fine as if they stood behind it.
@@ -468,7 +478,12 @@ impl Band<'_> {
     }
 
     /// Light of its own, unless it is switched off.
-    pub(super) fn glow(&self, renderer: &CpuRenderer, emission: [f32; 3], entity: i32) -> Vec3 {
+    pub(super) fn emitted_light(
+        &self,
+        renderer: &CpuRenderer,
+        emission: [f32; 3],
+        entity: i32,
+    ) -> Vec3 {
         let off = || match renderer.house.entity(EntityId(entity)) {
             Some(Entity::Object(object)) => !self.state.is_on(&renderer.house, object),
             _ => false,

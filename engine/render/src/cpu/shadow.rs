@@ -1,9 +1,9 @@
 //! Whether light arrives.
 
 use super::CpuRenderer;
-use super::rays::{LANES, SEEN};
-use super::shade::Pending;
-use crate::light::{Caster, Lighting, Source};
+use super::camera_rays::{LANES, SEEN};
+use super::shade::PendingShadows;
+use crate::light::{LampCluster, LightSource, Lighting};
 use dwell_scene::EntityId;
 use dwell_scene::bvh::{PacketHits, Ray, RayPacket, SceneBvh};
 use glam::Vec3;
@@ -58,13 +58,15 @@ impl CpuRenderer {
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
-        source: Source,
+        source: LightSource,
         (point, facing): (Vec3, Vec3),
     ) -> bool {
         match source {
-            Source::None | Source::Room | Source::Open | Source::Window(_) => true,
-            Source::Sun => self.sun_reaches(scene, point),
-            Source::Caster(position) => {
+            LightSource::None | LightSource::Room | LightSource::Sky | LightSource::Window(_) => {
+                true
+            }
+            LightSource::Sun => self.sun_reaches(scene, point),
+            LightSource::Caster(position) => {
                 let caster = lighting.caster(position);
                 ray_from(caster, point, facing)
                     .is_none_or(|ray| self.passes(scene, &ray, caster.entity))
@@ -77,18 +79,18 @@ impl CpuRenderer {
         &self,
         scene: SceneBvh<'_>,
         lighting: &Lighting,
-        pending: &mut [Pending],
+        pending: &mut [PendingShadows],
     ) {
         let mut hits = PacketHits::<LANES>::new();
         for first in 0..pending.len() {
             for k in 0..pending[first].incoming.rays.len() {
                 let source = pending[first].incoming.rays[k].source;
-                if source == Source::None {
+                if source == LightSource::None {
                     continue;
                 }
                 let mut stopped = 0_u64;
                 let rest = &mut pending[first..];
-                if let Source::Caster(position) = source {
+                if let LightSource::Caster(position) = source {
                     let caster = lighting.caster(position);
                     let mut rays = RayPacket::<LANES>::new(caster.center);
                     let mut used = 0_u64;
@@ -121,9 +123,9 @@ impl CpuRenderer {
                     let Some(ray) = mine else {
                         continue;
                     };
-                    ray.source = Source::None;
+                    ray.source = LightSource::None;
                     let arrives = match source {
-                        Source::Sun => self.sun_reaches(scene, one.off),
+                        LightSource::Sun => self.sun_reaches(scene, one.off),
                         _ => stopped >> lane & 1 == 0,
                     };
                     if arrives {
@@ -136,7 +138,7 @@ impl CpuRenderer {
 }
 
 /// From what casts shadows to a point; nothing for a flat surface that faces away, which light meets only by its rounded normal.
-fn ray_from(caster: &Caster, point: Vec3, facing: Vec3) -> Option<Ray> {
+fn ray_from(caster: &LampCluster, point: Vec3, facing: Vec3) -> Option<Ray> {
     let way = point - caster.center;
     let distance = way.length();
     (distance > 1e-3 && facing.dot(way) < 0.0).then(|| Ray {

@@ -108,7 +108,7 @@ pub(super) fn ready<T>(future: impl Future<Output = T>) -> T {
 
 /// Which adapter is meant.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Wanted<'a> {
+pub(super) enum AdapterChoice<'a> {
     /// The likely quickest that is not software.
     Hardware,
     /// The first whose name or place on the bus holds this, in upper or lower case; behind `vulkan/`, `metal/`, `dx12/` or `gl/`
@@ -120,7 +120,7 @@ pub(super) enum Wanted<'a> {
 
 const INTERFACES: [&str; 4] = ["vulkan", "metal", "dx12", "gl"];
 
-impl Wanted<'_> {
+impl AdapterChoice<'_> {
     fn is(&self, adapter: &Adapter) -> bool {
         let is_hardware = adapter.kind != AdapterKind::Software;
         match self {
@@ -141,7 +141,7 @@ impl Wanted<'_> {
     }
 }
 
-impl std::fmt::Display for Wanted<'_> {
+impl std::fmt::Display for AdapterChoice<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Hardware => f.write_str("of hardware"),
@@ -244,7 +244,7 @@ pub(super) fn forked(adapter: &Adapter) -> RenderError {
 ///
 /// # Errors
 /// [`RenderError::NoAdapter`]; [`RenderError::Forked`] where it may be behind GL, which cannot be asked here.
-pub(super) fn find(wanted: Wanted<'_>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
+pub(super) fn find(wanted: AdapterChoice<'_>) -> Result<(Adapter, wgpu::Adapter), RenderError> {
     let (all, is_gl_lost) = list();
     let names: Vec<String> = all.iter().map(|(adapter, _)| adapter.to_string()).collect();
     let found = all.into_iter().find(|(adapter, _)| wanted.is(adapter));
@@ -299,7 +299,7 @@ mod tests {
         listed.into_iter().map(|(adapter, ())| adapter).collect()
     }
 
-    fn chosen(all: &[Adapter], wanted: Wanted<'_>) -> Option<usize> {
+    fn chosen(all: &[Adapter], wanted: AdapterChoice<'_>) -> Option<usize> {
         all.iter().position(|adapter| wanted.is(adapter))
     }
 
@@ -308,9 +308,9 @@ mod tests {
         let card = adapter(AdapterKind::Integrated, "gl", "HD Graphics 4000", "");
         let all = machine(&[pipe("vulkan")], &[card.clone(), pipe("gl")]);
         assert_eq!(all, [card.clone(), pipe("vulkan")]);
-        assert_eq!(chosen(&all, Wanted::Hardware), Some(0));
+        assert_eq!(chosen(&all, AdapterChoice::Hardware), Some(0));
         // A name that both hold means the card.
-        assert_eq!(chosen(&all, Wanted::Named("p")), Some(0));
+        assert_eq!(chosen(&all, AdapterChoice::Named("p")), Some(0));
         assert_eq!(
             machine(&[], &[pipe("gl"), card.clone()]),
             [card, pipe("gl")]
@@ -320,12 +320,12 @@ mod tests {
     #[test]
     fn software_is_taken_by_name_alone() {
         let all = machine(&[pipe("vulkan")], &[]);
-        assert_eq!(chosen(&all, Wanted::Hardware), None);
-        assert_eq!(chosen(&all, Wanted::Named("vulkan/")), None);
+        assert_eq!(chosen(&all, AdapterChoice::Hardware), None);
+        assert_eq!(chosen(&all, AdapterChoice::Named("vulkan/")), None);
         for name in ["LLVMpipe", "vulkan/llvm"] {
-            assert_eq!(chosen(&all, Wanted::Named(name)), Some(0));
+            assert_eq!(chosen(&all, AdapterChoice::Named(name)), Some(0));
         }
-        assert_eq!(chosen(&all, Wanted::Named("gl/llvm")), None);
+        assert_eq!(chosen(&all, AdapterChoice::Named("gl/llvm")), None);
     }
 
     #[test]
@@ -359,12 +359,12 @@ mod tests {
             &[],
         );
         for (k, adapter) in all.iter().enumerate() {
-            assert_eq!(chosen(&all, Wanted::Exactly(adapter)), Some(k));
+            assert_eq!(chosen(&all, AdapterChoice::Exactly(adapter)), Some(k));
         }
         assert_eq!(all[0], first, "vulkan comes before dx12");
-        assert_eq!(chosen(&all, Wanted::Named("r5/r7")), Some(0));
-        assert_eq!(chosen(&all, Wanted::Named("0000:65")), Some(1));
-        assert_eq!(chosen(&all, Wanted::Named("dx12/r5")), Some(2));
+        assert_eq!(chosen(&all, AdapterChoice::Named("r5/r7")), Some(0));
+        assert_eq!(chosen(&all, AdapterChoice::Named("0000:65")), Some(1));
+        assert_eq!(chosen(&all, AdapterChoice::Named("dx12/r5")), Some(2));
         assert_eq!((all[2].twin, all[3].twin), (0, 1));
     }
 }

@@ -5,7 +5,7 @@
 //! and windows show of others. Walls are taken as they stand, with their openings, and count only as far as they are convex
 //! and without gaps, so that nothing depends on rooms being closed.
 
-use super::occluders::{Occluder, Shadow};
+use super::occluders::{Occluder, OcclusionVolume};
 use dwell_scene::Aabb;
 use dwell_scene::bvh::flat::{NO_LINK, NODE_ROWS, PackedRow};
 use glam::{Vec3, Vec4, Vec4Swizzles};
@@ -40,7 +40,7 @@ pub(super) struct Culler {
 
 /// A place from which a picture is taken.
 #[derive(Clone, Debug)]
-pub(super) struct Eye {
+pub(super) struct CullingView {
     pub(super) position: Vec3,
     /// Planes around what the picture shows, inwards. Shape (plane,).
     pub(super) planes: [Vec4; 6],
@@ -50,17 +50,17 @@ pub(super) struct Eye {
 }
 
 /// What can be seen from an eye.
-pub(super) struct Sightline<'a> {
-    eye: &'a Eye,
-    shadows: &'a [Shadow],
+pub(super) struct VisibilityQuery<'a> {
+    eye: &'a CullingView,
+    shadows: &'a [OcclusionVolume],
 }
 
-/// Memory for a [`Sightline`], used again.
+/// Memory for a [`VisibilityQuery`], used again.
 #[derive(Debug, Default)]
-pub(super) struct Shadows {
+pub(super) struct OccluderScratch {
     /// Walls by the solid angle that they cover, sr.
     best: Vec<(f32, usize)>,
-    shadows: Vec<Shadow>,
+    shadows: Vec<OcclusionVolume>,
 }
 
 /// The signed distance of a box's corner furthest along a plane's normal.
@@ -69,7 +69,7 @@ fn furthest(plane: Vec4, bounds: &Aabb) -> f32 {
     plane.xyz().dot(bounds.center()) + plane.w + plane.xyz().abs().dot(half)
 }
 
-impl Eye {
+impl CullingView {
     /// A plane through the eye.
     pub(super) fn through(position: Vec3, normal: Vec3) -> Vec4 {
         let normal = normal.normalize_or_zero();
@@ -84,7 +84,7 @@ impl Eye {
     }
 }
 
-impl Sightline<'_> {
+impl VisibilityQuery<'_> {
     /// Whether something in a box may be seen.
     pub(super) fn sees(&self, bounds: &Aabb) -> bool {
         self.eye.shows(bounds) && !self.shadows.iter().any(|shadow| shadow.hides(bounds))
@@ -128,8 +128,12 @@ impl Culler {
     }
 
     /// What can be seen from an eye.
-    pub(super) fn sightline<'a>(&self, eye: &'a Eye, memory: &'a mut Shadows) -> Sightline<'a> {
-        let Shadows { best, shadows } = memory;
+    pub(super) fn sightline<'a>(
+        &self,
+        eye: &'a CullingView,
+        memory: &'a mut OccluderScratch,
+    ) -> VisibilityQuery<'a> {
+        let OccluderScratch { best, shadows } = memory;
         let walls = self.occluders.iter().enumerate();
         best.clear();
         best.extend(
@@ -147,11 +151,11 @@ impl Culler {
         shadows.extend(
             largest.filter_map(|(_, k)| self.occluders[*k].shadow(eye.position, eye.near_m)),
         );
-        Sightline { eye, shadows }
+        VisibilityQuery { eye, shadows }
     }
 
     /// The blocks that may be seen, as ranges in order; those that touch are one.
-    pub(super) fn visible(&self, sightline: &Sightline<'_>, ranges: &mut Vec<Range<u32>>) {
+    pub(super) fn visible(&self, sightline: &VisibilityQuery<'_>, ranges: &mut Vec<Range<u32>>) {
         ranges.clear();
         let mut place = 0;
         while let Some(subtree) = self.subtrees.get(place) {
@@ -219,17 +223,17 @@ mod tests {
     use std::sync::Arc;
 
     /// An eye with a square picture of 90 degrees.
-    fn eye(position: Vec3, yaw: f32, pitch: f32) -> (Eye, [Vec3; 3]) {
+    fn eye(position: Vec3, yaw: f32, pitch: f32) -> (CullingView, [Vec3; 3]) {
         let rotation = space::rotation_from_yaw_pitch(yaw, pitch);
         let [right, up, back] = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| rotation * axis);
         let sides = [-back + right, -back - right, -back + up, -back - up];
         let mut planes = [Vec4::ZERO; 6];
         for (plane, side) in planes.iter_mut().zip(sides) {
-            *plane = Eye::through(position, side);
+            *plane = CullingView::through(position, side);
         }
-        planes[4] = Eye::through(position - back * 0.05, -back);
-        planes[5] = Eye::through(position - back * 50.0, back);
-        let eye = Eye {
+        planes[4] = CullingView::through(position - back * 0.05, -back);
+        planes[5] = CullingView::through(position - back * 50.0, back);
+        let eye = CullingView {
             position,
             planes,
             near_m: 0.05 * 1.75,
@@ -259,7 +263,7 @@ mod tests {
                     block_of[*index as usize] = block as u32;
                 }
             }
-            let (mut ranges, mut memory) = (Vec::new(), Shadows::default());
+            let (mut ranges, mut memory) = (Vec::new(), OccluderScratch::default());
             for _ in 0..1000 {
                 let low = flat.bounds.min;
                 let size = flat.bounds.size();

@@ -1,9 +1,9 @@
 //! An adapter in use.
 
-use super::adapter::{Adapter, Wanted, find, forked, ready};
-use super::kernels::{Kernels, Layouts};
-use super::path::PathSpeeds;
+use super::adapter::{Adapter, AdapterChoice, find, forked, ready};
+use super::kernels::{BindGroupLayouts, Kernels};
 use super::raster;
+use super::visibility_path::VisibilityPathSpeeds;
 use crate::cpu::CpuRenderer;
 use crate::error::RenderError;
 use std::collections::BTreeMap;
@@ -16,12 +16,12 @@ pub struct Gpu {
     adapter: Adapter,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
-    pub(super) layouts: Layouts,
+    pub(super) layouts: BindGroupLayouts,
     /// By the links that their stacks hold.
     kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
     raster: OnceLock<wgpu::RenderPipeline>,
-    /// Which path is quicker here; see [`PathSpeeds::measure`].
-    speeds: OnceLock<PathSpeeds>,
+    /// Which path is quicker here; see [`VisibilityPathSpeeds::measure`].
+    speeds: OnceLock<VisibilityPathSpeeds>,
     /// The process that opened it.
     process: u32,
     buffers_made: AtomicUsize,
@@ -54,16 +54,16 @@ impl BatchLimits {
 /// Kernels count the words of images in 32 bits.
 const MOST_BYTES: u64 = 4 * u32::MAX as u64;
 
-static OPEN: Mutex<Open> = Mutex::new(Open::NONE);
+static OPEN: Mutex<DeviceRegistry> = Mutex::new(DeviceRegistry::NONE);
 
 /// Adapters in use by this process.
-struct Open {
+struct DeviceRegistry {
     /// What names meant.
     names: BTreeMap<Option<String>, Adapter>,
     gpus: BTreeMap<Adapter, Arc<Gpu>>,
 }
 
-impl Open {
+impl DeviceRegistry {
     const NONE: Self = Self {
         names: BTreeMap::new(),
         gpus: BTreeMap::new(),
@@ -93,7 +93,7 @@ impl Gpu {
     /// [`RenderError::NoAdapter`] says what was found instead, [`RenderError::TooLarge`] what the adapter is too small for,
     /// [`RenderError::Driver`] what its driver said.
     pub fn open(name: Option<&str>) -> Result<Arc<Self>, RenderError> {
-        let (adapter, handle) = find(name.map_or(Wanted::Hardware, Wanted::Named))?;
+        let (adapter, handle) = find(name.map_or(AdapterChoice::Hardware, AdapterChoice::Named))?;
         Self::open_found(adapter, &handle, BatchLimits::NONE)
     }
 
@@ -102,7 +102,7 @@ impl Gpu {
     /// # Errors
     /// As [`Self::open`]; where houses do not fit, making renderers fails.
     pub fn open_adapter(adapter: &Adapter, most: BatchLimits) -> Result<Arc<Self>, RenderError> {
-        let (adapter, handle) = find(Wanted::Exactly(adapter))?;
+        let (adapter, handle) = find(AdapterChoice::Exactly(adapter))?;
         Self::open_found(adapter, &handle, most)
     }
 
@@ -117,7 +117,7 @@ impl Gpu {
         limits.max_buffer_size = most.buffer_bytes.min(limits.max_buffer_size);
         let groups = &mut limits.max_compute_workgroups_per_dimension;
         *groups = most.groups.clamp(1, *groups);
-        let needed = u64::from(Layouts::BUFFERS);
+        let needed = u64::from(BindGroupLayouts::BUFFERS);
         let allowed = u64::from(limits.max_storage_buffers_per_shader_stage);
         if allowed < needed {
             return Err(RenderError::TooLarge {
@@ -152,7 +152,7 @@ impl Gpu {
             }
         });
         let gpu = Self {
-            layouts: Layouts::new(&device),
+            layouts: BindGroupLayouts::new(&device),
             adapter,
             device,
             queue,
@@ -180,7 +180,7 @@ impl Gpu {
         {
             return Ok(gpu);
         }
-        let (adapter, handle) = find(name.map_or(Wanted::Hardware, Wanted::Named))?;
+        let (adapter, handle) = find(name.map_or(AdapterChoice::Hardware, AdapterChoice::Named))?;
         open.names.insert(key, adapter.clone());
         Self::share(&mut open, adapter, &handle)
     }
@@ -194,12 +194,12 @@ impl Gpu {
         if let Some(gpu) = open.known(adapter) {
             return Ok(gpu);
         }
-        let (adapter, handle) = find(Wanted::Exactly(adapter))?;
+        let (adapter, handle) = find(AdapterChoice::Exactly(adapter))?;
         Self::share(&mut open, adapter, &handle)
     }
 
     fn share(
-        open: &mut Open,
+        open: &mut DeviceRegistry,
         adapter: Adapter,
         handle: &wgpu::Adapter,
     ) -> Result<Arc<Self>, RenderError> {
@@ -227,12 +227,15 @@ impl Gpu {
     /// How quick both paths are on this adapter; measured over the first house that asks, then known.
     ///
     /// # Errors
-    /// As [`PathSpeeds::measure`].
-    pub fn speeds(self: &Arc<Self>, tables: &Arc<CpuRenderer>) -> Result<PathSpeeds, RenderError> {
+    /// As [`VisibilityPathSpeeds::measure`].
+    pub fn speeds(
+        self: &Arc<Self>,
+        tables: &Arc<CpuRenderer>,
+    ) -> Result<VisibilityPathSpeeds, RenderError> {
         if let Some(speeds) = self.speeds.get() {
             return Ok(*speeds);
         }
-        let speeds = PathSpeeds::measure(self, tables)?;
+        let speeds = VisibilityPathSpeeds::measure(self, tables)?;
         tracing::debug!(adapter = %self.adapter, ?speeds, path = speeds.best().word(), "path chosen");
         Ok(*self.speeds.get_or_init(|| speeds))
     }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 /// What all kernels see: a house, and a batch of views.
 #[derive(Debug)]
-pub(super) struct Layouts {
+pub(super) struct BindGroupLayouts {
     pub(super) house: wgpu::BindGroupLayout,
     pub(super) batch: wgpu::BindGroupLayout,
     /// The rows of a batch alone, for drawing.
@@ -16,7 +16,7 @@ pub(super) struct Layouts {
     pub(super) raster: wgpu::PipelineLayout,
 }
 
-impl Layouts {
+impl BindGroupLayouts {
     /// Buffers that a kernel sees.
     pub(super) const BUFFERS: u32 = 8;
 
@@ -98,7 +98,7 @@ const COLORS: &str = include_str!("shaders/colors.wgsl");
 
 impl Kernels {
     /// Compiles all but that of lit pictures.
-    pub(super) fn new(device: &wgpu::Device, layouts: &Layouts, stack: usize) -> Self {
+    pub(super) fn new(device: &wgpu::Device, layouts: &BindGroupLayouts, stack: usize) -> Self {
         let layout = &layouts.pipeline;
         let kernel = |entry: &str, parts: &[&str]| compile(device, layout, stack, entry, parts);
         Self {
@@ -112,7 +112,11 @@ impl Kernels {
     }
 
     /// Lit colour.
-    pub(super) fn lit(&self, device: &wgpu::Device, layouts: &Layouts) -> &wgpu::ComputePipeline {
+    pub(super) fn lit(
+        &self,
+        device: &wgpu::Device,
+        layouts: &BindGroupLayouts,
+    ) -> &wgpu::ComputePipeline {
         self.lit.get_or_init(|| {
             let light = include_str!("shaders/light.wgsl");
             let paint = include_str!("shaders/paint_lit.wgsl");
@@ -125,7 +129,7 @@ impl Kernels {
     pub(super) fn settle(
         &self,
         device: &wgpu::Device,
-        layouts: &Layouts,
+        layouts: &BindGroupLayouts,
     ) -> &wgpu::ComputePipeline {
         self.settle.get_or_init(|| {
             let parts = [include_str!("shaders/settle.wgsl")];

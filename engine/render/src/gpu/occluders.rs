@@ -29,12 +29,12 @@ pub(super) struct Occluder {
 
 /// What an occluder hides from one place: all that lies inside of its planes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shadow {
+pub(super) struct OcclusionVolume {
     planes: [Vec4; MOST_CORNERS + 1],
     count: usize,
 }
 
-impl Shadow {
+impl OcclusionVolume {
     /// Whether a box lies in the shadow as a whole.
     pub(super) fn hides(&self, bounds: &Aabb) -> bool {
         let (center, half) = (bounds.center(), bounds.size() * 0.5);
@@ -84,12 +84,12 @@ impl Occluder {
     }
 
     /// What it hides from a point; nothing where parts of it may be nearer than `near_m`, where they are not seen.
-    pub(super) fn shadow(&self, eye: Vec3, near_m: f32) -> Option<Shadow> {
+    pub(super) fn shadow(&self, eye: Vec3, near_m: f32) -> Option<OcclusionVolume> {
         let height = self.normal.dot(self.corners[0] - eye);
         if height.abs() < near_m.max(0.01) {
             return None;
         }
-        let mut shadow = Shadow {
+        let mut shadow = OcclusionVolume {
             planes: [Vec4::ZERO; MOST_CORNERS + 1],
             count: self.corners.len() + 1,
         };
@@ -130,9 +130,9 @@ impl Occluder {
 }
 
 /// An edge by the bits of its ends, the smaller end first.
-type Edge = [[u32; 3]; 2];
+type EdgeKey = [[u32; 3]; 2];
 
-fn edge(a: Vec3, b: Vec3) -> Edge {
+fn edge(a: Vec3, b: Vec3) -> EdgeKey {
     // Zeros have two signs.
     let bits = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
     let (a, b) = (bits(a), bits(b));
@@ -158,7 +158,7 @@ pub(super) fn occluders(blocks: &[PackedRow]) -> Vec<Occluder> {
         }
     }
     // By edge, the piece that has waited there for a neighbour.
-    let mut waiting: BTreeMap<Edge, usize> = BTreeMap::new();
+    let mut waiting: BTreeMap<EdgeKey, usize> = BTreeMap::new();
     let mut open: Vec<usize> = (0..pieces.len()).collect();
     while let Some(k) = open.pop() {
         let Some(piece) = pieces[k].clone() else {

@@ -1,10 +1,10 @@
 //! The raster path: the pictures of a batch side by side in one texture, drawn in one pass.
 
-use super::cull::{Culler, Eye, Shadows, Sightline};
+use super::cull::{Culler, CullingView, OccluderScratch, VisibilityQuery};
 use super::device::Gpu;
-use super::kernels::Layouts;
+use super::kernels::BindGroupLayouts;
 use crate::camera::Projection;
-use crate::cpu::{Job, SEEN};
+use crate::cpu::{RenderJob, SEEN};
 use crate::error::RenderError;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::parallel::Threads;
@@ -24,7 +24,7 @@ const RECORD_ROWS: usize = 5;
 
 /// What the raster path needs of a house beside the buffers.
 #[derive(Debug)]
-pub(super) struct Drawable {
+pub(super) struct RasterScene {
     pub(super) culler: Culler,
     /// The blocks of each part that moves, then of each piece of an agent's body. Shape (mesh,).
     pub(super) meshes: Vec<Range<u32>>,
@@ -34,7 +34,7 @@ pub(super) struct Drawable {
 
 /// A picture's place in the texture, its size, and what it draws.
 #[derive(Clone, Debug)]
-pub(super) struct Sheet {
+pub(super) struct AtlasTile {
     pub(super) x: u32,
     pub(super) y: u32,
     width: u32,
@@ -45,8 +45,8 @@ pub(super) struct Sheet {
 
 /// What is drawn for a batch. Its memory is used again.
 #[derive(Debug, Default)]
-pub(super) struct Drawing {
-    pub(super) sheets: Vec<Sheet>,
+pub(super) struct DrawBatch {
+    pub(super) sheets: Vec<AtlasTile>,
     /// Five rows each: from a mesh to the picture's clip space, then source, id and the id that is not seen.
     pub(super) records: Vec<PackedRow>,
     /// First block, how many blocks, and the record.
@@ -54,35 +54,35 @@ pub(super) struct Drawing {
     /// Of the texture.
     pub(super) size: (u32, u32),
     /// Of each sheet.
-    lists: Vec<List>,
+    lists: Vec<DrawList>,
 }
 
-/// What one picture draws: as in [`Drawing`], records counted from its own first.
+/// What one picture draws: as in [`DrawBatch`], records counted from its own first.
 #[derive(Debug, Default)]
-struct List {
+struct DrawList {
     records: Vec<PackedRow>,
     pieces: Vec<PackedRow>,
     /// Blocks of static geometry that may be seen.
     ranges: Vec<Range<u32>>,
-    shadows: Shadows,
+    shadows: OccluderScratch,
 }
 
 /// A picture that is drawn.
-struct Shot<'a, 'b> {
-    job: &'a Job<'b>,
-    eye: Eye,
+struct DrawView<'a, 'b> {
+    job: &'a RenderJob<'b>,
+    eye: CullingView,
     clip: [DVec4; 4],
 }
 
 /// The work of one thread: a picture, and its list.
-struct Listing<'a, 'b, 'c> {
-    shot: Option<Shot<'a, 'b>>,
-    list: &'c mut List,
+struct DrawListJob<'a, 'b, 'c> {
+    shot: Option<DrawView<'a, 'b>>,
+    list: &'c mut DrawList,
 }
 
-impl Drawing {
+impl DrawBatch {
     /// Whether the raster path takes a view: straight lines must stay straight, and pixels need neighbours above and below.
-    fn takes(job: &Job<'_>) -> bool {
+    fn supports_view(job: &RenderJob<'_>) -> bool {
         let camera = &job.view.camera;
         let is_whole = job.row_range() == (0, camera.height() as usize);
         matches!(camera.projection(), Projection::Pinhole { .. })
@@ -93,8 +93,8 @@ impl Drawing {
     /// Lists what is to be drawn for some jobs; returns the sheet of each that is drawn.
     pub(super) fn fill(
         &mut self,
-        house: &Drawable,
-        jobs: &[Job<'_>],
+        house: &RasterScene,
+        jobs: &[RenderJob<'_>],
         most_edge: u32,
         threads: Threads,
     ) -> Vec<Option<usize>> {
@@ -103,20 +103,20 @@ impl Drawing {
         self.pieces.clear();
         let places = self.lay_out(jobs, most_edge);
         if self.lists.len() < self.sheets.len() {
-            self.lists.resize_with(self.sheets.len(), List::default);
+            self.lists.resize_with(self.sheets.len(), DrawList::default);
         }
         let drawn = jobs
             .iter()
             .zip(&places)
             .filter(|(_, sheet)| sheet.is_some());
-        let mut listings: Vec<Listing<'_, '_, '_>> = drawn
+        let mut listings: Vec<DrawListJob<'_, '_, '_>> = drawn
             .zip(&mut self.lists)
-            .map(|((job, _), list)| Listing {
-                shot: Shot::new(job),
+            .map(|((job, _), list)| DrawListJob {
+                shot: DrawView::new(job),
                 list,
             })
             .collect();
-        threads.for_each(&mut listings, |_, Listing { shot, list }| {
+        threads.for_each(&mut listings, |_, DrawListJob { shot, list }| {
             list.clear();
             if let Some(shot) = shot {
                 list.fill(house, shot);
@@ -137,7 +137,7 @@ impl Drawing {
     }
 
     /// Finds room for pictures, in rows from left to right; those without room are not drawn.
-    fn lay_out(&mut self, jobs: &[Job<'_>], most_edge: u32) -> Vec<Option<usize>> {
+    fn lay_out(&mut self, jobs: &[RenderJob<'_>], most_edge: u32) -> Vec<Option<usize>> {
         let pixels: usize = jobs.iter().map(|job| job.view.camera.pixels()).sum();
         let widest = jobs.iter().map(|job| job.view.camera.width()).max();
         let square = (pixels as f64).sqrt().ceil() as u32;
@@ -146,9 +146,9 @@ impl Drawing {
             .max(widest.unwrap_or(1))
             .min(most_edge);
         let (mut x, mut y, mut tallest) = (0, 0, 0);
-        let mut place = |job: &Job<'_>| {
+        let mut place = |job: &RenderJob<'_>| {
             let (across, down) = (job.view.camera.width(), job.view.camera.height());
-            if !Self::takes(job) || across > width {
+            if !Self::supports_view(job) || across > width {
                 return None;
             }
             if x + across > width {
@@ -157,7 +157,7 @@ impl Drawing {
             if y + down > most_edge {
                 return None;
             }
-            self.sheets.push(Sheet {
+            self.sheets.push(AtlasTile {
                 x,
                 y,
                 width: across,
@@ -191,14 +191,14 @@ impl Drawing {
     }
 }
 
-impl List {
+impl DrawList {
     fn clear(&mut self) {
         self.records.clear();
         self.pieces.clear();
     }
 
     /// Lists what is seen of a shot: static geometry, then instances.
-    fn fill(&mut self, house: &Drawable, shot: &Shot<'_, '_>) {
+    fn fill(&mut self, house: &RasterScene, shot: &DrawView<'_, '_>) {
         let hidden = shot.eye.hidden as u32;
         let mut shadows = std::mem::take(&mut self.shadows);
         let sightline = house
@@ -217,8 +217,9 @@ impl List {
         let moving = shot.job.scene.bvh().moving;
         let parts = house.meshes.len() - BODY_PIECES;
         for instance in 0..moving.len() {
-            let sees =
-                |sightline: &Sightline<'_>| sightline.sees(&moving.bounds_of(instance as u32));
+            let sees = |sightline: &VisibilityQuery<'_>| {
+                sightline.sees(&moving.bounds_of(instance as u32))
+            };
             if !sightline.as_ref().is_none_or(sees) {
                 continue;
             }
@@ -267,8 +268,8 @@ fn composed(row: DVec4, world_from_mesh: &Affine3A) -> DVec4 {
     turned.extend(normal.dot(map.translation) + row.w)
 }
 
-impl<'a, 'b> Shot<'a, 'b> {
-    fn new(job: &'a Job<'b>) -> Option<Self> {
+impl<'a, 'b> DrawView<'a, 'b> {
+    fn new(job: &'a RenderJob<'b>) -> Option<Self> {
         let (view, camera) = (&job.view, &job.view.camera);
         let Projection::Pinhole { fx, fy, cx, cy } = camera.projection() else {
             return None;
@@ -284,15 +285,15 @@ impl<'a, 'b> Shot<'a, 'b> {
         let longest =
             (left.abs().max(across.abs()).powi(2) + top.abs().max(bottom.abs()).powi(2) + 1.0)
                 .sqrt();
-        let eye = Eye {
+        let eye = CullingView {
             position,
             planes: [
-                Eye::through(position, right + back * left),
-                Eye::through(position, -back * across - right),
-                Eye::through(position, -back * top - up),
-                Eye::through(position, up + back * bottom),
-                Eye::through(position - back * near, -back),
-                Eye::through(position - back * far, back),
+                CullingView::through(position, right + back * left),
+                CullingView::through(position, -back * across - right),
+                CullingView::through(position, -back * top - up),
+                CullingView::through(position, up + back * bottom),
+                CullingView::through(position - back * near, -back),
+                CullingView::through(position - back * far, back),
             ],
             near_m: near * longest,
             hidden: view.hide.map_or(0, |entity| entity.0),
@@ -318,14 +319,14 @@ impl<'a, 'b> Shot<'a, 'b> {
 
 /// Textures that are drawn into; they grow.
 #[derive(Debug)]
-pub(super) struct Atlas {
+pub(super) struct RenderAtlas {
     size: (u32, u32),
     noted: wgpu::TextureView,
     depth: wgpu::TextureView,
     pub(super) group: wgpu::BindGroup,
 }
 
-impl Atlas {
+impl RenderAtlas {
     /// Textures of at least this size; the same as before where they are large enough.
     pub(super) fn reserve(
         held: Option<Self>,
@@ -404,7 +405,7 @@ impl Atlas {
 }
 
 /// The program that draws.
-pub(super) fn pipeline(device: &wgpu::Device, layouts: &Layouts) -> wgpu::RenderPipeline {
+pub(super) fn pipeline(device: &wgpu::Device, layouts: &BindGroupLayouts) -> wgpu::RenderPipeline {
     let source = [
         include_str!("shaders/common.wgsl"),
         include_str!("shaders/raster.wgsl"),
@@ -472,8 +473,8 @@ mod tests {
             space::rotation_from_yaw_pitch(0.7, -0.3),
         );
         let view = View::new(camera, place);
-        let job = Job::new(&scene, &state, view, FrameMut::default());
-        let shot = Shot::new(&job).unwrap();
+        let job = RenderJob::new(&scene, &state, view, FrameMut::default());
+        let shot = DrawView::new(&job).unwrap();
         let mut stream = RandomKey::root(3).stream();
         let mut inside = 0;
         for _ in 0..20_000 {

@@ -1,11 +1,11 @@
 //! Batches of views by an adapter.
 
+use super::batch::{ImageOffsets, tiles, words_per_pixel};
+use super::batch_buffers::{BatchBuffers, SEEN_BYTES};
 use super::device::{Gpu, buffer_size, lock};
-use super::house::HouseBuffers;
-use super::path::Path;
-use super::rows::{Places, tiles, words_per_pixel};
-use super::slot::{SEEN_BYTES, Slot};
-use crate::cpu::{CpuRenderer, Job};
+use super::house_buffers::HouseBuffers;
+use super::visibility_path::VisibilityPath;
+use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
 use crate::frame::{FrameMut, Preset};
 use dwell_scene::interrupt;
@@ -21,22 +21,22 @@ pub struct GpuRenderer {
     gpu: Arc<Gpu>,
     cpu: Arc<CpuRenderer>,
     house: HouseBuffers,
-    path: Path,
+    path: VisibilityPath,
     /// Memory of earlier batches.
-    slots: Mutex<Vec<Slot>>,
+    slots: Mutex<Vec<BatchBuffers>>,
     /// Shared with the batches that it was given.
     own: Arc<()>,
 }
 
 /// Batches under way; see [`GpuRenderer::submit`].
 #[derive(Debug)]
-pub struct Submitted {
-    parts: Vec<Part>,
+pub struct PendingBatch {
+    parts: Vec<SubmittedPart>,
     /// Of the renderer that was given it.
     owner: Arc<()>,
 }
 
-impl Submitted {
+impl PendingBatch {
     /// Calls that draw, of the raster path: one for each view that shows something.
     pub fn draws(&self) -> usize {
         let parts = self.parts.iter();
@@ -51,15 +51,15 @@ impl Submitted {
 
 /// Views that were submitted together.
 #[derive(Debug)]
-struct Part {
-    slot: Slot,
+struct SubmittedPart {
+    slot: BatchBuffers,
     index: wgpu::SubmissionIndex,
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
 /// Where one view's images lie, and where they go.
-struct Delivery<'a, 'b> {
-    places: Places,
+struct ReadBack<'a, 'b> {
+    places: ImageOffsets,
     frame: &'a mut FrameMut<'b>,
 }
 
@@ -68,7 +68,11 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// [`RenderError::TooLarge`] when the house does not fit, [`RenderError::Driver`].
-    pub fn new(gpu: Arc<Gpu>, cpu: Arc<CpuRenderer>, path: Path) -> Result<Self, RenderError> {
+    pub fn new(
+        gpu: Arc<Gpu>,
+        cpu: Arc<CpuRenderer>,
+        path: VisibilityPath,
+    ) -> Result<Self, RenderError> {
         let house = HouseBuffers::new(&gpu, &cpu)?;
         Ok(Self {
             gpu,
@@ -86,7 +90,7 @@ impl GpuRenderer {
     }
 
     /// How it finds what pixels see first.
-    pub fn path(&self) -> Path {
+    pub fn path(&self) -> VisibilityPath {
         self.path
     }
 
@@ -107,7 +111,11 @@ impl GpuRenderer {
     /// # Errors
     /// As [`CpuRenderer::render_batch`]; [`RenderError::TooLarge`] and [`RenderError::Driver`]. Then some images may be
     /// written.
-    pub fn render_batch(&self, jobs: &mut [Job<'_>], threads: Threads) -> Result<(), RenderError> {
+    pub fn render_batch(
+        &self,
+        jobs: &mut [RenderJob<'_>],
+        threads: Threads,
+    ) -> Result<(), RenderError> {
         if jobs.iter().all(|job| is_ours(job)) {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
@@ -132,7 +140,11 @@ impl GpuRenderer {
     ///
     /// # Errors
     /// As [`Self::render_batch`]; and [`RenderError::OnlyCpu`] for a preset that only `cpu` has.
-    pub fn submit(&self, jobs: &[Job<'_>], threads: Threads) -> Result<Submitted, RenderError> {
+    pub fn submit(
+        &self,
+        jobs: &[RenderJob<'_>],
+        threads: Threads,
+    ) -> Result<PendingBatch, RenderError> {
         self.gpu.check_process()?;
         for (k, job) in jobs.iter().enumerate() {
             self.cpu.check(k, job)?;
@@ -152,7 +164,7 @@ impl GpuRenderer {
             parts.push(part);
             rest = &rest[taken..];
         }
-        Ok(Submitted {
+        Ok(PendingBatch {
             parts,
             owner: self.own.clone(),
         })
@@ -166,7 +178,7 @@ impl GpuRenderer {
     /// [`RenderError::Driver`].
     pub fn collect(
         &self,
-        submitted: Submitted,
+        submitted: PendingBatch,
         frames: &mut [FrameMut<'_>],
         threads: Threads,
     ) -> Result<(), RenderError> {
@@ -174,10 +186,10 @@ impl GpuRenderer {
     }
 
     /// How many of the first jobs fit into one submission as far as their images go; at least one.
-    fn fitting(&self, jobs: &[Job<'_>]) -> usize {
+    fn fitting(&self, jobs: &[RenderJob<'_>]) -> usize {
         let (most, most_groups) = (self.gpu.most_bytes(), self.gpu.most_groups());
         let (mut seen, mut words, mut groups) = (0, 0, 0);
-        let fits = |job: &&Job<'_>| {
+        let fits = |job: &&RenderJob<'_>| {
             let (first, end) = job.row_range();
             let pixels = ((end - first) * job.view.camera.width() as usize) as u64;
             seen += pixels * SEEN_BYTES;
@@ -189,10 +201,10 @@ impl GpuRenderer {
     }
 
     /// Writes the rows of as many of the first jobs as fit into the buffers; at least of one.
-    fn fill(&self, slot: &mut Slot, jobs: &[Job<'_>], threads: Threads) {
+    fn fill(&self, slot: &mut BatchBuffers, jobs: &[RenderJob<'_>], threads: Threads) {
         let most = self.gpu.most_bytes();
-        let draws =
-            (self.path == Path::Raster).then(|| (&self.house.drawable, self.gpu.most_edge()));
+        let draws = (self.path == VisibilityPath::Raster)
+            .then(|| (&self.house.drawable, self.gpu.most_edge()));
         let (mut count, mut is_fresh) = (jobs.len(), false);
         loop {
             let batch = &mut slot.batch;
@@ -211,9 +223,13 @@ impl GpuRenderer {
         }
     }
 
-    fn submit_part(&self, jobs: &[Job<'_>], threads: Threads) -> Result<Part, RenderError> {
+    fn submit_part(
+        &self,
+        jobs: &[RenderJob<'_>],
+        threads: Threads,
+    ) -> Result<SubmittedPart, RenderError> {
         let gpu = &*self.gpu;
-        let mut slot = lock(&self.slots).pop().unwrap_or_else(Slot::new);
+        let mut slot = lock(&self.slots).pop().unwrap_or_else(BatchBuffers::new);
         self.fill(&mut slot, jobs, threads);
         let mut encoder = gpu
             .device
@@ -271,7 +287,7 @@ impl GpuRenderer {
             let _ = sender.send(result);
         });
         gpu.check("to render")?;
-        Ok(Part {
+        Ok(SubmittedPart {
             slot,
             index,
             mapped,
@@ -280,7 +296,7 @@ impl GpuRenderer {
 
     fn deliver<'a, 'b: 'a>(
         &self,
-        submitted: Submitted,
+        submitted: PendingBatch,
         frames: impl ExactSizeIterator<Item = &'a mut FrameMut<'b>>,
         threads: Threads,
     ) -> Result<(), RenderError> {
@@ -306,7 +322,7 @@ impl GpuRenderer {
         for (view, (places, frame)) in places.zip(frames).enumerate() {
             places.check(view, frame)?;
             frame.check(view, places.pixels)?;
-            all.push(Delivery {
+            all.push(ReadBack {
                 places: *places,
                 frame,
             });
@@ -331,14 +347,14 @@ impl GpuRenderer {
 }
 
 /// Whether a view is one for the adapter.
-fn is_ours(job: &Job<'_>) -> bool {
+fn is_ours(job: &RenderJob<'_>) -> bool {
     matches!(job.view.preset, Preset::Flat | Preset::Lit)
 }
 
-impl Delivery<'_, '_> {
+impl ReadBack<'_, '_> {
     /// Copies the images out of the bytes that came back.
     fn write(&mut self, bytes: &[u8]) {
-        let Places { pixels, .. } = self.places;
+        let ImageOffsets { pixels, .. } = self.places;
         let words = |first: usize, parts: usize| &bytes[first * 4..(first + pixels * parts) * 4];
         if let (Some(first), Some(rgb)) = (self.places.rgb, &mut self.frame.rgb) {
             let found = words(first, 1).as_chunks::<4>().0;

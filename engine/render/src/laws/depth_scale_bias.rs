@@ -1,11 +1,11 @@
 //! Depths that are too large by a part and by an amount.
 
-use super::{Acts, Law, Scan, Values};
+use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "depth_scale_bias",
         version: 1,
@@ -36,10 +36,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "stand before a wall at three known distances: scale is the slope, bias the rest; a mount moved along \
                                 the axis looks like bias, and shifts things at the side as well; a focal length acts only sideways",
     },
-    acts: Acts::Depth(change),
+    acts: RenderStage::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, _: RandomKey, image: &mut [f32]) {
+fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
     let (scale, bias) = (values.get("scale"), values.get("bias_m"));
     let far = scan.camera.far_m();
     for depth in image

@@ -1,11 +1,11 @@
 //! Depth from disparities that come in steps.
 
-use super::{Acts, Law, Scan, Values};
+use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "disparity_quantization",
         version: 1,
@@ -46,10 +46,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "move slowly away from a wall: quantization is a saw-tooth over depth that comes back the same, noise \
                                 is not",
     },
-    acts: Acts::Depth(change),
+    acts: RenderStage::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, _: RandomKey, image: &mut [f32]) {
+fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
     let step = f64::from(values.get("step_px"));
     if step == 0.0 {
         return;

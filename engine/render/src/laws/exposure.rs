@@ -1,6 +1,6 @@
 //! How bright a camera makes its pictures.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
@@ -18,7 +18,7 @@ const fn factor(name: &'static str, low: f64, high: f64, plausible: [f64; 2]) ->
     }
 }
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "exposure",
         version: 1,
@@ -45,10 +45,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "switch a lamp: its light changes with place and throws shadows, exposure changes all pixels alike; \
                                 dark and bright patches together separate gamma from a factor",
     },
-    acts: Acts::Color(change),
+    acts: RenderStage::Color(change),
 };
 
-fn change(values: Values<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
+fn change(values: LawValues<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
     let gain = math::pow(2.0, values.get("stops"));
     let gain = Vec3::new(values.get("red"), 1.0, values.get("blue")) * gain;
     let gamma = values.get("gamma");

@@ -1,11 +1,11 @@
 //! Readings between a thing and what lies behind it.
 
-use super::{Acts, Law, Scan, Values};
+use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "flying_pixels",
         version: 1,
@@ -47,10 +47,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "look at the edge of a thing before a far wall: mixed pixels lie between the two depths on both sides \
                                 of the edge, lateral noise gives one or the other, an offset between cameras has a sign by side",
     },
-    acts: Acts::Depth(change),
+    acts: RenderStage::Depth(change),
 };
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
+fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let probability = values.get("probability");
     if probability == 0.0 {
         return;

@@ -1,11 +1,11 @@
 //! A focal length other than it is said to be.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "focal_length_error",
         version: 1,
@@ -28,10 +28,10 @@ pub(super) const LAW: Law = Law {
                                 1/z, a focal length by the same part at both; look at straight edges in the corners: only a \
                                 lens bends them",
     },
-    acts: Acts::Lens(change),
+    acts: RenderStage::Lens(change),
 };
 
-fn change(values: Values<'_>, camera: Camera) -> Camera {
+fn change(values: LawValues<'_>, camera: Camera) -> Camera {
     let factor = 1.0 + values.get("relative_error");
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx * factor, fy * factor, cx, cy))
 }

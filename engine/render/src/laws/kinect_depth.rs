@@ -1,6 +1,6 @@
 //! The noise of the first Kinect, along the ray and across it.
 
-use super::{Acts, Law, Scan, Values};
+use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawInfo, math};
@@ -18,7 +18,7 @@ const fn multiple(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "kinect_depth",
         version: 1,
@@ -36,7 +36,7 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "look at one wall frontally and at 70 degrees, at three distances: axial noise grows with z^2 and with \
                                 the angle, quantization not with the angle; an edge before a far wall shows the lateral noise",
     },
-    acts: Acts::DepthByNormals(change),
+    acts: RenderStage::DepthByNormals(change),
 };
 
 /// Steeper than this the measurements end, rad.
@@ -57,7 +57,7 @@ fn lateral_px(angle: f32) -> f32 {
     0.8 + 0.035 * angle / (FRAC_PI_2 - angle)
 }
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
+fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let (axial, lateral) = (values.get("axial"), values.get("lateral"));
     let (width, height) = scan.size();
     let far = scan.camera.far_m();

@@ -1,6 +1,6 @@
 //! A lens that bends straight lines.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::{Camera, Projection};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
@@ -16,7 +16,7 @@ const fn coefficient(name: &'static str, plausible: f64) -> ParamInfo {
     }
 }
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "lens_distortion",
         version: 1,
@@ -39,10 +39,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "fill the corners of the image: a focal length moves points by r, radial terms by r^3 and r^5, \
                                 tangential ones not evenly around the middle",
     },
-    acts: Acts::Lens(change),
+    acts: RenderStage::Lens(change),
 };
 
-fn change(values: Values<'_>, camera: Camera) -> Camera {
+fn change(values: LawValues<'_>, camera: Camera) -> Camera {
     let own = ["k1", "k2", "k3", "p1", "p2"].map(|name| values.get(name));
     let (there, (fx, fy, cx, cy)) = match camera.projection() {
         Projection::Pinhole { fx, fy, cx, cy } => ([0.0; 5], (fx, fy, cx, cy)),

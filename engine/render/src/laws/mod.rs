@@ -20,7 +20,7 @@ mod testing;
 mod vignetting;
 
 use crate::camera::Camera;
-use crate::color::Srgb;
+use crate::color::SrgbTables;
 use crate::error::RenderError;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, LawInfo, LawSpec};
@@ -28,27 +28,27 @@ use glam::Vec3;
 use std::sync::LazyLock;
 
 /// A law of this engine: what is known about it, and where it acts.
-struct Law {
+struct RenderLaw {
     info: LawInfo,
-    acts: Acts,
+    acts: RenderStage,
 }
 
 /// Where a law acts.
-enum Acts {
+enum RenderStage {
     /// On where pixels look.
-    Lens(fn(Values<'_>, Camera) -> Camera),
+    Lens(fn(LawValues<'_>, Camera) -> Camera),
     /// On when pixels look.
-    Shutter(fn(Values<'_>, &mut Shutter)),
+    Shutter(fn(LawValues<'_>, &mut Shutter)),
     /// On depths, m. What is drawn depends on the key and the image's size alone.
-    Depth(fn(Values<'_>, &Scan<'_>, RandomKey, &mut [f32])),
-    /// As [`Acts::Depth`], and needs normals.
-    DepthByNormals(fn(Values<'_>, &Scan<'_>, RandomKey, &mut [f32])),
+    Depth(fn(LawValues<'_>, &DepthContext<'_>, RandomKey, &mut [f32])),
+    /// As [`RenderStage::Depth`], and needs normals.
+    DepthByNormals(fn(LawValues<'_>, &DepthContext<'_>, RandomKey, &mut [f32])),
     /// On light, linear, 1 for display white. Shape (height * width,).
-    Color(fn(Values<'_>, &Camera, RandomKey, &mut [Vec3])),
+    Color(fn(LawValues<'_>, &Camera, RandomKey, &mut [Vec3])),
 }
 
 /// The laws of this engine.
-static LAWS: &[Law] = &[
+static LAWS: &[RenderLaw] = &[
     focal_length::LAW,
     principal_point::LAW,
     lens_distortion::LAW,
@@ -78,25 +78,25 @@ pub fn all() -> &'static [LawInfo] {
 
 /// The numbers of an installed law.
 #[derive(Clone, Copy)]
-struct Values<'a> {
+struct LawValues<'a> {
     spec: &'a LawSpec,
     info: &'a LawInfo,
 }
 
-impl Values<'_> {
+impl LawValues<'_> {
     fn get(&self, name: &str) -> f32 {
         self.spec.value(self.info, name).unwrap_or(0.0) as f32
     }
 }
 
 /// What a law of depth knows beside the depths.
-struct Scan<'a> {
+struct DepthContext<'a> {
     camera: &'a Camera,
     /// Shape (height, width, 3); empty unless the law asked for normals.
     normals: &'a [f32],
 }
 
-impl Scan<'_> {
+impl DepthContext<'_> {
     /// Pixels across and down.
     fn size(&self) -> (usize, usize) {
         (self.camera.width() as usize, self.camera.height() as usize)
@@ -142,7 +142,7 @@ pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
 
 /// The laws that act on one agent's cameras.
 pub struct Optics<'a> {
-    laws: Vec<(Values<'a>, &'static Acts, u64)>,
+    laws: Vec<(LawValues<'a>, &'static RenderStage, u64)>,
 }
 
 impl std::fmt::Debug for Optics<'_> {
@@ -163,7 +163,7 @@ impl<'a> Optics<'a> {
             let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
             let acts = !spec.is_default(&law.info) && own(spec);
             let info = &law.info;
-            acts.then_some((Values { spec, info }, &law.acts, place as u64))
+            acts.then_some((LawValues { spec, info }, &law.acts, place as u64))
         };
         Self {
             laws: laws.iter().enumerate().filter_map(find).collect(),
@@ -179,7 +179,7 @@ impl<'a> Optics<'a> {
     #[must_use]
     pub fn camera(&self, mut camera: Camera) -> Camera {
         for (values, acts, _) in &self.laws {
-            if let Acts::Lens(change) = acts {
+            if let RenderStage::Lens(change) = acts {
                 camera = change(*values, camera);
             }
         }
@@ -190,7 +190,7 @@ impl<'a> Optics<'a> {
     pub fn shutter(&self) -> Shutter {
         let mut shutter = Shutter::default();
         for (values, acts, _) in &self.laws {
-            if let Acts::Shutter(change) = acts {
+            if let RenderStage::Shutter(change) = acts {
                 change(*values, &mut shutter);
             }
         }
@@ -199,7 +199,7 @@ impl<'a> Optics<'a> {
 
     /// Whether [`Self::depth`] looks at normals.
     pub fn needs_normals(&self) -> bool {
-        let by_normals = |acts: &Acts| matches!(acts, Acts::DepthByNormals(_));
+        let by_normals = |acts: &RenderStage| matches!(acts, RenderStage::DepthByNormals(_));
         self.laws.iter().any(|(_, acts, _)| by_normals(acts))
     }
 
@@ -210,15 +210,15 @@ impl<'a> Optics<'a> {
     /// # Determinism
     /// Equal keys, equal bits.
     pub fn depth(&self, camera: &Camera, normals: &[f32], key: RandomKey, image: &mut [f32]) {
-        let scan = Scan { camera, normals };
+        let scan = DepthContext { camera, normals };
         if image.len() != camera.pixels() {
             return;
         }
         let mut changed = false;
         for (values, acts, place) in &self.laws {
             let change = match acts {
-                Acts::Depth(change) => change,
-                Acts::DepthByNormals(change) if normals.len() == 3 * image.len() => change,
+                RenderStage::Depth(change) => change,
+                RenderStage::DepthByNormals(change) if normals.len() == 3 * image.len() => change,
                 _ => continue,
             };
             change(*values, &scan, key.child(*place), image);
@@ -241,13 +241,13 @@ impl<'a> Optics<'a> {
     /// # Determinism
     /// Equal keys, equal bits.
     pub fn color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
-        let is_color = |acts: &Acts| matches!(acts, Acts::Color(_));
+        let is_color = |acts: &RenderStage| matches!(acts, RenderStage::Color(_));
         if !self.laws.iter().any(|(_, acts, _)| is_color(acts))
             || image.len() != 3 * camera.pixels()
         {
             return;
         }
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         let mut light: Vec<Vec3> = image
             .chunks_exact(3)
             .map(|rgb| {
@@ -259,7 +259,7 @@ impl<'a> Optics<'a> {
             })
             .collect();
         for (values, acts, place) in &self.laws {
-            if let Acts::Color(change) = acts {
+            if let RenderStage::Color(change) = acts {
                 change(*values, camera, key.child(*place), &mut light);
             }
         }
@@ -271,7 +271,7 @@ impl<'a> Optics<'a> {
 
 /// The mean of pictures of sRGB bytes, in linear light; writes into `out`, of the pictures' length.
 pub fn mean_color<'a>(pictures: impl Iterator<Item = &'a [u8]>, out: &mut [u8]) {
-    let srgb = Srgb::tables();
+    let srgb = SrgbTables::tables();
     let mut sum = vec![0.0_f32; out.len()];
     let mut count = 0.0_f32;
     for picture in pictures {

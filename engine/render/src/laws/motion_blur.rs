@@ -1,10 +1,10 @@
 //! Light that is gathered while things move.
 
-use super::{Acts, Law, Shutter, Values};
+use super::{LawValues, RenderLaw, RenderStage, Shutter};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "motion_blur",
         version: 1,
@@ -29,9 +29,9 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "hold the camera still: defocus stays, motion blur goes; its width grows with speed and lies along \
                                 the movement",
     },
-    acts: Acts::Shutter(change),
+    acts: RenderStage::Shutter(change),
 };
 
-fn change(values: Values<'_>, shutter: &mut Shutter) {
+fn change(values: LawValues<'_>, shutter: &mut Shutter) {
     shutter.exposure_s = shutter.exposure_s.max(values.get("exposure_s"));
 }

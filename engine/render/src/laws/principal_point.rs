@@ -1,6 +1,6 @@
 //! A principal point other than it is said to be.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
@@ -16,7 +16,7 @@ const fn shift(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "principal_point_error",
         version: 1,
@@ -30,10 +30,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "turn the camera about its axis: the shift stays in the image, that of a turned mount turns along; \
                                 near the corners a turned camera also changes shapes",
     },
-    acts: Acts::Lens(change),
+    acts: RenderStage::Lens(change),
 };
 
-fn change(values: Values<'_>, camera: Camera) -> Camera {
+fn change(values: LawValues<'_>, camera: Camera) -> Camera {
     let (right, down) = (values.get("right_px"), values.get("down_px"));
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx, fy, cx + right, cy + down))
 }

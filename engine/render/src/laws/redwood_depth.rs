@@ -1,11 +1,11 @@
 //! The depth noise of the Redwood benchmark.
 
-use super::{Acts, Law, Scan, Values};
+use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "redwood_depth",
         version: 1,
@@ -30,7 +30,7 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "look at one wall frontally at several distances and draw the histogram of readings: this noise keeps \
                                 to the steps of 1/8 of a disparity, axial noise fills the gaps between them",
     },
-    acts: Acts::Depth(change),
+    acts: RenderStage::Depth(change),
 };
 
 /// Disparity times depth of the device.
@@ -42,7 +42,7 @@ const SHUFFLE_PX: f64 = 0.25;
 /// From here on there is no reading, m.
 const FURTHEST_M: f32 = 10.0;
 
-fn change(values: Values<'_>, scan: &Scan<'_>, key: RandomKey, image: &mut [f32]) {
+fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
     let strength = f64::from(values.get("strength"));
     let (width, height) = scan.size();
     let seen = image.to_vec();

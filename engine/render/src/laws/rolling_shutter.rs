@@ -1,10 +1,10 @@
 //! Rows that are taken one after another.
 
-use super::{Acts, Law, Shutter, Values};
+use super::{LawValues, RenderLaw, RenderStage, Shutter};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "rolling_shutter",
         version: 1,
@@ -28,9 +28,9 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "look at an upright edge at rest and while the camera turns: only rolling rows shear it, and the \
                                 other way round when it turns the other way; a time offset moves all rows alike",
     },
-    acts: Acts::Shutter(change),
+    acts: RenderStage::Shutter(change),
 };
 
-fn change(values: Values<'_>, shutter: &mut Shutter) {
+fn change(values: LawValues<'_>, shutter: &mut Shutter) {
     shutter.line_s += values.get("line_s");
 }

@@ -1,13 +1,13 @@
 //! Light that comes in electrons, and what reading them adds.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "shot_read_noise",
         version: 1,
@@ -41,13 +41,13 @@ pub(super) const LAW: Law = Law {
                                 transfer): shot noise is a slope, read noise the rest at black; noise of rendering goes when \
                                 samples are added",
     },
-    acts: Acts::Color(change),
+    acts: RenderStage::Color(change),
 };
 
 /// From this mean on rejection is faster than counting.
 const COUNTED: f64 = 12.0;
 
-fn change(values: Values<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
+fn change(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
     let (gain, read) = (f64::from(values.get("gain")), f64::from(values.get("read")));
     for (row, light) in (0_u64..).zip(light.chunks_mut(camera.width() as usize)) {
         let mut stream = key.child(row).stream();
@@ -110,7 +110,7 @@ fn poisson(mean: f64, stream: &mut RandomStream) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{camera, law, moments};
-    use super::super::{Acts, Values};
+    use super::super::{LawValues, RenderStage};
     use super::*;
 
     /// Mean and variance are the mean within 5 standard errors, for five seeds, on both ways to draw; for few the share of
@@ -140,10 +140,10 @@ mod tests {
     fn variance_is_a_line_over_light() {
         let spec = law("shot_read_noise", &[("gain", 1e-3), ("read", 0.01)]);
         let camera = camera();
-        let Acts::Color(change) = LAW.acts else {
+        let RenderStage::Color(change) = LAW.acts else {
             panic!("acts on colour")
         };
-        let values = Values {
+        let values = LawValues {
             spec: &spec,
             info: &LAW.info,
         };

@@ -1,13 +1,13 @@
 //! Corners that are darker than the middle.
 
-use super::{Acts, Law, Values};
+use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
 use glam::{Vec2, Vec3};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
         id: "vignetting",
         version: 1,
@@ -30,10 +30,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "turn the camera so that one evenly lit wall wanders from the middle to a corner: only vignetting \
                                 darkens it there",
     },
-    acts: Acts::Color(change),
+    acts: RenderStage::Color(change),
 };
 
-fn change(values: Values<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {
+fn change(values: LawValues<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec3]) {
     if camera.projection().intrinsics().is_none() {
         return;
     }

@@ -1,17 +1,17 @@
 //! Light on a point, apart by what casts its shadows.
 
-use super::rooms::luminance;
+use super::indirect::luminance;
 use glam::Vec3;
 
 /// Where light comes from that a thing may stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Source {
+pub(crate) enum LightSource {
     /// From nowhere.
     None,
     /// What the walls of a room throw back.
     Room,
     /// From all around under the open sky.
-    Open,
+    Sky,
     /// The sky in a window: a position in [`super::HouseLight::windows`].
     Window(u32),
     /// The sun.
@@ -22,31 +22,31 @@ pub(crate) enum Source {
 
 /// Light of one source.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
-    pub(crate) source: Source,
+pub(crate) struct LightSample {
+    pub(crate) source: LightSource,
     /// In units of display white.
     pub(crate) light: Vec3,
 }
 
-impl Ray {
+impl LightSample {
     const NONE: Self = Self {
-        source: Source::None,
+        source: LightSource::None,
         light: Vec3::ZERO,
     };
 }
 
 /// Light on a point: of its `N` strongest sources apart, of which a ray each tells whether it arrives; the rest arrives.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Incoming<const N: usize> {
+pub(crate) struct IncidentLight<const N: usize> {
     /// What arrives, in units of display white.
     pub(crate) light: Vec3,
-    pub(crate) rays: [Ray; N],
+    pub(crate) rays: [LightSample; N],
 }
 
-impl<const N: usize> Incoming<N> {
+impl<const N: usize> IncidentLight<N> {
     pub(crate) const NONE: Self = Self {
         light: Vec3::ZERO,
-        rays: [Ray::NONE; N],
+        rays: [LightSample::NONE; N],
     };
 
     /// Only light that arrives.
@@ -58,8 +58,8 @@ impl<const N: usize> Incoming<N> {
     }
 
     /// Adds a source; the weakest of more than `N` arrives.
-    pub(super) fn offer(&mut self, source: Source, light: Vec3) {
-        if !matches!(source, Source::Sun | Source::Caster(_)) {
+    pub(super) fn offer(&mut self, source: LightSource, light: Vec3) {
+        if !matches!(source, LightSource::Sun | LightSource::Caster(_)) {
             self.light += light;
             return;
         }
@@ -75,7 +75,7 @@ impl<const N: usize> Incoming<N> {
             }
         }
         if strength > least {
-            let ray = std::mem::replace(&mut self.rays[weakest], Ray { source, light });
+            let ray = std::mem::replace(&mut self.rays[weakest], LightSample { source, light });
             self.light += ray.light;
         } else {
             self.light += light;
@@ -92,9 +92,9 @@ impl<const N: usize> Incoming<N> {
     }
 
     /// All light that arrives.
-    pub(crate) fn arriving(&self, mut arrives: impl FnMut(Source) -> bool) -> Vec3 {
+    pub(crate) fn arriving(&self, mut arrives: impl FnMut(LightSource) -> bool) -> Vec3 {
         self.rays.iter().fold(self.light, |sum, ray| {
-            if ray.source != Source::None && arrives(ray.source) {
+            if ray.source != LightSource::None && arrives(ray.source) {
                 sum + ray.light
             } else {
                 sum
@@ -109,19 +109,19 @@ mod tests {
 
     #[test]
     fn the_strongest_sources_are_asked_and_the_rest_arrives() {
-        let mut incoming = Incoming::<2>::plain(Vec3::ONE);
+        let mut incoming = IncidentLight::<2>::plain(Vec3::ONE);
         let lights = [3.0, 1.0, 5.0, 2.0, 4.0];
         for (k, light) in lights.into_iter().enumerate() {
-            incoming.offer(Source::Caster(k as u32), Vec3::splat(light));
+            incoming.offer(LightSource::Caster(k as u32), Vec3::splat(light));
         }
-        incoming.offer(Source::Sun, Vec3::ZERO);
+        incoming.offer(LightSource::Sun, Vec3::ZERO);
         let mut asked = Vec::new();
         let none = incoming.arriving(|source| {
             asked.push(source);
             false
         });
         asked.sort_by_key(|source| format!("{source:?}"));
-        assert_eq!(asked, [Source::Caster(2), Source::Caster(4)]);
+        assert_eq!(asked, [LightSource::Caster(2), LightSource::Caster(4)]);
         assert_eq!(none, Vec3::splat(1.0 + 3.0 + 1.0 + 2.0));
         let all = incoming.on(Vec3::splat(0.5)).arriving(|_| true);
         assert_eq!(all, Vec3::splat(8.0));

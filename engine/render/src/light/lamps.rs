@@ -1,6 +1,6 @@
 //! Lamps as light sources without size.
 
-use super::grid::RoomGrid;
+use super::room_grid::RoomGrid;
 use dwell_scene::{House, Light, LightShape, State, math};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -16,7 +16,7 @@ const LINE_PARTS: [f32; 4] = [0.125, 0.375, 0.625, 0.875];
 
 /// A lamp that is on, in world space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Lamp {
+pub(crate) struct PointLamp {
     pub(crate) position: Vec3,
     /// From there to its ends, m: a piece of a glowing line has a length.
     pub(super) half: Vec3,
@@ -29,13 +29,13 @@ pub(crate) struct Lamp {
     pub(crate) entity: i32,
     /// Position of its room.
     pub(crate) room: Option<usize>,
-    /// Position among those that cast shadows, see [`super::casters`]; or [`super::casters::NONE`].
+    /// Position among those that cast shadows, see [`super::lamp_clusters`]; or [`super::lamp_clusters::NONE`].
     pub(crate) caster: u32,
     /// Luminous flux, lm, for red, green and blue.
     pub(crate) flux_lm: Vec3,
 }
 
-impl Lamp {
+impl PointLamp {
     /// Illuminance on a surface that faces along `normal` (unit length), lx, for red, green and blue: I cos / (c + l d +
     /// q d²), which is the inverse square law for SUNCG's usual attenuation (0, 0, 1).
     #[inline]
@@ -74,7 +74,7 @@ pub(crate) fn add_lamps(
     state: &State,
     grid: &RoomGrid,
     light: &Light,
-    lamps: &mut Vec<Lamp>,
+    lamps: &mut Vec<PointLamp>,
 ) {
     if !state.is_on(house, light.object) || light.power_w <= 0.0 {
         return;
@@ -88,7 +88,7 @@ pub(crate) fn add_lamps(
     };
     let lamp = |point_in_part: Vec3, share: f32, intensity: Vec3, cone| {
         let position = world_from_part.transform_point(point_in_part);
-        Lamp {
+        PointLamp {
             position,
             half: Vec3::ZERO,
             intensity: intensity * share,
@@ -96,7 +96,7 @@ pub(crate) fn add_lamps(
             attenuation,
             entity: house.entity_of_object(light.object).0,
             room: grid.room(position),
-            caster: super::casters::NONE,
+            caster: super::lamp_clusters::NONE,
             flux_lm: flux_lm * share,
         }
     };
@@ -131,7 +131,7 @@ pub(crate) fn add_lamps(
             let half = world_from_part.transform_vector(end - light.position) * (0.5 * share);
             for part in LINE_PARTS {
                 let at = light.position.lerp(end, part);
-                lamps.push(Lamp {
+                lamps.push(PointLamp {
                     half,
                     ..lamp(at, share, flux_lm / (4.0 * PI), None)
                 });
@@ -149,7 +149,7 @@ mod tests {
     use std::sync::Arc;
 
     /// The lamps of a light of 7 W at the origin.
-    fn lamps(shape: LightShape) -> Vec<Lamp> {
+    fn lamps(shape: LightShape) -> Vec<PointLamp> {
         let mut data = HouseData::default();
         data.levels.push(Level {
             name: "0".into(),

@@ -1,27 +1,27 @@
 //! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
 
-mod air;
-mod casters;
-mod flat;
-mod grid;
+mod cache_key;
+mod gpu_layout;
 mod incoming;
-mod kept;
+mod indirect;
+mod lamp_clusters;
 mod lamps;
 mod openings;
-mod rooms;
+mod outdoor;
+mod room_grid;
 mod tone;
 
-pub(crate) use casters::Caster;
-pub(crate) use incoming::{Incoming, Source};
-pub(crate) use kept::Inputs;
-pub(crate) use rooms::HouseLight;
+pub(crate) use cache_key::LightingInputs;
+pub(crate) use incoming::{IncidentLight, LightSource};
+pub(crate) use indirect::HouseLight;
+pub(crate) use lamp_clusters::LampCluster;
 pub(crate) use tone::display;
 
+use cache_key::LightingCacheKey;
 use glam::Vec3;
-use kept::Kept;
-use lamps::{Lamp, add_lamps};
-use openings::Window;
-use rooms::{PANE_TRANSMITTANCE, RoomLight, TO_SUN};
+use indirect::{PANE_TRANSMITTANCE, RoomLight, TO_SUN};
+use lamps::{PointLamp, add_lamps};
+use openings::WindowLight;
 use std::f32::consts::PI;
 
 /// Width of the border of sunlit patches, m.
@@ -45,20 +45,20 @@ const LIT_SKY: f32 = 2.5;
 #[derive(Debug, Default)]
 pub(crate) struct Lighting {
     /// By room; those outside come first.
-    lamps: Vec<Lamp>,
+    lamps: Vec<PointLamp>,
     /// Where the lamps of each room start, those outside first, and where the last end. Shape (room + 2,).
     lamp_starts: Vec<usize>,
     /// What casts shadows.
-    casters: Vec<Caster>,
+    casters: Vec<LampCluster>,
     /// Shape (room,).
     rooms: Vec<RoomLight>,
     flux_lm: Vec<Vec3>,
     /// How much of each window the sun reaches. Shape (window,), or empty.
     sunlit: Vec<f32>,
     /// What all of this was made from.
-    kept: Kept,
+    cache_key: LightingCacheKey,
     /// What the light of rooms was made from, of this time and the last.
-    given: [Vec<u32>; 2],
+    room_inputs: [Vec<u32>; 2],
 }
 
 /// The brightness to which an eye in a room adapts.
@@ -71,22 +71,22 @@ pub(crate) struct Exposure {
 impl Lighting {
     /// Whether it may have been made from inputs of this hash.
     pub(crate) fn has(&self, hash: u64) -> bool {
-        self.kept.has(hash)
+        self.cache_key.has(hash)
     }
 
     /// Reads the switches and places of lamps, in the memory of an earlier state; nothing where all is as it was then. `hash`: of
-    /// the inputs. `sun_reaches`: whether nothing stands between a point and the sun. `passes`: as for [`casters::assign`].
+    /// the inputs. `sun_reaches`: whether nothing stands between a point and the sun. `passes`: as for [`lamp_clusters::cluster_lamps`].
     pub(crate) fn update(
         &mut self,
-        inputs: &Inputs<'_>,
+        inputs: &LightingInputs<'_>,
         hash: u64,
         sun_reaches: impl Fn(Vec3) -> bool,
         passes: impl Fn(Vec3, Vec3, i32) -> bool,
     ) {
-        if self.kept.renew(inputs, hash) {
+        if self.cache_key.renew(inputs, hash) {
             return;
         }
-        let &Inputs {
+        let &LightingInputs {
             house,
             fixed,
             state,
@@ -102,9 +102,9 @@ impl Lighting {
         for light in &house.lights {
             add_lamps(house, state, &fixed.grid, light, &mut self.lamps);
         }
-        let place = |lamp: &Lamp| lamp.room.map_or(0, |room| room + 1);
+        let place = |lamp: &PointLamp| lamp.room.map_or(0, |room| room + 1);
         self.lamps.sort_by_key(|lamp| (place(lamp), lamp.entity));
-        casters::assign(house, &mut self.lamps, &mut self.casters, passes);
+        lamp_clusters::cluster_lamps(house, &mut self.lamps, &mut self.casters, passes);
         self.lamp_starts.clear();
         for room in 0..=house.rooms.len() + 1 {
             self.lamp_starts
@@ -118,7 +118,7 @@ impl Lighting {
             }
         }
         // Agents that walk change what stands before lamps, and rarely what rooms throw back.
-        let [now, last] = &mut self.given;
+        let [now, last] = &mut self.room_inputs;
         now.clear();
         let flux = self.flux_lm.iter().flat_map(Vec3::to_array);
         let numbers = flux.chain(self.sunlit.iter().copied());
@@ -154,7 +154,7 @@ impl Lighting {
     }
 
     /// What casts the shadows of a source.
-    pub(crate) fn caster(&self, position: u32) -> &Caster {
+    pub(crate) fn caster(&self, position: u32) -> &LampCluster {
         &self.casters[position as usize]
     }
 
@@ -162,14 +162,14 @@ impl Lighting {
     /// side that the point sees. `pick`: which lamp and where along it, from 0 up to 1 each; `within`: in a ball of radius 1.
     pub(crate) fn place_in_caster(
         &self,
-        caster: &Caster,
+        caster: &LampCluster,
         point: Vec3,
         pick: (f32, f32),
         within: Vec3,
     ) -> Vec3 {
         let (first, count) = caster.lamps;
         let lamps = &self.lamps[first..first + count];
-        let flux = |lamp: &Lamp| rooms::luminance(lamp.flux_lm).max(1e-6);
+        let flux = |lamp: &PointLamp| indirect::luminance(lamp.flux_lm).max(1e-6);
         let mut left = pick.0 * lamps.iter().map(flux).sum::<f32>();
         let chosen = lamps.iter().find(|lamp| {
             left -= flux(lamp);
@@ -191,9 +191,9 @@ impl Lighting {
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
-        site: &Site,
-    ) -> Incoming<N> {
-        let mut incoming = Incoming::NONE;
+        site: &ShadingPoint,
+    ) -> IncidentLight<N> {
+        let mut incoming = IncidentLight::NONE;
         self.each(fixed, exposure, site, |source, light| {
             incoming.offer(source, light);
         });
@@ -206,26 +206,26 @@ impl Lighting {
         &self,
         fixed: &HouseLight,
         exposure: Exposure,
-        site: &Site,
-        mut tell: impl FnMut(Source, Vec3),
+        site: &ShadingPoint,
+        mut tell: impl FnMut(LightSource, Vec3),
     ) {
-        let &Site { point, normal, .. } = site;
-        let room = fixed.grid.room(site.looked_up);
+        let &ShadingPoint { point, normal, .. } = site;
+        let room = fixed.grid.room(site.room_lookup);
         let Some(position) = room else {
             let Some(air) = &fixed.air else {
-                tell(Source::Open, open_air(normal));
-                return self.lamplight(None, site, exposure.per_lx, tell);
+                tell(LightSource::Sky, open_air(normal));
+                return self.lamp_illuminance(None, site, exposure.per_lx, tell);
             };
             let per_lx = air.per_lx(exposure.per_lx);
-            let sky = air.skylight(normal) + air.groundlight(normal);
-            tell(Source::Open, sky * per_lx);
+            let sky = air.sky_illuminance(normal) + air.ground_illuminance(normal);
+            tell(LightSource::Sky, sky * per_lx);
             let across = normal.dot(air.to_sun).max(0.0);
-            tell(Source::Sun, air.sun_lx * (across * per_lx));
-            return self.lamplight(None, site, per_lx, tell);
+            tell(LightSource::Sun, air.sun_lx * (across * per_lx));
+            return self.lamp_illuminance(None, site, per_lx, tell);
         };
         let per_lx = exposure.per_lx;
         let indirect = self.rooms[position].indirect * fill(normal);
-        tell(Source::Room, indirect * per_lx);
+        tell(LightSource::Room, indirect * per_lx);
         let mut sun = 0.0_f32;
         let first = fixed.window_starts[position];
         for (k, window) in fixed.windows_of(position).iter().enumerate() {
@@ -236,35 +236,35 @@ impl Lighting {
             } else {
                 lx += fixed.sun.1 * part;
             }
-            tell(Source::Window((first + k) as u32), lx * per_lx);
+            tell(LightSource::Window((first + k) as u32), lx * per_lx);
         }
-        tell(Source::Sun, fixed.sun.1 * (sun * per_lx));
-        self.lamplight(room, site, per_lx, tell);
+        tell(LightSource::Sun, fixed.sun.1 * (sun * per_lx));
+        self.lamp_illuminance(room, site, per_lx, tell);
     }
 
     /// The light of a room's lamps.
-    fn lamplight(
+    fn lamp_illuminance(
         &self,
         room: Option<usize>,
-        site: &Site,
+        site: &ShadingPoint,
         per_lx: f32,
-        mut tell: impl FnMut(Source, Vec3),
+        mut tell: impl FnMut(LightSource, Vec3),
     ) {
         let place = room.map_or(0, |room| room + 1);
         let mine = &self.lamps[self.lamp_starts[place]..self.lamp_starts[place + 1]];
-        let (mut caster, mut sum) = (casters::NONE, Vec3::ZERO);
+        let (mut caster, mut sum) = (lamp_clusters::NONE, Vec3::ZERO);
         let mut all = |caster: u32, light: Vec3| {
-            let source = if caster == casters::NONE {
-                Source::None
+            let source = if caster == lamp_clusters::NONE {
+                LightSource::None
             } else {
-                Source::Caster(caster)
+                LightSource::Caster(caster)
             };
             tell(source, light);
         };
         for lamp in mine {
             // A shade shines by the light that passes it.
             let its = if site.entity == lamp.entity {
-                casters::NONE
+                lamp_clusters::NONE
             } else {
                 lamp.caster
             };
@@ -280,19 +280,19 @@ impl Lighting {
 
 /// Where light meets a surface.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Site {
+pub(crate) struct ShadingPoint {
     pub(crate) point: Vec3,
     /// Unit length, towards the viewer; interpolated between corners.
     pub(crate) normal: Vec3,
-    /// Where the point's room is looked up, see [`beside_surface`].
-    pub(crate) looked_up: Vec3,
+    /// Where the point's room is looked up, see [`room_lookup_point`].
+    pub(crate) room_lookup: Vec3,
     /// Whose surface it is.
     pub(crate) entity: i32,
 }
 
 /// A point in the room from which a surface at `point` is seen. `facing`: normal of the flat triangle towards the viewer;
 /// `direction`: from the viewer, unit length.
-pub(crate) fn beside_surface(point: Vec3, facing: Vec3, direction: Vec3) -> Vec3 {
+pub(crate) fn room_lookup_point(point: Vec3, facing: Vec3, direction: Vec3) -> Vec3 {
     let [off, back] = OFF_SURFACE_M;
     point + facing * off - direction * back
 }
@@ -305,7 +305,7 @@ fn fill(normal: Vec3) -> f32 {
 
 /// Illuminance by a window, lx: the sky as a disc of the same area seen through it; and how much of the sun the surface
 /// has, where its ray passes the window.
-fn daylight(window: &Window, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, f32) {
+fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, f32) {
     let way = window.center - point;
     let height = -window.normal.dot(way);
     if height <= 0.0 {
@@ -333,7 +333,11 @@ fn daylight(window: &Window, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, 
 }
 
 /// How much of a window the sun reaches, by points on it.
-fn sunlit(window: &Window, (to_sun, lx): (Vec3, Vec3), sun_reaches: impl Fn(Vec3) -> bool) -> f32 {
+fn sunlit(
+    window: &WindowLight,
+    (to_sun, lx): (Vec3, Vec3),
+    sun_reaches: impl Fn(Vec3) -> bool,
+) -> f32 {
     if window.normal.dot(to_sun) >= -0.01 || lx == Vec3::ZERO {
         return 0.0;
     }
@@ -360,7 +364,7 @@ pub(crate) fn sky(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Ve
         None => plain_sky(direction),
         Some((fixed, exposure)) => match &fixed.air {
             None => plain_sky(direction) * LIT_SKY,
-            Some(air) => air.behind_everything(direction) * air.per_lx(exposure.per_lx),
+            Some(air) => air.background_luminance(direction) * air.per_lx(exposure.per_lx),
         },
     }
 }

@@ -1,6 +1,6 @@
 //! Windows and doors: where daylight comes in and where rooms share their light.
 
-use super::grid::RoomGrid;
+use super::room_grid::RoomGrid;
 use dwell_scene::{Aabb, House, ObjectId};
 use glam::Vec3;
 
@@ -9,7 +9,7 @@ const STEP_M: f32 = 0.35;
 
 /// A window between a room and the open air.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Window {
+pub(crate) struct WindowLight {
     /// The room's position.
     pub(crate) room: usize,
     /// Its middle, m.
@@ -22,7 +22,7 @@ pub(crate) struct Window {
     pub(crate) luminance_cd_m2: [Vec3; 2],
 }
 
-impl Window {
+impl WindowLight {
     /// m².
     pub(crate) fn area_m2(&self) -> f32 {
         4.0 * self.half[0].length() * self.half[1].length()
@@ -31,7 +31,7 @@ impl Window {
 
 /// An opening between two rooms.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Passage {
+pub(crate) struct LightPortal {
     /// The rooms' positions.
     pub(crate) rooms: [usize; 2],
     /// m².
@@ -45,7 +45,7 @@ pub(crate) fn openings(
     house: &House,
     grid: &RoomGrid,
     luminance: impl Fn(Vec3) -> [Vec3; 2],
-) -> (Vec<Window>, Vec<Passage>) {
+) -> (Vec<WindowLight>, Vec<LightPortal>) {
     let (mut windows, mut passages) = (Vec::new(), Vec::new());
     for (id, object) in house.objects.iter_ids() {
         let names = [&object.category.coarse, &object.category.fine];
@@ -63,7 +63,7 @@ pub(crate) fn openings(
         ];
         // Glass doors are windows, too, where there is a sky to be seen.
         let lets_in = is("window") || (house.sky.is_some() && is_glazed(house, id));
-        let window = |room: usize, inwards: Vec3| Window {
+        let window = |room: usize, inwards: Vec3| WindowLight {
             room,
             center,
             normal: inwards,
@@ -72,7 +72,7 @@ pub(crate) fn openings(
         };
         let area_m2 = 4.0 * half[0].length() * half[1].length();
         match sides {
-            [Some(a), Some(b)] if a != b => passages.push(Passage {
+            [Some(a), Some(b)] if a != b => passages.push(LightPortal {
                 rooms: [a, b],
                 area_m2,
                 door: id,

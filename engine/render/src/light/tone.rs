@@ -1,6 +1,6 @@
 //! From light to display.
 
-use super::rooms::luminance;
+use super::indirect::luminance;
 use dwell_scene::math;
 use glam::Vec3;
 

@@ -1,7 +1,7 @@
 //! A storey as one sees a doll's house: from outside and above, without what is over a cut.
 
-use super::cut::Cut;
-use super::{Map, floor_y};
+use super::section_view::SectionView;
+use super::{StoreyMap, floor_y};
 use crate::camera::{Camera, Projection};
 use crate::cpu::CpuRenderer;
 use crate::error::RenderError;
@@ -81,7 +81,7 @@ pub struct Dollhouse {
     /// Height of the cut, m.
     pub cut_y: f32,
     floor_y: f32,
-    plan: Map,
+    plan: StoreyMap,
 }
 
 impl Dollhouse {
@@ -95,12 +95,12 @@ impl Dollhouse {
         config: &DollhouseConfig,
     ) -> Result<Self, RenderError> {
         config.check()?;
-        let mut plan = Map::new(house, level, 1)?;
+        let mut plan = StoreyMap::new(house, level, 1)?;
         let floor_y = floor_y(house, level);
         let cut_y = floor_y + config.cut_m;
         let size = plan.size_m();
         let edge = (size.max_element() / PLAN_PIXEL_M).clamp(64.0, 8192.0);
-        plan = Map::new(house, level, edge as u32)?;
+        plan = StoreyMap::new(house, level, edge as u32)?;
         plan.cut_y = cut_y;
         let bounds = footprint(house, floor_y, cut_y);
         let (yaw_rad, down_rad) = (config.yaw_deg.to_radians(), config.down_deg.to_radians());
@@ -149,7 +149,7 @@ impl Dollhouse {
         state: &State,
         threads: Threads,
     ) -> Result<Vec<u8>, RenderError> {
-        let cut = Cut {
+        let cut = SectionView {
             view: self.view,
             level_y: self.cut_y,
             floor_y: self.floor_y,

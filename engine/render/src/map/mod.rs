@@ -1,7 +1,7 @@
 //! Maps: a storey from above, and from outside as a doll's house.
 
-mod cut;
 mod dollhouse;
+mod section_view;
 mod walls;
 
 pub use dollhouse::{Dollhouse, DollhouseConfig};
@@ -10,11 +10,11 @@ use crate::camera::Camera;
 use crate::cpu::CpuRenderer;
 use crate::error::RenderError;
 use crate::frame::View;
-use cut::Cut;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, Id, LevelId, Pose, State, space};
 use glam::{Vec2, Vec3};
+use section_view::SectionView;
 use std::f32::consts::FRAC_PI_2;
 
 /// How far below the lowest ceiling a storey is cut open, m.
@@ -23,7 +23,7 @@ const BELOW_CEILING_M: f32 = 0.6;
 const BORDER_M: f32 = 0.5;
 /// A storey from above, cut open below its ceilings, -Z up in the image and +X to the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Map {
+pub struct StoreyMap {
     /// What to render; [`crate::Preset::Flat`], which is a field to set. Its depth counts from the cut.
     pub view: View,
     /// Where the upper left corner of the image lies: (x, z), m.
@@ -34,7 +34,7 @@ pub struct Map {
     pub cut_y: f32,
 }
 
-impl Map {
+impl StoreyMap {
     /// The map of a storey whose longer edge has `longest_edge` pixels.
     ///
     /// # Errors
@@ -101,7 +101,7 @@ impl Map {
         state: &State,
         threads: Threads,
     ) -> Result<Vec<u8>, RenderError> {
-        let cut = Cut {
+        let cut = SectionView {
             view: self.view,
             level_y: self.cut_y,
             floor_y: self.cut_y - self.view.camera.far_m(),
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn the_map_and_its_camera_agree() {
         let house = House::shoebox([8.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
-        let map = Map::new(&house, LevelId(0), 450).unwrap();
+        let map = StoreyMap::new(&house, LevelId(0), 450).unwrap();
         assert_eq!(
             (map.view.camera.width(), map.view.camera.height()),
             (450, 250)
@@ -155,7 +155,9 @@ mod tests {
             );
             assert!((depth - (map.cut_y - point.y)).abs() < 1e-4);
         }
-        let message = Map::new(&house, LevelId(3), 450).unwrap_err().to_string();
+        let message = StoreyMap::new(&house, LevelId(3), 450)
+            .unwrap_err()
+            .to_string();
         assert_eq!(message, "no storey 3; the house has 1");
     }
 }

@@ -1,6 +1,6 @@
 //! Walls on maps: a camera that starts inside a wall sees nothing of it.
 
-use super::Map;
+use super::StoreyMap;
 use dwell_scene::interrupt::PollEvery;
 use dwell_scene::{House, Mesh, StructureKind};
 use glam::Vec2;
@@ -12,7 +12,7 @@ const PIXELS_PER_CHECK: usize = 1 << 16;
 /// The colour of walls.
 pub(super) const SRGB: [u8; 3] = [40, 40, 44];
 
-impl Map {
+impl StoreyMap {
     /// Fills the places where the cut meets walls in a picture of the map.
     ///
     /// `rgb`: shape (height, width, 3) of [`Self::view`]'s camera; what does not fit stays as it is.
@@ -138,7 +138,7 @@ mod tests {
         let block = Mesh::cuboid(Vec3::ZERO, Vec3::new(0.5, 3.0, 4.0));
         data.structure.as_mut_slice()[west].mesh = data.meshes.push(Arc::new(block));
         let house = House::new(data).unwrap();
-        let map = Map::new(&house, LevelId(0), 450).unwrap();
+        let map = StoreyMap::new(&house, LevelId(0), 450).unwrap();
         let mut rgb = vec![200; map.view.camera.pixels() * 3];
         map.draw_walls(&house, &mut rgb);
         let at = |x: f32, z: f32| {

@@ -1,7 +1,7 @@
 //! Small houses and views for tests.
 #![allow(dead_code, reason = "each test file uses its share")]
 
-use dwell_render::{Camera, Channels, CpuRenderer, Frame, View};
+use dwell_render::{Camera, CpuRenderer, Frame, ImageChannels, View};
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomStream;
@@ -126,7 +126,7 @@ impl World {
     }
 
     pub(crate) fn shot_with(&self, view: &View, threads: Threads) -> Frame {
-        let mut frame = Frame::new(&view.camera, Channels::ALL);
+        let mut frame = Frame::new(&view.camera, ImageChannels::ALL);
         self.renderer
             .render(
                 &self.scene,

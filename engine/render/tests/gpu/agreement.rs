@@ -1,7 +1,8 @@
 //! The same views by both back ends.
 
 use dwell_render::{
-    BatchLimits, Before, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, View, adapters,
+    BatchLimits, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, PreviousFrame, RenderJob,
+    View, VisibilityPath, adapters,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -32,7 +33,7 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    pub(crate) fn new(house: Arc<House>, path: Path) -> Option<Self> {
+    pub(crate) fn new(house: Arc<House>, path: VisibilityPath) -> Option<Self> {
         let gpu = gpu()?;
         let cpu = Arc::new(CpuRenderer::new(&house));
         Some(Self {
@@ -53,7 +54,7 @@ impl Pair {
     pub(crate) fn shoot_after(
         &self,
         views: &[View],
-        before: Option<Before<'_>>,
+        before: Option<PreviousFrame<'_>>,
     ) -> Vec<(Frame, Frame)> {
         let by_cpu = self.by(views, before, &|jobs| {
             self.cpu.render_batch(jobs, Threads::default()).unwrap();
@@ -68,19 +69,19 @@ impl Pair {
     pub(crate) fn by(
         &self,
         views: &[View],
-        before: Option<Before<'_>>,
-        render: &dyn Fn(&mut [Job<'_>]),
+        before: Option<PreviousFrame<'_>>,
+        render: &dyn Fn(&mut [RenderJob<'_>]),
     ) -> Vec<Frame> {
         let mut frames: Vec<Frame> = views
             .iter()
-            .map(|view| Frame::new(&view.camera, Channels::ALL))
+            .map(|view| Frame::new(&view.camera, ImageChannels::ALL))
             .collect();
-        let mut jobs: Vec<Job<'_>> = views
+        let mut jobs: Vec<RenderJob<'_>> = views
             .iter()
             .zip(&mut frames)
-            .map(|(view, frame)| Job {
+            .map(|(view, frame)| RenderJob {
                 before,
-                ..Job::new(&self.scene, &self.state, *view, frame.as_mut())
+                ..RenderJob::new(&self.scene, &self.state, *view, frame.as_mut())
             })
             .collect();
         render(&mut jobs);

@@ -3,20 +3,20 @@
 use super::agreement::{Pair, gpu};
 use super::houses::views;
 use dwell_render::{
-    BatchLimits, Camera, Channels, CpuRenderer, Frame, Gpu, GpuRenderer, Job, Path, PathSpeeds,
-    Preset, RenderError, View,
+    BatchLimits, Camera, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, Preset, RenderError,
+    RenderJob, View, VisibilityPath, VisibilityPathSpeeds,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use std::sync::Arc;
 
-fn pair_by(path: Path) -> Option<Pair> {
+fn pair_by(path: VisibilityPath) -> Option<Pair> {
     Pair::new(Arc::new(dwell_houses::open("seed:4").unwrap().0), path)
 }
 
 fn pair() -> Option<Pair> {
-    pair_by(Path::Compute)
+    pair_by(VisibilityPath::Compute)
 }
 
 /// Cameras of all sizes, in turn.
@@ -39,12 +39,12 @@ fn mixed(pair: &Pair) -> Vec<View> {
 
 #[test]
 fn a_batch_of_worlds_gives_each_what_it_gives_alone() {
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         worlds_are_apart(path);
     }
 }
 
-fn worlds_are_apart(path: Path) {
+fn worlds_are_apart(path: VisibilityPath) {
     let Some(pair) = pair_by(path) else { return };
     let mut other = pair.state.clone();
     for part in &pair.house.geometry().movable {
@@ -56,14 +56,14 @@ fn worlds_are_apart(path: Path) {
     let worlds = [(&pair.scene, &pair.state), (&other_scene, &other)];
     let mut frames: Vec<Frame> = Vec::new();
     for k in 0..2 * views.len() {
-        frames.push(Frame::new(&views[k / 2].camera, Channels::ALL));
+        frames.push(Frame::new(&views[k / 2].camera, ImageChannels::ALL));
     }
-    let mut jobs: Vec<Job<'_>> = frames
+    let mut jobs: Vec<RenderJob<'_>> = frames
         .iter_mut()
         .enumerate()
         .map(|(k, frame)| {
             let (scene, state) = worlds[k % 2];
-            Job::new(scene, state, views[k / 2], frame.as_mut())
+            RenderJob::new(scene, state, views[k / 2], frame.as_mut())
         })
         .collect();
     pair.gpu.render_batch(&mut jobs, Threads::ONE).unwrap();
@@ -71,8 +71,8 @@ fn worlds_are_apart(path: Path) {
     let mut differ = 0;
     for (k, frame) in frames.iter().enumerate() {
         let (scene, state) = worlds[k % 2];
-        let mut alone = Frame::new(&views[k / 2].camera, Channels::ALL);
-        let job = Job::new(scene, state, views[k / 2], alone.as_mut());
+        let mut alone = Frame::new(&views[k / 2].camera, ImageChannels::ALL);
+        let job = RenderJob::new(scene, state, views[k / 2], alone.as_mut());
         pair.gpu.render_batch(&mut [job], Threads::ONE).unwrap();
         assert!(alone == *frame, "view {k}");
         differ += usize::from(k % 2 == 1 && frames[k - 1] != *frame);
@@ -93,7 +93,7 @@ fn rows_are_those_of_the_whole_picture() {
         let mut part = Frame::default();
         part.depth.resize(pixels, 0.0);
         part.rgb.resize(pixels * 3, 0);
-        let mut job = Job::new(&pair.scene, &pair.state, view, part.as_mut());
+        let mut job = RenderJob::new(&pair.scene, &pair.state, view, part.as_mut());
         job.rows = Some((first as u32, end as u32));
         pair.gpu.render_batch(&mut [job], Threads::ONE).unwrap();
         assert_eq!(part.depth[..], whole.depth[first * width..end * width]);
@@ -104,7 +104,7 @@ fn rows_are_those_of_the_whole_picture() {
 #[test]
 fn later_batches_make_no_buffers() {
     let Some(shared) = gpu() else { return };
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         let house = Arc::new(dwell_houses::open("seed:4").unwrap().0);
         let Some(mut pair) = Pair::new(house, path) else {
             return;
@@ -130,24 +130,24 @@ fn later_batches_make_no_buffers() {
 /// However many pieces a house has, and with all of them drawn: one call for a view.
 #[test]
 fn a_view_is_drawn_by_one_call() {
-    let Some(pair) = pair_by(Path::Raster) else {
+    let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;
     };
     let camera = Camera::from_fov(8, 8, 80.0).unwrap();
     let views = views(&pair.house, camera, 64);
     let pieces = pair.scene.bvh().moving.len();
     assert!(pieces > 100, "{pieces}");
-    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), Path::Raster)
+    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), VisibilityPath::Raster)
         .unwrap()
         .without_culling();
     for renderer in [&pair.gpu, &all] {
         let mut frames: Vec<Frame> = views
             .iter()
-            .map(|view| Frame::new(&view.camera, Channels::default()))
+            .map(|view| Frame::new(&view.camera, ImageChannels::default()))
             .collect();
         let pairs = views.iter().zip(&mut frames);
-        let jobs: Vec<Job<'_>> = pairs
-            .map(|(view, frame)| Job::new(&pair.scene, &pair.state, *view, frame.as_mut()))
+        let jobs: Vec<RenderJob<'_>> = pairs
+            .map(|(view, frame)| RenderJob::new(&pair.scene, &pair.state, *view, frame.as_mut()))
             .collect();
         let submitted = renderer.submit(&jobs, Threads::ONE).unwrap();
         assert_eq!(submitted.draws(), views.len());
@@ -161,10 +161,10 @@ fn a_view_is_drawn_by_one_call() {
 
 #[test]
 fn culling_changes_no_pixel() {
-    let Some(pair) = pair_by(Path::Raster) else {
+    let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;
     };
-    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), Path::Raster)
+    let all = GpuRenderer::new(gpu().unwrap(), pair.cpu.clone(), VisibilityPath::Raster)
         .unwrap()
         .without_culling();
     let camera = Camera::from_fov(16, 12, 80.0).unwrap();
@@ -190,13 +190,13 @@ fn a_measurement_chooses_the_quicker_path() {
     println!("{speeds:?}: {}", speeds.best().word());
     assert!(speeds.compute_views_per_s > 1.0 && speeds.raster_views_per_s > 1.0);
     let quicker = |compute_views_per_s: f64, raster_views_per_s: f64| {
-        let speeds = PathSpeeds {
+        let speeds = VisibilityPathSpeeds {
             compute_views_per_s,
             raster_views_per_s,
         };
         speeds.best()
     };
-    assert_eq!([quicker(2.0, 1.0), quicker(1.0, 2.0)], Path::ALL);
+    assert_eq!([quicker(2.0, 1.0), quicker(1.0, 2.0)], VisibilityPath::ALL);
 }
 
 #[test]
@@ -206,12 +206,12 @@ fn a_batch_under_way_shows_the_world_as_it_was() {
     let expected: Vec<Frame> = pair.shoot(&views).into_iter().map(|(_, gpu)| gpu).collect();
     let mut frames: Vec<Frame> = views
         .iter()
-        .map(|view| Frame::new(&view.camera, Channels::ALL))
+        .map(|view| Frame::new(&view.camera, ImageChannels::ALL))
         .collect();
-    let jobs: Vec<Job<'_>> = views
+    let jobs: Vec<RenderJob<'_>> = views
         .iter()
         .zip(&mut frames)
-        .map(|(view, frame)| Job::new(&pair.scene, &pair.state, *view, frame.as_mut()))
+        .map(|(view, frame)| RenderJob::new(&pair.scene, &pair.state, *view, frame.as_mut()))
         .collect();
     let first = pair.gpu.submit(&jobs, Threads::ONE).unwrap();
     let second = pair.gpu.submit(&jobs, Threads::ONE).unwrap();
@@ -234,8 +234,8 @@ fn a_batch_under_way_shows_the_world_as_it_was() {
 fn other_frames_than_announced_are_refused() {
     let Some(pair) = pair() else { return };
     let views = mixed(&pair);
-    let mut frame = Frame::new(&views[0].camera, Channels::default());
-    let job = Job::new(&pair.scene, &pair.state, views[0], frame.as_mut());
+    let mut frame = Frame::new(&views[0].camera, ImageChannels::default());
+    let job = RenderJob::new(&pair.scene, &pair.state, views[0], frame.as_mut());
     let submitted = pair.gpu.submit(&[job], Threads::ONE).unwrap();
     let error = pair.gpu.collect(submitted, &mut [], Threads::ONE);
     assert_eq!(
@@ -245,7 +245,7 @@ fn other_frames_than_announced_are_refused() {
             frames: 0
         })
     );
-    let mut job = Job::new(&pair.scene, &pair.state, views[0], frame.as_mut());
+    let mut job = RenderJob::new(&pair.scene, &pair.state, views[0], frame.as_mut());
     job.rows = Some((0, 2));
     let error = pair.gpu.render_batch(&mut [job], Threads::ONE);
     assert!(
@@ -258,9 +258,9 @@ fn other_frames_than_announced_are_refused() {
 fn frames_of_other_images_are_refused() {
     let Some(pair) = pair() else { return };
     let view = mixed(&pair)[0];
-    let [all, some] = [Channels::ALL, Channels::default()];
+    let [all, some] = [ImageChannels::ALL, ImageChannels::default()];
     let submit = |frame: &mut Frame| {
-        let job = Job::new(&pair.scene, &pair.state, view, frame.as_mut());
+        let job = RenderJob::new(&pair.scene, &pair.state, view, frame.as_mut());
         pair.gpu.submit(&[job], Threads::ONE).unwrap()
     };
     let depths = |was_wanted| RenderError::OtherImages {
@@ -268,7 +268,7 @@ fn frames_of_other_images_are_refused() {
         channel: "depth",
         was_wanted,
     };
-    let few = Channels {
+    let few = ImageChannels {
         depth: false,
         ..some
     };
@@ -303,9 +303,9 @@ fn a_batch_of_another_renderer_is_refused() {
         return;
     };
     let view = mixed(&pair)[0];
-    let mut frame = Frame::new(&view.camera, Channels::ALL);
+    let mut frame = Frame::new(&view.camera, ImageChannels::ALL);
     let submit = |frame: &mut Frame| {
-        let job = Job::new(&pair.scene, &pair.state, view, frame.as_mut());
+        let job = RenderJob::new(&pair.scene, &pair.state, view, frame.as_mut());
         pair.gpu.submit(&[job], Threads::ONE).unwrap()
     };
     let submitted = submit(&mut frame);
@@ -317,7 +317,7 @@ fn a_batch_of_another_renderer_is_refused() {
     let cpu = dwell_render::Renderer::Cpu(pair.cpu.clone());
     let error = cpu.collect(submitted, &mut [frame.as_mut()], Threads::ONE);
     assert_eq!(error, Err(RenderError::OtherRenderer));
-    assert!(frame == Frame::new(&view.camera, Channels::ALL));
+    assert!(frame == Frame::new(&view.camera, ImageChannels::ALL));
 }
 
 #[test]

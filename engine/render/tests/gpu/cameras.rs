@@ -3,7 +3,7 @@
 use super::agreement::Pair;
 use super::compare::Count;
 use super::houses::views;
-use dwell_render::{Before, Camera, Path, Projection};
+use dwell_render::{Camera, PreviousFrame, Projection, VisibilityPath};
 use dwell_scene::{AgentBody, AgentState, Id, PartId, Pose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -57,7 +57,7 @@ pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
 type Moved = (Pair, Vec<(PartId, Pose)>, Vec<Vec3>);
 
 /// A furnished house in which parts and two agents have moved.
-fn moved(path: Path) -> Option<Moved> {
+fn moved(path: VisibilityPath) -> Option<Moved> {
     let house = Arc::new(dwell_houses::open("seed:5").unwrap().0);
     let mut pair = Pair::new(house, path)?;
     let start: Vec<_> = views(&pair.house, Camera::cubemap(4).unwrap(), 2)
@@ -89,7 +89,7 @@ fn moved(path: Path) -> Option<Moved> {
 
 #[test]
 fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
-    cameras_agree(Path::Compute, &cameras());
+    cameras_agree(VisibilityPath::Compute, &cameras());
 }
 
 #[test]
@@ -99,10 +99,10 @@ fn pinholes_see_the_same_by_raster_after_things_moved() {
         .filter(|(_, camera)| matches!(camera.projection(), Projection::Pinhole { .. }))
         .collect();
     assert_eq!(pinholes.len(), 2);
-    cameras_agree(Path::Raster, &pinholes);
+    cameras_agree(VisibilityPath::Raster, &pinholes);
 }
 
-fn cameras_agree(path: Path, cameras: &[(&'static str, Camera)]) {
+fn cameras_agree(path: VisibilityPath, cameras: &[(&'static str, Camera)]) {
     let Some((pair, parts, agents)) = moved(path) else {
         return;
     };
@@ -113,7 +113,7 @@ fn cameras_agree(path: Path, cameras: &[(&'static str, Camera)]) {
             let mut was = view.world_from_camera;
             was.position += Vec3::new(0.02, -0.01, 0.03);
             was.rotation *= Quat::from_rotation_y(0.02);
-            let before = Before {
+            let before = PreviousFrame {
                 world_from_camera: was,
                 moved: &parts,
                 agents: &agents,

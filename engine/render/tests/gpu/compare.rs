@@ -4,7 +4,7 @@
 //! every other pixel a picture may show what the other back end shows within one pixel: values must lie among those of the 3 by 3
 //! pixels, and what lies elsewhere is counted.
 
-use dwell_render::{Camera, Frame, Path};
+use dwell_render::{Camera, Frame, VisibilityPath};
 
 /// By how much depths may differ, m.
 const DEPTH_M: f32 = 1e-3;
@@ -194,7 +194,7 @@ impl Count {
     }
 
     /// Prints the figures and checks those that are shares. `least`: the share of inner pixels.
-    pub(crate) fn finish(&self, name: &str, path: Path, least: f64) {
+    pub(crate) fn finish(&self, name: &str, path: VisibilityPath, least: f64) {
         let name = &format!("{name}, {}", path.word());
         let (pixels, inner) = (self.pixels as f64, self.inner.max(1) as f64);
         println!(
@@ -211,7 +211,7 @@ impl Count {
         // Pixels on edges between triangles of one thing, of other materials or levels of a texture.
         assert!((self.colors as f64) < 2e-3 * inner, "{name}: {self:?}");
         assert!(self.levels < 0.05 * inner, "{name}: {self:?}");
-        let by = usize::from(path == Path::Raster);
+        let by = usize::from(path == VisibilityPath::Raster);
         let most = COINCIDENT[by];
         assert!(self.coincident as f64 <= most * pixels, "{name}: {self:?}");
         for (beyond, image) in self.beyond.iter().zip(IMAGES) {

@@ -3,7 +3,7 @@
 use super::compare::Count;
 use super::optics::{room, views};
 use crate::common::World;
-use dwell_render::{Camera, Frame, Path, Preset};
+use dwell_render::{Camera, Frame, Preset, VisibilityPath};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 type Fault = (&'static str, fn(&mut Frame, usize));
@@ -41,7 +41,7 @@ fn a_fault_in_any_image_is_found_at_edges_and_elsewhere() {
         let pair = (right.clone(), frame.clone());
         let compare = || {
             compared.compare("fault", &camera, &pair);
-            compared.finish("fault", Path::Compute, 0.05);
+            compared.finish("fault", VisibilityPath::Compute, 0.05);
         };
         catch_unwind(AssertUnwindSafe(compare)).is_err()
     };

@@ -2,7 +2,7 @@
 
 use super::agreement::Pair;
 use super::compare::Count;
-use dwell_render::{Camera, Path, Preset, View};
+use dwell_render::{Camera, Preset, View, VisibilityPath};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, Pose, space};
 use glam::Vec3;
@@ -50,7 +50,7 @@ fn tests_all() -> bool {
     std::env::var_os("DWELL_TEST_ALL").is_some()
 }
 
-fn agree(name: &str, house: &Arc<House>, count: usize, path: Path) {
+fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
     let Some(pair) = Pair::new(house.clone(), path) else {
         return;
     };
@@ -67,13 +67,13 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: Path) {
 #[test]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
-        agree("SUNCG", &house, 200, Path::Compute);
-        agree("SUNCG", &house, 200, Path::Raster);
+        agree("SUNCG", &house, 200, VisibilityPath::Compute);
+        agree("SUNCG", &house, 200, VisibilityPath::Raster);
     }
 }
 
 /// Lit views look as bright and as coloured, from inside and from the open air, by day and with lamps.
-fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: Path) {
+fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: VisibilityPath) {
     let Some(mut pair) = Pair::new(house, path) else {
         return;
     };
@@ -108,7 +108,7 @@ fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: Path) {
 #[test]
 fn lit_houses_look_the_same_by_cpu_and_gpu() {
     let (in_suncg, generated) = if tests_all() { (200, 40) } else { (12, 6) };
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         if let Some(house) = suncg() {
             lit_agrees("SUNCG", house, in_suncg, path);
         }
@@ -124,7 +124,7 @@ fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);
         let count = if tests_all() { 200 } else { 40 };
-        agree(seed, &house, count, Path::Compute);
-        agree(seed, &house, count, Path::Raster);
+        agree(seed, &house, count, VisibilityPath::Compute);
+        agree(seed, &house, count, VisibilityPath::Raster);
     }
 }

@@ -3,7 +3,8 @@
 use super::agreement::{Pair, gpu};
 use crate::common::{Builder, look};
 use dwell_render::{
-    BatchLimits, Camera, Channels, Frame, Gpu, GpuRenderer, Job, Path, Preset, Projection, View,
+    BatchLimits, Camera, Frame, Gpu, GpuRenderer, ImageChannels, Preset, Projection, RenderJob,
+    View, VisibilityPath,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -11,7 +12,7 @@ use dwell_scene::{Mesh, Pose, ShoeboxMaterials, State};
 use glam::Vec3;
 
 /// A room with forty boxes that move.
-fn boxes(path: Path) -> Option<Pair> {
+fn boxes(path: VisibilityPath) -> Option<Pair> {
     let room = dwell_scene::House::shoebox([6.0, 3.0, 6.0], &ShoeboxMaterials::default()).unwrap();
     let mut builder = Builder::from(&room);
     for k in 0..40 {
@@ -119,7 +120,7 @@ fn taken(
 ) -> (Vec<Frame>, usize) {
     let frame = |view: &View| {
         let camera = &view.camera;
-        let mut whole = Frame::new(camera, Channels::ALL);
+        let mut whole = Frame::new(camera, ImageChannels::ALL);
         if let Some((first, end)) = case.rows {
             let pixels = ((end - first) * camera.width()) as usize;
             whole.rgb.truncate(pixels * 3);
@@ -133,7 +134,7 @@ fn taken(
         whole
     };
     let mut frames: Vec<Frame> = case.views.iter().map(frame).collect();
-    let jobs: Vec<Job<'_>> = case
+    let jobs: Vec<RenderJob<'_>> = case
         .views
         .iter()
         .zip(&mut frames)
@@ -141,9 +142,9 @@ fn taken(
         .map(|(k, (view, frame))| {
             let world = if case.are_worlds_apart { k } else { 0 };
             let (scene, state) = worlds.get(world).unwrap_or(&worlds[0]);
-            Job {
+            RenderJob {
                 rows: case.rows,
-                ..Job::new(scene, state, *view, frame.as_mut())
+                ..RenderJob::new(scene, state, *view, frame.as_mut())
             }
         })
         .collect();
@@ -160,7 +161,7 @@ fn taken(
 #[test]
 fn a_batch_too_large_for_any_buffer_is_cut_and_shows_the_same() {
     let Some(shared) = gpu() else { return };
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         let Some(pair) = boxes(path) else { return };
         let worlds: Vec<(RayScene, State)> = (0..40)
             .map(|k| {
@@ -192,7 +193,7 @@ fn a_batch_too_large_for_any_buffer_is_cut_and_shows_the_same() {
 #[test]
 fn a_view_too_large_for_a_buffer_is_refused_by_name() {
     let Some(shared) = gpu() else { return };
-    let Some(pair) = boxes(Path::Compute) else {
+    let Some(pair) = boxes(VisibilityPath::Compute) else {
         return;
     };
     let most = BatchLimits {
@@ -200,10 +201,10 @@ fn a_view_too_large_for_a_buffer_is_refused_by_name() {
         ..BatchLimits::NONE
     };
     let small = Gpu::open_adapter(shared.adapter(), most).unwrap();
-    let small = GpuRenderer::new(small, pair.cpu.clone(), Path::Compute).unwrap();
+    let small = GpuRenderer::new(small, pair.cpu.clone(), VisibilityPath::Compute).unwrap();
     let view = view(Camera::from_fov(128, 128, 80.0).unwrap(), 0);
-    let mut frame = Frame::new(&view.camera, Channels::default());
-    let job = Job::new(&pair.scene, &pair.state, view, frame.as_mut());
+    let mut frame = Frame::new(&view.camera, ImageChannels::default());
+    let job = RenderJob::new(&pair.scene, &pair.state, view, frame.as_mut());
     let error = small.render_batch(&mut [job], Threads::ONE).unwrap_err();
     let error = error.to_string();
     assert!(

@@ -4,7 +4,7 @@ use super::agreement::Pair;
 use super::cameras::cameras;
 use super::compare::Count;
 use crate::common::{Builder, look, quad};
-use dwell_render::{Before, Camera, Path, Preset, View};
+use dwell_render::{Camera, Preset, PreviousFrame, View, VisibilityPath};
 use dwell_scene::{
     Daytime, House, Light, LightShape, Material, Mesh, ObjectId, PartId, Pose, ShoeboxMaterials,
     Sky,
@@ -100,7 +100,7 @@ pub(super) fn views(camera: Camera, preset: Preset) -> Vec<View> {
 
 #[test]
 fn glass_mirrors_and_light_look_the_same_by_every_camera() {
-    for path in Path::ALL {
+    for path in VisibilityPath::ALL {
         let Some(pair) = Pair::new(room(), path) else {
             return;
         };
@@ -130,7 +130,7 @@ fn glass_mirrors_and_light_look_the_same_by_every_camera() {
 /// `full` is rendered by `cpu` whoever is asked, between pictures that are not.
 #[test]
 fn full_pictures_are_those_of_cpu() {
-    let Some(pair) = Pair::new(room(), Path::Raster) else {
+    let Some(pair) = Pair::new(room(), VisibilityPath::Raster) else {
         return;
     };
     let camera = Camera::from_fov(16, 12, 90.0).unwrap();
@@ -148,13 +148,13 @@ fn full_pictures_are_those_of_cpu() {
 /// What was further away than numbers go has no flow; it used to be infinite.
 #[test]
 fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
-    let Some(pair) = Pair::new(room(), Path::Compute) else {
+    let Some(pair) = Pair::new(room(), VisibilityPath::Compute) else {
         return;
     };
     let far = |part: &PartId| (*part, Pose::from_position(Vec3::new(2e38, 1.0, 1.0)));
     let moved: Vec<_> = pair.house.geometry().movable.iter().map(far).collect();
     let place = Pose::from_position(Vec3::new(3.0, 1.2, 3.6));
-    let before = Before {
+    let before = PreviousFrame {
         world_from_camera: place,
         moved: &moved,
         agents: &[],
@@ -164,7 +164,7 @@ fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
         let mut compared = Count::default();
         let frames = &pair.shoot_after(&[view], Some(before))[0];
         compared.compare(name, &camera, frames);
-        compared.finish(name, Path::Compute, 0.02);
+        compared.finish(name, VisibilityPath::Compute, 0.02);
         let (cpu, gpu) = frames;
         assert!(
             cpu.flow

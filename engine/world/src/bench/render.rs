@@ -4,7 +4,7 @@ use super::{BenchOptions, median, open, table, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
-use dwell_render::{Camera, Frame, Job, View};
+use dwell_render::{Camera, Frame, RenderJob, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
@@ -62,11 +62,11 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .collect();
     let mut frames: Vec<Frame> = poses
         .iter()
-        .map(|_| Frame::new(&camera, dwell_render::Channels::default()))
+        .map(|_| Frame::new(&camera, dwell_render::ImageChannels::default()))
         .collect();
     let renderer = engines.pictures(&options.backend)?;
     let seconds = timed(options.repeats + 1, || {
-        let mut jobs: Vec<Job<'_>> = poses
+        let mut jobs: Vec<RenderJob<'_>> = poses
             .iter()
             .zip(&mut frames)
             .map(|(pose, frame)| {
@@ -74,7 +74,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
                     preset: options.preset,
                     ..View::new(camera, *pose)
                 };
-                Job::new(&scene, &state, view, frame.as_mut())
+                RenderJob::new(&scene, &state, view, frame.as_mut())
             })
             .collect();
         renderer.render_batch(&mut jobs, threads)?;

@@ -3,7 +3,9 @@
 use super::{BenchOptions, median, open, render, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
-use dwell_render::{BackEnd, Camera, Channels, Frame, FrameMut, Job, Path, Renderer, View};
+use dwell_render::{
+    BackEnd, Camera, Frame, FrameMut, ImageChannels, RenderJob, Renderer, View, VisibilityPath,
+};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
@@ -25,7 +27,7 @@ struct Size {
 /// Both paths of an adapter unless one is asked for.
 fn back_ends(asked: &BackEnd) -> Vec<BackEnd> {
     match asked {
-        BackEnd::Gpu { name, path: None } => Path::ALL
+        BackEnd::Gpu { name, path: None } => VisibilityPath::ALL
             .map(|path| BackEnd::Gpu {
                 name: name.clone(),
                 path: Some(path),
@@ -88,7 +90,7 @@ fn row(
 ) -> Result<Value, WorldError> {
     let Size { batch, resolution } = size;
     let camera = Camera::from_fov(resolution, resolution, 90.0)?.with_range(0.05, 50.0)?;
-    let wanted = Channels::default();
+    let wanted = ImageChannels::default();
     let mut frames: Vec<Frame> = (0..batch).map(|_| Frame::new(&camera, wanted)).collect();
     let jobs = |frames: &mut [Frame]| -> Result<(), WorldError> {
         let mut jobs = list(stage, camera, options, frames);
@@ -141,7 +143,7 @@ fn list<'a>(
     camera: Camera,
     options: &BenchOptions,
     frames: &'a mut [Frame],
-) -> Vec<Job<'a>> {
+) -> Vec<RenderJob<'a>> {
     let poses = stage.poses.iter().cycle();
     let worlds = stage.worlds.iter().zip(poses);
     let jobs = worlds.zip(frames).map(|(((scene, state), pose), frame)| {
@@ -149,7 +151,7 @@ fn list<'a>(
             preset: options.preset,
             ..View::new(camera, *pose)
         };
-        Job::new(scene, state, view, frame.as_mut())
+        RenderJob::new(scene, state, view, frame.as_mut())
     });
     jobs.collect()
 }

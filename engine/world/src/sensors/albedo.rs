@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Reflectance of surfaces for red, green and blue, linear, 0 to 1, zeros where nothing is seen; shape \
                      (height, width, 3).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "1",
     low: 0.0,
     high: 1.0,
-    channels: Channels {
+    channels: ImageChannels {
         albedo: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

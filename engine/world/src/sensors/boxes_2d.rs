@@ -4,7 +4,7 @@ use super::image::{self, Kind, Look, Shape};
 use super::list;
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Boxes around objects and agents in the image, by id: id, first column and row, the column and row \
                      behind the last, pixels; rows as in visible_objects; shape (max_objects, 6).";
@@ -24,9 +24,9 @@ static IMAGE: Kind = Kind {
     unit: "id, px",
     low: 0.0,
     high: i32::MAX as f64,
-    channels: Channels {
+    channels: ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

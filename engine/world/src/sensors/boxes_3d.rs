@@ -4,7 +4,7 @@ use super::image::{self, Kind, Look, Shape};
 use super::list;
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Oriented boxes around objects and agents in view, in the camera's frame, by id: id, middle in m, \
                      edges in m, rotation x, y, z, w; rows as in visible_objects; shape (max_objects, 11).";
@@ -24,9 +24,9 @@ static IMAGE: Kind = Kind {
     unit: "id, m, m, 1",
     low: -1e9,
     high: 1e9,
-    channels: Channels {
+    channels: ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

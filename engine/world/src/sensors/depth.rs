@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), \
                      shape (height, width, 1); misses are clamped to `far_m`.";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "m",
     low: 0.0,
     high: 1e6,
-    channels: Channels {
+    channels: ImageChannels {
         depth: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Optical flow: how far what a pixel shows has moved in the image since the step before, pixels to the \
                      right and down, by the camera's movement and its own; shape (height, width, 2).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "px",
     low: -1e9,
     high: 1e9,
-    channels: Channels {
+    channels: ImageChannels {
         flow: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::pictures::PictureRequest;
 use crate::requests::Requests;
 use crate::world::World;
-use dwell_render::{Camera, Channels, Classes, Frame, Optics, View};
+use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
@@ -22,7 +22,7 @@ pub(crate) struct Kind {
     /// For depth the camera's far end.
     pub(super) high: f64,
     /// The images that it is made of.
-    pub(super) channels: Channels,
+    pub(super) channels: ImageChannels,
     /// Writes the observation.
     pub(super) write: fn(Look<'_>, Out<'_>),
 }
@@ -84,7 +84,7 @@ impl Look<'_> {
     }
 
     /// The class of what each pixel shows.
-    pub(super) fn write_classes(&self, classes: Classes, out: Out<'_>) {
+    pub(super) fn write_classes(&self, classes: ClassSet, out: Out<'_>) {
         if let Out::Int32(out) = out {
             let renderer = self.world.engines().renderer();
             let classes = renderer.classes(classes);
@@ -199,7 +199,7 @@ impl World {
         };
         let kinds: Vec<&Kind> = names.iter().map(find).collect::<Result<_, _>>()?;
         let wanted = kinds.iter().map(|kind| kind.channels);
-        let channels = wanted.fold(Channels::NONE, Channels::and);
+        let channels = wanted.fold(ImageChannels::NONE, ImageChannels::and);
         let (camera, frame) = self.picture(request, channels, threads)?;
         let key = self.key.child("picture").child(self.state().step);
         let observe = |kind: &&Kind| {

@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, \
                      1).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "id",
     low: 0.0,
     high: i32::MAX as f64,
-    channels: Channels {
+    channels: ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

@@ -1,14 +1,14 @@
 //! Sensors that list what a picture shows.
 
 use super::image::Look;
-use dwell_render::{Sighting, sightings};
+use dwell_render::{VisibleObject, sightings};
 use dwell_scene::Entity;
 
 /// Writes a row for every object and agent in the picture, by id; of more than fit those with most pixels. Unused rows are 0.
 pub(super) fn fill<T: Copy + Default, const N: usize>(
     look: &Look<'_>,
     out: &mut [T],
-    row: impl Fn(&Sighting) -> [T; N],
+    row: impl Fn(&VisibleObject) -> [T; N],
 ) {
     let house = look.world.house();
     let width = look.camera.width();

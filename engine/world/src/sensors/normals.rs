@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Normals of surfaces in the camera's frame (to the right, up, back), on the side that is seen, unit \
                      length, zeros where nothing is seen; shape (height, width, 3).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "1",
     low: -1.000_01,
     high: 1.000_01,
-    channels: Channels {
+    channels: ImageChannels {
         normals: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

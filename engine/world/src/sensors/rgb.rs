@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Colour image: shape (height, width, 3), sRGB bytes.";
 
@@ -22,9 +22,9 @@ static IMAGE: Kind = Kind {
     unit: "sRGB",
     low: 0.0,
     high: 255.0,
-    channels: Channels {
+    channels: ImageChannels {
         rgb: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

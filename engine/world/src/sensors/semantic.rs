@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Coarse semantic classes: 0 void, then the rows of the category table, then the house's own \
                      (House.semantic_classes); shape (height, width, 1).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "class",
     low: 0.0,
     high: i32::MAX as f64,
-    channels: Channels {
+    channels: ImageChannels {
         semantic: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::{Channels, Classes};
+use dwell_render::{ClassSet, ImageChannels};
 
 const ABOUT: &str = "Fine semantic classes, such as coffee_table: 0 void, then the rows of the category table, then the \
                      house's own (House.semantic_classes); shape (height, width, 1).";
@@ -23,9 +23,9 @@ static IMAGE: Kind = Kind {
     unit: "class",
     low: 0.0,
     high: i32::MAX as f64,
-    channels: Channels {
+    channels: ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };
@@ -35,5 +35,5 @@ fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, W
 }
 
 fn write(look: Look<'_>, out: Out<'_>) {
-    look.write_classes(Classes::Fine, out);
+    look.write_classes(ClassSet::Fine, out);
 }

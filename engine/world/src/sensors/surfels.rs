@@ -3,7 +3,7 @@
 use super::image::{self, Kind, Look, Shape};
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 use glam::Vec2;
 
 const ABOUT: &str = "Surface elements in the camera's frame: position in m (to the right, up, back), unit normal, \
@@ -24,12 +24,12 @@ static IMAGE: Kind = Kind {
     unit: "m, 1, 1",
     low: -1e6,
     high: 1e6,
-    channels: Channels {
+    channels: ImageChannels {
         depth: true,
         instance: true,
         normals: true,
         albedo: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };

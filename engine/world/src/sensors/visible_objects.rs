@@ -4,7 +4,7 @@ use super::image::{self, Kind, Look, Shape};
 use super::list;
 use super::{Dtype, Out, Sensor, SensorKind, Site};
 use crate::error::WorldError;
-use dwell_render::Channels;
+use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Objects and agents in view, by id: id, pixels, and how much of it others hide, 0 to 1; of more than \
                      fit those with most pixels, unused rows 0; shape (max_objects, 3).";
@@ -24,9 +24,9 @@ static IMAGE: Kind = Kind {
     unit: "id, px, 1",
     low: 0.0,
     high: 1e9,
-    channels: Channels {
+    channels: ImageChannels {
         instance: true,
-        ..Channels::NONE
+        ..ImageChannels::NONE
     },
     write,
 };
@@ -42,7 +42,7 @@ fn write(look: Look<'_>, out: Out<'_>) {
     list::fill(&look, out, |sighting| {
         let renderer = world.engines().renderer();
         let (scene, state) = (world.rays(), world.state());
-        let alone = renderer.pixels_alone(scene, state, &view, sighting.entity);
+        let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);
         let hidden = 1.0 - sighting.pixels as f32 / alone.max(sighting.pixels) as f32;
         [sighting.entity.0 as f32, sighting.pixels as f32, hidden]
     });

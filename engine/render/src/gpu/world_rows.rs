@@ -1,31 +1,31 @@
 //! Worlds as kernels read them: the tree over what moves, and its instances.
 
-use super::house::point;
-use crate::cpu::{Job, SEEN};
+use super::house_buffers::point;
+use crate::cpu::{RenderJob, SEEN};
 use dwell_scene::Pose;
 use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
 
 /// The worlds of a batch. Their memory is used again.
 #[derive(Debug, Default)]
-pub(super) struct Worlds {
+pub(super) struct WorldRows {
     /// Of each world, positions counted from its own first row.
     lists: Vec<Vec<PackedRow>>,
 }
 
 /// Whether two views are of one world.
-fn is_same(a: &Job<'_>, b: &Job<'_>) -> bool {
+fn is_same(a: &RenderJob<'_>, b: &RenderJob<'_>) -> bool {
     std::ptr::eq(a.scene, b.scene) && std::ptr::eq(a.state, b.state)
 }
 
 /// Views of one world follow one another as a rule: the runs of those that do.
-pub(super) fn runs<'j, 'a>(jobs: &'j [Job<'a>]) -> Vec<&'j [Job<'a>]> {
+pub(super) fn runs<'j, 'a>(jobs: &'j [RenderJob<'a>]) -> Vec<&'j [RenderJob<'a>]> {
     jobs.chunk_by(is_same).collect()
 }
 
-impl Worlds {
+impl WorldRows {
     /// Lists the world of each run.
-    pub(super) fn fill(&mut self, runs: &[&[Job<'_>]], threads: Threads) {
+    pub(super) fn fill(&mut self, runs: &[&[RenderJob<'_>]], threads: Threads) {
         if self.lists.len() < runs.len() {
             self.lists.resize_with(runs.len(), Vec::new);
         }
@@ -48,7 +48,7 @@ impl Worlds {
 }
 
 /// The tree over a world's instances, then the instances.
-fn list(job: &Job<'_>, rows: &mut Vec<PackedRow>) {
+fn list(job: &RenderJob<'_>, rows: &mut Vec<PackedRow>) {
     let moving = job.scene.bvh().moving;
     rows.resize(3, [0; 4]);
     let top = moving.flatten_tree(rows);

@@ -10,13 +10,13 @@ const STEPS: [f32; 2] = [0.754_877_7, 0.569_840_3];
 const MIXED: u32 = 15;
 
 /// Numbers of one sample of one pixel.
-pub(super) struct Dice {
+pub(super) struct PixelSampler {
     pixel: u32,
     sample: u32,
     throw: u32,
 }
 
-impl Dice {
+impl PixelSampler {
     pub(super) fn new((column, row): (usize, usize), sample: usize) -> Self {
         Self {
             pixel: mixed(column as u32 ^ mixed(row as u32)),
@@ -49,7 +49,7 @@ impl Dice {
     }
 
     /// A direction in the cone around another, evenly over the disc that it shows. `radius`: the tangent of half its angle.
-    pub(super) fn cone(&mut self, direction: Vec3, radius: f32) -> Vec3 {
+    pub(super) fn uniform_cone(&mut self, direction: Vec3, radius: f32) -> Vec3 {
         let (u, v) = self.pair();
         let (across, along) = direction.any_orthonormal_pair();
         let (aside, turn) = (radius * u.sqrt(), v * TAU);
@@ -58,7 +58,7 @@ impl Dice {
     }
 
     /// A point in a ball of radius 1.
-    pub(super) fn ball(&mut self) -> Vec3 {
+    pub(super) fn uniform_ball(&mut self) -> Vec3 {
         let ((u, v), (w, _)) = (self.pair(), self.pair());
         let up = 2.0 * u - 1.0;
         let (level, turn) = ((1.0 - up * up).max(0.0).sqrt(), v * TAU);
@@ -67,7 +67,7 @@ impl Dice {
     }
 
     /// The normal of a facet of a rough surface: tan² of its slope is a² u / (1 - u), with a the square of the roughness.
-    pub(super) fn facet(&mut self, normal: Vec3, roughness: f32) -> Vec3 {
+    pub(super) fn sample_microfacet(&mut self, normal: Vec3, roughness: f32) -> Vec3 {
         let (u, v) = self.pair();
         let slope = roughness * roughness * (u / (1.0 - u).max(1e-6)).sqrt();
         let (across, along) = normal.any_orthonormal_pair();
@@ -88,11 +88,11 @@ fn mixed(bits: u32) -> u32 {
 mod tests {
     use super::*;
 
-    fn all(throw: impl Fn(&mut Dice) -> Vec3) -> Vec3 {
+    fn all(throw: impl Fn(&mut PixelSampler) -> Vec3) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for pixel in 0..4096 {
             for sample in 0..16 {
-                sum += throw(&mut Dice::new((pixel % 64, pixel / 64), sample));
+                sum += throw(&mut PixelSampler::new((pixel % 64, pixel / 64), sample));
             }
         }
         sum / 65536.0
@@ -115,18 +115,18 @@ mod tests {
         assert!((cosine - normal * (2.0 / 3.0)).length() < 0.005, "{cosine}");
         // The mean square of the tangent over a disc is half of that at its rim.
         let tangent = all(|dice| {
-            let cosine = dice.cone(normal, 0.2).dot(normal);
+            let cosine = dice.uniform_cone(normal, 0.2).dot(normal);
             Vec3::splat(1.0 / (cosine * cosine) - 1.0)
         });
         assert!((tangent.x - 0.02).abs() < 2e-4, "{tangent}");
-        let ball = all(Dice::ball);
+        let ball = all(PixelSampler::uniform_ball);
         assert!(ball.length() < 0.006, "{ball}");
         // The mean square distance from the middle of a ball is 3/5.
-        let square = all(|dice| Vec3::splat(dice.ball().length_squared()));
+        let square = all(|dice| Vec3::splat(dice.uniform_ball().length_squared()));
         assert!((square.x - 0.6).abs() < 0.005, "{square}");
         // Half of all facets are steeper than a.
         let steep = all(|dice| {
-            let facet = dice.facet(normal, 0.5);
+            let facet = dice.sample_microfacet(normal, 0.5);
             let cosine = facet.dot(normal);
             let tangent = (1.0 / (cosine * cosine) - 1.0).max(0.0).sqrt();
             Vec3::splat(f32::from(u8::from(tangent > 0.25)))

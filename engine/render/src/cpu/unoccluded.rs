@@ -1,7 +1,7 @@
 //! One thing without all others: how much of it there would be to see.
 
 use super::CpuRenderer;
-use super::rays::{COLUMNS, LANES, Packet, ROWS, Rays};
+use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, LANES, ROWS};
 use crate::frame::View;
 use dwell_scene::bvh::{Instance, InstanceSet, RayMask, SceneBvh, TriangleBvh};
 use dwell_scene::rays::{BODY_PIECES, RayScene};
@@ -14,7 +14,7 @@ static NOTHING: LazyLock<TriangleBvh> = LazyLock::new(TriangleBvh::default);
 impl CpuRenderer {
     /// How many pixels of a view would show a thing if nothing else were there: those whose middle's ray meets it within
     /// the camera's range. 0 for what is neither an object nor an agent.
-    pub fn pixels_alone(
+    pub fn unoccluded_pixels(
         &self,
         scene: &RayScene,
         state: &State,
@@ -22,20 +22,20 @@ impl CpuRenderer {
         entity: EntityId,
     ) -> u32 {
         let set = match self.house().entity(entity) {
-            Some(Entity::Object(object)) => self.object_alone(state, object),
-            Some(Entity::Agent(agent)) => body_alone(scene, self, agent),
+            Some(Entity::Object(object)) => self.object_instances(state, object),
+            Some(Entity::Agent(agent)) => agent_instances(scene, self, agent),
             _ => return 0,
         };
         let alone = SceneBvh {
             fixed: &NOTHING,
             moving: &set,
         };
-        let rays = Rays::new(&View {
+        let rays = CameraRays::new(&View {
             hide: None,
             ..*view
         });
         let (columns, rows) = image_bounds(view, &set);
-        let (mut packet, mut count) = (Packet::new(), 0);
+        let (mut packet, mut count) = (CameraPacket::new(), 0);
         let end = (view.camera.width() as usize, view.camera.height() as usize);
         for top in rows.step_by(ROWS) {
             for left in columns.clone().step_by(COLUMNS) {
@@ -47,7 +47,7 @@ impl CpuRenderer {
     }
 
     /// The parts of an object where they stand.
-    fn object_alone(&self, state: &State, object: ObjectId) -> InstanceSet {
+    fn object_instances(&self, state: &State, object: ObjectId) -> InstanceSet {
         let (house, geometry) = (self.house(), self.house().geometry());
         let thing = &house.objects[object];
         let first = thing.first_part.index();
@@ -83,7 +83,7 @@ impl CpuRenderer {
 }
 
 /// An agent's body where it stands.
-fn body_alone(scene: &RayScene, renderer: &CpuRenderer, agent: AgentId) -> InstanceSet {
+fn agent_instances(scene: &RayScene, renderer: &CpuRenderer, agent: AgentId) -> InstanceSet {
     let mut set = scene.bvh().moving.clone();
     let parts = renderer.house().geometry().movable.len();
     let own = parts + agent.index() * BODY_PIECES..parts + (agent.index() + 1) * BODY_PIECES;

@@ -1,10 +1,10 @@
 //! Some rows of one picture.
 
+use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, ROWS};
 use super::motion;
-use super::rays::{COLUMNS, Packet, ROWS, Rays};
-use super::shade::Palette;
-use super::{BAND_ROWS, CpuRenderer, Job};
-use crate::frame::{Before, FrameMut};
+use super::shade::ShadeScratch;
+use super::{BAND_ROWS, CpuRenderer, RenderJob};
+use crate::frame::{FrameMut, PreviousFrame};
 use crate::light::{Exposure, Lighting};
 use dwell_scene::State;
 use dwell_scene::bvh::SceneBvh;
@@ -15,11 +15,11 @@ use glam::Vec3;
 const PACKETS_PER_CHECK: usize = 32;
 
 /// Rows of a picture, with the memory they go to.
-pub(super) struct Band<'a> {
+pub(super) struct ImageTile<'a> {
     pub(super) scene: SceneBvh<'a>,
     pub(super) state: &'a State,
-    before: Option<Before<'a>>,
-    pub(super) rays: Rays,
+    before: Option<PreviousFrame<'a>>,
+    pub(super) rays: CameraRays,
     /// Nothing for flat views.
     pub(super) light: Option<(&'a Lighting, Exposure)>,
     /// Of the picture.
@@ -30,16 +30,16 @@ pub(super) struct Band<'a> {
     frame: FrameMut<'a>,
 }
 
-impl<'a> Band<'a> {
+impl<'a> ImageTile<'a> {
     /// Cuts the picture of a job into bands.
     pub(super) fn split(
-        job: &'a mut Job<'_>,
+        job: &'a mut RenderJob<'_>,
         light: Option<(&'a Lighting, Exposure)>,
         bands: &mut Vec<Self>,
     ) {
         let camera = job.view.camera;
         let (width, height) = (camera.width() as usize, camera.height() as usize);
-        let rays = Rays::new(&job.view);
+        let rays = CameraRays::new(&job.view);
         let (first, last) = job.row_range();
         let mut rest = job.frame.reborrow();
         for first_row in (first..last).step_by(BAND_ROWS) {
@@ -60,7 +60,7 @@ impl<'a> Band<'a> {
 
     /// Writes the pixels.
     pub(super) fn render(&mut self, renderer: &CpuRenderer) {
-        let (mut packet, mut palette) = (Packet::new(), Palette::new());
+        let (mut packet, mut palette) = (CameraPacket::new(), ShadeScratch::new());
         let end = (self.size.0, self.first_row + self.rows);
         // All light of a packet takes milliseconds.
         let mut pace = PollEvery::new(if self.rays.is_full() {
@@ -81,8 +81,8 @@ impl<'a> Band<'a> {
     fn write(
         &mut self,
         renderer: &CpuRenderer,
-        packet: &mut Packet,
-        palette: &mut Palette,
+        packet: &mut CameraPacket,
+        palette: &mut ShadeScratch,
         (left, top): (usize, usize),
     ) {
         let width = self.size.0;
@@ -151,14 +151,14 @@ impl<'a> Band<'a> {
     fn write_surface(
         &mut self,
         renderer: &CpuRenderer,
-        packet: &Packet,
+        packet: &CameraPacket,
         lane: usize,
         pixel: usize,
     ) {
         let sight = packet.sight(lane);
         let skin = sight
             .as_ref()
-            .map(|sight| renderer.skin(&self.rays, self.state, sight));
+            .map(|sight| renderer.surface_at_hit(&self.rays, self.state, sight));
         let put = |buffer: &mut Option<&mut [f32]>, value: Vec3| {
             if let Some(buffer) = buffer {
                 buffer[pixel * 3..pixel * 3 + 3].copy_from_slice(&value.to_array());

@@ -1,6 +1,6 @@
 //! Materials as cameras see them.
 
-use crate::color::Srgb;
+use crate::color::SrgbTables;
 use crate::texture::Textures;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::{House, Id, Material};
@@ -15,7 +15,7 @@ const MIRROR_ROUGHNESS: f32 = 0.05;
 
 /// One material, prepared.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Look {
+pub(crate) struct ShadingMaterial {
     /// Colour in linear light; multiplies the texture.
     pub(crate) base: [f32; 3],
     /// Position of the image, or [`NONE`].
@@ -38,9 +38,9 @@ pub(crate) struct Look {
     pub(crate) mirror: bool,
 }
 
-impl Look {
+impl ShadingMaterial {
     pub(crate) fn new(material: &Material, textures: &Textures) -> Self {
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         let mut look = Self {
             base: material.base_color,
             texture: NONE,
@@ -81,7 +81,7 @@ impl Look {
             opacity: 1.0,
             emission: [0.0; 3],
             texels: 0.0,
-            plain: Some(Srgb::tables().encode3(base)),
+            plain: Some(SrgbTables::tables().encode3(base)),
             clear: false,
             roughness: 1.0,
             metallic: 0.0,

@@ -1,6 +1,6 @@
 //! The rays of a view, a packet of pixels at a time.
 
-use super::full::SAMPLES;
+use super::path_tracer::SAMPLES;
 use crate::camera::{Camera, Projection};
 use crate::frame::{Preset, View};
 use dwell_scene::EntityId;
@@ -18,7 +18,7 @@ pub(super) const LANES: usize = COLUMNS * ROWS;
 
 /// A view, prepared.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rays {
+pub(super) struct CameraRays {
     view: View,
     right: Vec3,
     up: Vec3,
@@ -29,18 +29,18 @@ pub(super) struct Rays {
 }
 
 /// The rays of some pixels and what they met. Lane k is column k % 8 and row k / 8.
-pub(super) struct Packet {
+pub(super) struct CameraPacket {
     rays: RayPacket<LANES>,
     /// Depth per length along the ray.
     per_length: [f32; LANES],
     hits: PacketHits<LANES>,
     /// In place of the hits where rays do not start at one point.
-    beam: Option<Box<Beam>>,
+    beam: Option<Box<ScalarRays>>,
 }
 
 /// Rays from one point and what they met.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
+pub(super) struct PacketView<'a> {
     pub(super) rays: &'a RayPacket<LANES>,
     pub(super) hits: &'a PacketHits<LANES>,
     /// Depth per length along the ray.
@@ -48,14 +48,14 @@ pub(super) struct Seen<'a> {
 }
 
 /// Rays side by side.
-struct Beam {
+struct ScalarRays {
     start: [Vec3; LANES],
     hits: [Option<Hit>; LANES],
 }
 
 /// What one pixel sees.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sight {
+pub(super) struct PrimaryHit {
     pub(super) point: Vec3,
     /// Of the ray; unit length.
     pub(super) direction: Vec3,
@@ -67,7 +67,7 @@ pub(super) struct Sight {
     pub(super) triangle: u32,
 }
 
-impl Packet {
+impl CameraPacket {
     /// No rays; memory for many packets of one picture.
     pub(super) fn new() -> Self {
         Self {
@@ -87,7 +87,7 @@ impl Packet {
 
     /// What a pixel sees.
     #[inline]
-    pub(super) fn sight(&self, lane: usize) -> Option<Sight> {
+    pub(super) fn sight(&self, lane: usize) -> Option<PrimaryHit> {
         let direction = self.direction(lane);
         let (start, distance, id, instance, triangle) = match &self.beam {
             None => {
@@ -115,7 +115,7 @@ impl Packet {
             }
         };
         let per_length = self.per_length[lane];
-        Some(Sight {
+        Some(PrimaryHit {
             point: start + direction * distance,
             direction,
             depth: distance * per_length,
@@ -128,8 +128,8 @@ impl Packet {
 
     /// What pixels see, and along which rays, where those start at one point.
     #[inline]
-    pub(super) fn seen_from_one_point(&self) -> Option<Seen<'_>> {
-        let seen = Seen {
+    pub(super) fn packet_view(&self) -> Option<PacketView<'_>> {
+        let seen = PacketView {
             rays: &self.rays,
             hits: &self.hits,
             per_length: &self.per_length,
@@ -178,9 +178,9 @@ impl Packet {
     }
 
     /// Goes on behind the given depths; lanes that are not named see nothing from now on.
-    pub(super) fn go_on(
+    pub(super) fn advance_behind(
         &mut self,
-        rays: &Rays,
+        rays: &CameraRays,
         scene: SceneBvh<'_>,
         behind: impl Iterator<Item = (usize, f32)>,
     ) {
@@ -193,7 +193,7 @@ impl Packet {
         self.trace(rays, scene);
     }
 
-    fn trace(&mut self, rays: &Rays, scene: SceneBvh<'_>) {
+    fn trace(&mut self, rays: &CameraRays, scene: SceneBvh<'_>) {
         let Some(beam) = &mut self.beam else {
             scene.closest_packet(&self.rays, SEEN, Some(rays.hidden.0), &mut self.hits);
             return;
@@ -208,7 +208,7 @@ impl Packet {
     }
 }
 
-impl Rays {
+impl CameraRays {
     pub(super) fn new(view: &View) -> Self {
         let rotation = view.world_from_camera.rotation.normalize();
         let (fixed, growing) = view.camera.pixel_area();
@@ -239,7 +239,7 @@ impl Rays {
         scene: SceneBvh<'_>,
         (left, top): (usize, usize),
         (width, height): (usize, usize),
-        packet: &mut Packet,
+        packet: &mut CameraPacket,
     ) {
         let (near, far) = self.range();
         packet.rays.origin = self.view.world_from_camera.position;
@@ -266,7 +266,7 @@ impl Rays {
     #[inline]
     fn aim(
         &self,
-        packet: &mut Packet,
+        packet: &mut CameraPacket,
         (left, top): (f32, f32),
         (fx, fy, cx, cy): (f32, f32, f32, f32),
     ) {
@@ -291,7 +291,7 @@ impl Rays {
     }
 
     /// Directions through the middles of pixels of cameras that bend straight lines.
-    fn bend(&self, packet: &mut Packet, (left, top): (usize, usize)) {
+    fn bend(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
         let camera = &self.view.camera;
         let is_range = camera.projection().depth_is_range();
         for k in 0..LANES {
@@ -366,7 +366,7 @@ impl Rays {
     }
 
     /// Starts in the middles of pixels, all in one direction.
-    fn spread(&self, packet: &mut Packet, (left, top): (usize, usize)) {
+    fn spread(&self, packet: &mut CameraPacket, (left, top): (usize, usize)) {
         let start = std::array::from_fn(|k| {
             let image = Vec2::new(
                 (left + k % COLUMNS) as f32 + 0.5,
@@ -378,7 +378,7 @@ impl Rays {
         for axis in 0..3 {
             packet.rays.direction[axis] = [-self.back[axis]; LANES];
         }
-        packet.beam = Some(Box::new(Beam {
+        packet.beam = Some(Box::new(ScalarRays {
             start,
             hits: [None; LANES],
         }));

@@ -1,13 +1,13 @@
 //! A batch as the kernels read it: views, worlds, and where images go.
 
-use super::house::point;
-use super::raster::{Drawable, Drawing};
-use super::slot::SEEN_BYTES;
-use super::worlds::{Worlds, runs};
+use super::batch_buffers::SEEN_BYTES;
+use super::house_buffers::point;
+use super::raster::{DrawBatch, RasterScene};
+use super::world_rows::{WorldRows, runs};
 use crate::camera::{Camera, Projection};
-use crate::cpu::{CpuRenderer, Job};
+use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
-use crate::frame::{Before, FrameMut, Preset, each_image};
+use crate::frame::{FrameMut, Preset, PreviousFrame, each_image};
 use crate::light::Lighting;
 use dwell_scene::bvh::flat::{PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
@@ -24,7 +24,7 @@ const TILE: u32 = 8;
 
 /// Where the images of one view lie among the words that come back.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Places {
+pub(super) struct ImageOffsets {
     /// Pixels of each image.
     pub(super) pixels: usize,
     pub(super) rgb: Option<usize>,
@@ -36,7 +36,7 @@ pub(super) struct Places {
     pub(super) flow: Option<usize>,
 }
 
-impl Places {
+impl ImageOffsets {
     /// Checks that a frame wants the images that were announced.
     pub(super) fn check(&self, view: usize, frame: &FrameMut<'_>) -> Result<(), RenderError> {
         macro_rules! check {
@@ -87,7 +87,7 @@ const MOST_LENS_RAYS: usize = 1 << 22;
 
 impl LensRays {
     /// Forgets old cameras when there are too many; before a batch.
-    fn tidy(&mut self) {
+    fn evict_old(&mut self) {
         if self.rays.len() > MOST_LENS_RAYS {
             self.forget();
         }
@@ -120,13 +120,13 @@ impl LensRays {
 
 /// The rows of a batch, and where its images go. Its memory is used again.
 #[derive(Debug, Default)]
-pub(super) struct Batch {
+pub(super) struct GpuBatch {
     pub(super) rows: Vec<PackedRow>,
-    pub(super) places: Vec<Places>,
+    pub(super) places: Vec<ImageOffsets>,
     pub(super) lenses: LensRays,
     /// What the raster path draws.
-    pub(super) drawing: Drawing,
-    worlds: Worlds,
+    pub(super) drawing: DrawBatch,
+    worlds: WorldRows,
     pub(super) pixels: usize,
     pub(super) words: usize,
     pub(super) tiles: usize,
@@ -138,7 +138,7 @@ pub(super) struct Batch {
 }
 
 /// Whether a view needs light: colours alone show it.
-fn is_lit(job: &Job<'_>) -> bool {
+fn is_lit(job: &RenderJob<'_>) -> bool {
     job.view.preset == Preset::Lit && job.frame.rgb.is_some()
 }
 
@@ -146,20 +146,20 @@ fn quaternion(rotation: Quat) -> PackedRow {
     Vec4::from(rotation).to_array().map(f32::to_bits)
 }
 
-impl Batch {
+impl GpuBatch {
     /// Writes the rows of some jobs. `draws`: the house and the longest edge of a texture, for the raster path.
     pub(super) fn fill(
         &mut self,
         cpu: &CpuRenderer,
-        jobs: &[Job<'_>],
-        draws: Option<(&Drawable, u32)>,
+        jobs: &[RenderJob<'_>],
+        draws: Option<(&RasterScene, u32)>,
         threads: Threads,
     ) {
         self.rows.clear();
         self.places.clear();
         (self.pixels, self.words, self.tiles, self.instances) = (0, 0, 0, 0);
         (self.paints, self.paints_lit, self.describes) = (false, false, false);
-        self.lenses.tidy();
+        self.lenses.evict_old();
         let sheets = if let Some((house, edge)) = draws {
             self.drawing.fill(house, jobs, edge, threads)
         } else {
@@ -238,7 +238,7 @@ impl Batch {
     }
 
     /// `shown`: the preset, the first row of its light, and the exposure.
-    fn add_view(&mut self, k: usize, job: &Job<'_>, world: u32, shown: PackedRow) {
+    fn add_view(&mut self, k: usize, job: &RenderJob<'_>, world: u32, shown: PackedRow) {
         let (view, camera) = (&job.view, &job.view.camera);
         let rotation = view.world_from_camera.rotation.normalize();
         let (first_row, end) = job.row_range();
@@ -292,13 +292,13 @@ impl Batch {
         self.describes |= words_per_pixel(frame) > usize::from(frame.rgb.is_some());
     }
 
-    fn place(&mut self, frame: &FrameMut<'_>, pixels: usize) -> Places {
+    fn place(&mut self, frame: &FrameMut<'_>, pixels: usize) -> ImageOffsets {
         let mut next = |wanted: bool, parts: usize| {
             let first = self.words;
             self.words += if wanted { pixels * parts } else { 0 };
             wanted.then_some(first)
         };
-        Places {
+        ImageOffsets {
             pixels,
             rgb: next(frame.rgb.is_some(), 1),
             depth: next(frame.depth.is_some(), 1),
@@ -311,7 +311,7 @@ impl Batch {
     }
 
     /// Where each instance was; returns the first row.
-    fn add_before(&mut self, job: &Job<'_>, before: &Before<'_>) -> u32 {
+    fn add_before(&mut self, job: &RenderJob<'_>, before: &PreviousFrame<'_>) -> u32 {
         let first = self.rows.len() as u32;
         for part in &job.scene.house().geometry().movable {
             let moved = &before.moved;
@@ -337,7 +337,10 @@ impl Batch {
 }
 
 /// From where each agent is to where it was.
-fn agents_back<'a>(state: &'a State, before: &'a Before<'_>) -> impl Iterator<Item = Vec3> + 'a {
+fn agents_back<'a>(
+    state: &'a State,
+    before: &'a PreviousFrame<'_>,
+) -> impl Iterator<Item = Vec3> + 'a {
     let agents = state.agents.as_slice().iter().enumerate();
     agents.map(|(k, agent)| {
         before

@@ -11,12 +11,14 @@
 //! 2007, equations 35 and 36 (GGX).
 
 use super::CpuRenderer;
-use super::band::Band;
-use super::dice::Dice;
-use super::rays::{SEEN, Sight};
+use super::camera_rays::{PrimaryHit, SEEN};
+use super::sampler::PixelSampler;
 use super::shade::{GAP, LAYERS, MIRRORS, OFF_SURFACE_M, OPAQUE};
-use crate::light::{Exposure, Incoming, Lighting, Site, Source, beside_surface, display, sky};
-use crate::look::Look;
+use super::tile::ImageTile;
+use crate::light::{
+    Exposure, IncidentLight, LightSource, Lighting, ShadingPoint, display, room_lookup_point, sky,
+};
+use crate::material::ShadingMaterial;
 use dwell_scene::EntityId;
 use dwell_scene::bvh::Ray;
 use glam::{Vec2, Vec3};
@@ -42,25 +44,25 @@ const SUN_RADIUS: f32 = 0.004_65;
 
 /// What surfaces of one kind of ray may do.
 #[derive(Clone, Copy)]
-struct Path {
+struct PathState {
     /// Surfaces that may still throw light on.
     bounces: u32,
     mirrors: u32,
-    /// Of the camera's footprint, as for [`Sight`].
+    /// Of the camera's footprint, as for [`PrimaryHit`].
     depth: f32,
     per_length: f32,
     hidden: i32,
 }
 
 /// One band with its light.
-struct Tracer<'a> {
+struct PathTracer<'a> {
     renderer: &'a CpuRenderer,
-    band: &'a Band<'a>,
+    band: &'a ImageTile<'a>,
     lighting: &'a Lighting,
     exposure: Exposure,
 }
 
-impl Band<'_> {
+impl ImageTile<'_> {
     /// sRGB of a pixel with all light.
     pub(super) fn full_color(
         &self,
@@ -68,7 +70,7 @@ impl Band<'_> {
         (lighting, exposure): (&Lighting, Exposure),
         (column, row): (usize, usize),
     ) -> [u8; 3] {
-        let tracer = Tracer {
+        let tracer = PathTracer {
             renderer,
             band: self,
             lighting,
@@ -76,7 +78,7 @@ impl Band<'_> {
         };
         let mut sum = Vec3::ZERO;
         for sample in 0..SAMPLES {
-            let mut dice = Dice::new((column, row), sample);
+            let mut dice = PixelSampler::new((column, row), sample);
             let (x, y) = dice.pair();
             let place = |cell: usize, within: f32| (cell as f32 + within) / EDGE as f32;
             let image = Vec2::new(
@@ -84,7 +86,7 @@ impl Band<'_> {
                 row as f32 + place(sample / EDGE, y),
             );
             if let Some((ray, per_length)) = self.rays.ray(image) {
-                let path = Path {
+                let path = PathState {
                     bounces: 1,
                     mirrors: MIRRORS,
                     depth: 0.0,
@@ -94,20 +96,20 @@ impl Band<'_> {
                 sum += display(tracer.light_along(ray, path, &mut dice));
             }
         }
-        crate::color::Srgb::tables().encode3((sum / SAMPLES as f32).to_array())
+        crate::color::SrgbTables::tables().encode3((sum / SAMPLES as f32).to_array())
     }
 }
 
-impl Tracer<'_> {
+impl PathTracer<'_> {
     /// What comes along a ray, in units of display white.
-    fn light_along(&self, mut ray: Ray, path: Path, dice: &mut Dice) -> Vec3 {
+    fn light_along(&self, mut ray: Ray, path: PathState, dice: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
             let Some(hit) = self.band.scene.closest_excluding(&ray, SEEN, path.hidden) else {
                 break;
             };
             let distance = hit.distance_m;
-            let sight = Sight {
+            let sight = PrimaryHit {
                 point: ray.origin + ray.direction * distance,
                 direction: ray.direction,
                 depth: path.depth + distance * path.per_length,
@@ -135,29 +137,29 @@ impl Tracer<'_> {
     /// What a surface sends back along the ray that met it, and how much of what lies behind it hides.
     fn surface(
         &self,
-        (sight, distance_m): (&Sight, f32),
+        (sight, distance_m): (&PrimaryHit, f32),
         weights: (f32, f32),
-        path: Path,
-        dice: &mut Dice,
+        path: PathState,
+        dice: &mut PixelSampler,
     ) -> (Vec3, f32) {
         let (renderer, state) = (self.renderer, self.band.state);
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
-        let skin = renderer.skin_at(&self.band.rays, state, sight, position);
+        let skin = renderer.surface_at_point(&self.band.rays, state, sight, position);
         let (facing, smooth) = renderer.normals(&skin, sight, position, weights);
         let off = sight.point + facing * OFF_SURFACE_M;
         if skin.look.mirror && path.mirrors > 0 {
-            let seen = Facet {
+            let seen = Microfacet {
                 facet: facing,
                 facing,
             };
             let light = self.reflected(sight, off, seen, path, dice);
             return (skin.color * light, skin.opacity);
         }
-        let site = Site {
+        let site = ShadingPoint {
             point: sight.point,
             normal: smooth,
             // Not behind where a short ray comes from.
-            looked_up: beside_surface(
+            room_lookup: room_lookup_point(
                 sight.point,
                 facing,
                 sight.direction * (distance_m * NEAR).min(1.0),
@@ -166,7 +168,7 @@ impl Tracer<'_> {
         };
         let fixed = renderer.house_light();
         if path.bounces == 0 {
-            let incoming: Incoming<2> = self.lighting.incoming(fixed, self.exposure, &site);
+            let incoming: IncidentLight<2> = self.lighting.incoming(fixed, self.exposure, &site);
             let light = incoming.arriving(|source| {
                 renderer.arrives(self.band.scene, self.lighting, source, (off, facing))
             });
@@ -179,31 +181,33 @@ impl Tracer<'_> {
                     return;
                 }
                 sum += match source {
-                    Source::Room => self.gathered(off, smooth, path, dice),
+                    LightSource::Room => self.indirect_light(off, smooth, path, dice),
                     _ if self.arrives(source, (off, facing), smooth, dice) => light,
                     _ => Vec3::ZERO,
                 };
             });
         let mut shown = skin.color * sum;
         if path.mirrors > 0 && reflects(skin.look) {
-            let facet = dice.facet(smooth, skin.look.roughness);
+            let facet = dice.sample_microfacet(smooth, skin.look.roughness);
             let share = reflectance(skin.look, skin.color, -sight.direction.dot(facet));
-            let seen = Facet { facet, facing };
+            let seen = Microfacet { facet, facing };
             let light = self.reflected(sight, off, seen, path, dice);
             shown = shown * (Vec3::ONE - share) * (1.0 - skin.look.metallic) + light * share;
         }
-        shown += self.band.glow(renderer, skin.look.emission, sight.id);
+        shown += self
+            .band
+            .emitted_light(renderer, skin.look.emission, sight.id);
         (shown, skin.opacity)
     }
 
     /// What comes from where a ray is thrown to by a mirror.
     fn reflected(
         &self,
-        sight: &Sight,
+        sight: &PrimaryHit,
         off: Vec3,
-        Facet { facet, facing }: Facet,
-        path: Path,
-        dice: &mut Dice,
+        Microfacet { facet, facing }: Microfacet,
+        path: PathState,
+        dice: &mut PixelSampler,
     ) -> Vec3 {
         let direction = sight.direction.reflect(facet).normalize_or(facing);
         // A facet that throws light into its own surface would show that; the surface's mirror image stands for it.
@@ -212,7 +216,7 @@ impl Tracer<'_> {
         } else {
             sight.direction.reflect(facing).normalize_or(facing)
         };
-        let path = Path {
+        let path = PathState {
             mirrors: path.mirrors - 1,
             // Patterns in a mirror are as fine as if they stood behind it.
             depth: sight.depth,
@@ -223,14 +227,20 @@ impl Tracer<'_> {
     }
 
     /// What other surfaces throw on one of reflectance 1.
-    fn gathered(&self, off: Vec3, normal: Vec3, path: Path, dice: &mut Dice) -> Vec3 {
-        let path = Path {
+    fn indirect_light(
+        &self,
+        off: Vec3,
+        normal: Vec3,
+        path: PathState,
+        dice: &mut PixelSampler,
+    ) -> Vec3 {
+        let path = PathState {
             bounces: path.bounces - 1,
             mirrors: 0,
             hidden: EntityId::VOID.0,
             ..path
         };
-        let one = |dice: &mut Dice| {
+        let one = |dice: &mut PixelSampler| {
             let direction = dice.cosine(normal);
             let light = self.light_along(Ray::new(off, direction), path, dice);
             light.min(Vec3::splat(MOST_GATHERED))
@@ -242,33 +252,33 @@ impl Tracer<'_> {
     /// Whether light arrives from a place in its source.
     fn arrives(
         &self,
-        source: Source,
+        source: LightSource,
         (off, facing): (Vec3, Vec3),
         normal: Vec3,
-        dice: &mut Dice,
+        dice: &mut PixelSampler,
     ) -> bool {
         let (renderer, scene) = (self.renderer, self.band.scene);
         let (target, hidden) = match source {
-            Source::None | Source::Room => return true,
-            Source::Sun => {
-                let to_sun = dice.cone(renderer.house_light().sun.0, SUN_RADIUS);
+            LightSource::None | LightSource::Room => return true,
+            LightSource::Sun => {
+                let to_sun = dice.uniform_cone(renderer.house_light().sun.0, SUN_RADIUS);
                 return renderer.sky_reaches(scene, off, to_sun);
             }
-            Source::Open => {
+            LightSource::Sky => {
                 let direction = dice.cosine(normal);
                 // What lies below throws back what the ground is taken to.
                 return direction.y < 0.0 || renderer.sky_reaches(scene, off, direction);
             }
-            Source::Window(position) => {
+            LightSource::Window(position) => {
                 let window = &renderer.house_light().windows[position as usize];
                 let (x, y) = dice.pair();
                 let [across, along] = window.half;
                 let on_pane = window.center + across * (2.0 * x - 1.0) + along * (2.0 * y - 1.0);
                 (on_pane + window.normal * BEFORE_FRAME_M, EntityId::VOID.0)
             }
-            Source::Caster(position) => {
+            LightSource::Caster(position) => {
                 let caster = self.lighting.caster(position);
-                let (pick, within) = (dice.pair(), dice.ball());
+                let (pick, within) = (dice.pair(), dice.uniform_ball());
                 let place = self.lighting.place_in_caster(caster, off, pick, within);
                 (place, caster.entity)
             }
@@ -281,19 +291,19 @@ impl Tracer<'_> {
 
 /// The normal of a facet, and that of the flat triangle that it is on, towards the viewer.
 #[derive(Clone, Copy)]
-struct Facet {
+struct Microfacet {
     facet: Vec3,
     facing: Vec3,
 }
 
 /// Whether a surface reflects more than rays can show.
-fn reflects(look: &Look) -> bool {
+fn reflects(look: &ShadingMaterial) -> bool {
     look.metallic > 0.0 || look.roughness < DULL
 }
 
 /// What a surface of a colour reflects, by the cosine between the viewer and the facet: metals by their colour, others the less the
 /// rougher they are.
-fn reflectance(look: &Look, color: Vec3, cosine: f32) -> Vec3 {
+fn reflectance(look: &ShadingMaterial, color: Vec3, cosine: f32) -> Vec3 {
     let left = 1.0 - cosine.clamp(0.0, 1.0);
     let grazing = left * left * left * left * left;
     let schlick = |straight: Vec3| straight + (Vec3::ONE - straight) * grazing;

@@ -1,9 +1,9 @@
 //! The light that rooms throw back.
 
-use super::air::Air;
-use super::grid::RoomGrid;
-use super::openings::{Passage, Window, openings};
-use crate::look::Look;
+use super::openings::{LightPortal, WindowLight, openings};
+use super::outdoor::OutdoorLight;
+use super::room_grid::RoomGrid;
+use crate::material::ShadingMaterial;
 use crate::texture::Textures;
 use dwell_scene::{House, Id, RoomId, State};
 use glam::Vec3;
@@ -36,21 +36,21 @@ const ROUNDS: usize = 24;
 pub(crate) struct HouseLight {
     pub(crate) grid: RoomGrid,
     /// The open air, if the house knows its own.
-    pub(crate) air: Option<Air>,
+    pub(crate) air: Option<OutdoorLight>,
     /// Direction to the sun, and its illuminance behind a pane across its rays, lx.
     pub(crate) sun: (Vec3, Vec3),
     /// By room.
-    pub(crate) windows: Vec<Window>,
+    pub(crate) windows: Vec<WindowLight>,
     /// Where the windows of each room start, and where the last end. Shape (room + 1,).
     pub(super) window_starts: Vec<usize>,
-    passages: Vec<Passage>,
+    passages: Vec<LightPortal>,
     /// Shape (room,).
-    rooms: Vec<Walls>,
+    rooms: Vec<RoomReflectance>,
 }
 
 /// The surfaces around a room.
 #[derive(Clone, Copy, Debug)]
-struct Walls {
+struct RoomReflectance {
     /// m².
     area_m2: f32,
     /// Mean reflectance for red, green and blue.
@@ -67,9 +67,9 @@ pub(crate) struct RoomLight {
 }
 
 impl HouseLight {
-    pub(crate) fn new(house: &House, looks: &[Look], textures: &Textures) -> Self {
+    pub(crate) fn new(house: &House, looks: &[ShadingMaterial], textures: &Textures) -> Self {
         let grid = RoomGrid::new(house);
-        let air = house.sky.as_ref().map(Air::new);
+        let air = house.sky.as_ref().map(OutdoorLight::new);
         let luminance = |outwards: Vec3| {
             let Some(air) = &air else {
                 return [1.0, GROUND].map(|part| Vec3::splat(part * SKY_LUMINANCE_CD_M2));
@@ -78,8 +78,8 @@ impl HouseLight {
             let mean = |lx: Vec3, share: f32| lx / (PI * share.max(0.05));
             let up = 0.5 + 0.5 * outwards.y;
             [
-                mean(air.skylight(outwards), up),
-                mean(air.groundlight(outwards), 1.0 - up),
+                mean(air.sky_illuminance(outwards), up),
+                mean(air.ground_illuminance(outwards), 1.0 - up),
             ]
         };
         let (mut windows, passages) = openings(house, &grid, luminance);
@@ -92,7 +92,7 @@ impl HouseLight {
         let rooms = house
             .rooms
             .ids()
-            .map(|id| Walls::new(house, id, looks, textures))
+            .map(|id| RoomReflectance::new(house, id, looks, textures))
             .collect();
         Self {
             grid,
@@ -107,7 +107,7 @@ impl HouseLight {
 
     /// The windows of a room.
     #[inline]
-    pub(crate) fn windows_of(&self, room: usize) -> &[Window] {
+    pub(crate) fn windows_of(&self, room: usize) -> &[WindowLight] {
         &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
@@ -135,7 +135,7 @@ impl HouseLight {
             let area_m2 = window.area_m2();
             let outwards = -window.normal;
             let lx = if let Some(air) = &self.air {
-                air.skylight(outwards) + air.groundlight(outwards)
+                air.sky_illuminance(outwards) + air.ground_illuminance(outwards)
             } else {
                 // A vertical window sees half the sky, a roof window all of it.
                 let up = 0.5 + 0.5 * outwards.y;
@@ -148,14 +148,14 @@ impl HouseLight {
             flux_lm[window.room] +=
                 (lx * PANE_TRANSMITTANCE + behind_pane_lx * (across * share)) * area_m2;
         }
-        let taken = |walls: &Walls| walls.area_m2 * (Vec3::ONE - walls.reflectance);
+        let taken = |walls: &RoomReflectance| walls.area_m2 * (Vec3::ONE - walls.reflectance);
         let areas: Vec<f32> = self
             .passages
             .iter()
             .zip(self.openness(house, state))
             .map(|(passage, open)| passage.area_m2 * (CLOSED_DOOR + (1.0 - CLOSED_DOOR) * open))
             .collect();
-        let all = exchanged(
+        let all = exchange_light(
             flux_lm,
             &self.rooms.iter().map(taken).collect::<Vec<_>>(),
             &self
@@ -179,7 +179,11 @@ impl HouseLight {
 
 /// The mean illuminance of rooms that exchange light, lx. `flux_lm`: what is sent into each; `taken_m2`: how much of it a unit of
 /// illuminance leaves on its walls; `openings`: between which two, and how large, m².
-fn exchanged(flux_lm: &[Vec3], taken_m2: &[Vec3], openings: &[([usize; 2], f32)]) -> Vec<Vec3> {
+fn exchange_light(
+    flux_lm: &[Vec3],
+    taken_m2: &[Vec3],
+    openings: &[([usize; 2], f32)],
+) -> Vec<Vec3> {
     let mut given = taken_m2.to_vec();
     for ([a, b], area) in openings {
         given[*a] += *area;
@@ -204,8 +208,8 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-impl Walls {
-    fn new(house: &House, id: RoomId, looks: &[Look], textures: &Textures) -> Self {
+impl RoomReflectance {
+    fn new(house: &House, id: RoomId, looks: &[ShadingMaterial], textures: &Textures) -> Self {
         let room = &house.rooms[id];
         let floor = room.area_m2().max(0.5);
         let height = (room.ceiling_y - room.floor_y).clamp(1.0, 20.0);
@@ -241,7 +245,7 @@ impl Walls {
 }
 
 /// The mean colour of a material, in linear light.
-fn mean_color(look: &Look, textures: &Textures) -> Vec3 {
+fn mean_color(look: &ShadingMaterial, textures: &Textures) -> Vec3 {
     let base = Vec3::from_array(look.base);
     look.texture().map_or(base, |texture| {
         let whole = textures.sample(texture, glam::Vec2::ZERO, 1e12);
@@ -263,7 +267,7 @@ mod tests {
             Vec3::new(5.0, 8.0, 9.0),
         ];
         for area in [0.2, 1.8, 10.0] {
-            let mean = exchanged(&flux, &taken, &[([0, 1], area), ([1, 2], area)]);
+            let mean = exchange_light(&flux, &taken, &[([0, 1], area), ([1, 2], area)]);
             let all = mean.iter().zip(&taken).map(|(e, a)| *e * *a).sum::<Vec3>();
             let sent: Vec3 = flux.iter().sum();
             assert!(
@@ -273,7 +277,7 @@ mod tests {
             assert!(mean[0].x > mean[1].x && mean[1].x > mean[2].x, "{mean:?}");
         }
         // The exact solution for two rooms: E2 / E1 = S / (A (1 - r) + S).
-        let mean = exchanged(&flux[..2], &taken[..2], &[([0, 1], 1.8)]);
+        let mean = exchange_light(&flux[..2], &taken[..2], &[([0, 1], 1.8)]);
         assert!(
             (mean[1].x / mean[0].x - 1.8 / 13.8).abs() < 1e-4,
             "{mean:?}"

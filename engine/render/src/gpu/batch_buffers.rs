@@ -1,21 +1,21 @@
 //! Memory for one batch under way; kept for later ones, and only grown.
 
+use super::batch::GpuBatch;
 use super::device::Gpu;
-use super::raster::Atlas;
-use super::rows::Batch;
+use super::raster::RenderAtlas;
 use crate::error::RenderError;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// A buffer that grows.
 #[derive(Debug)]
-struct Grown {
+struct GrowableBuffer {
     what: &'static str,
     usage: wgpu::BufferUsages,
     buffer: Option<wgpu::Buffer>,
 }
 
-impl Grown {
+impl GrowableBuffer {
     fn new(what: &'static str, usage: wgpu::BufferUsages) -> Self {
         Self {
             what,
@@ -51,13 +51,13 @@ impl Grown {
 
 /// Memory that the processor writes and the adapter copies from. It is written by one batch at a time.
 #[derive(Debug)]
-struct Upload {
+struct StagingBuffer {
     buffer: Option<wgpu::Buffer>,
     /// Whether it can be written: not while an adapter may read it.
     is_mapped: Arc<AtomicBool>,
 }
 
-impl Upload {
+impl StagingBuffer {
     fn new() -> Self {
         Self {
             buffer: None,
@@ -106,35 +106,35 @@ impl Upload {
 
 /// The buffers of one batch.
 #[derive(Debug)]
-pub(super) struct Slot {
-    pub(super) batch: Batch,
-    upload: Upload,
-    rows: Grown,
-    lenses: Grown,
-    seen: Grown,
-    images: Grown,
-    back: Grown,
+pub(super) struct BatchBuffers {
+    pub(super) batch: GpuBatch,
+    upload: StagingBuffer,
+    rows: GrowableBuffer,
+    lenses: GrowableBuffer,
+    seen: GrowableBuffer,
+    images: GrowableBuffer,
+    back: GrowableBuffer,
     group: Option<wgpu::BindGroup>,
     /// The rows alone, for drawing.
     pub(super) rows_group: Option<wgpu::BindGroup>,
-    pub(super) atlas: Option<Atlas>,
+    pub(super) atlas: Option<RenderAtlas>,
 }
 
 /// Bytes of a pixel's first hit.
 pub(super) const SEEN_BYTES: u64 = 16;
 
-impl Slot {
+impl BatchBuffers {
     pub(super) fn new() -> Self {
         use wgpu::BufferUsages as Use;
         let written = Use::STORAGE | Use::COPY_DST;
         Self {
-            batch: Batch::default(),
-            upload: Upload::new(),
-            rows: Grown::new("worlds", written),
-            lenses: Grown::new("lenses", written),
-            seen: Grown::new("first hits", Use::STORAGE),
-            images: Grown::new("images", Use::STORAGE | Use::COPY_SRC),
-            back: Grown::new("images", Use::MAP_READ | Use::COPY_DST),
+            batch: GpuBatch::default(),
+            upload: StagingBuffer::new(),
+            rows: GrowableBuffer::new("worlds", written),
+            lenses: GrowableBuffer::new("lenses", written),
+            seen: GrowableBuffer::new("first hits", Use::STORAGE),
+            images: GrowableBuffer::new("images", Use::STORAGE | Use::COPY_SRC),
+            back: GrowableBuffer::new("images", Use::MAP_READ | Use::COPY_DST),
             group: None,
             rows_group: None,
             atlas: None,
@@ -189,7 +189,7 @@ impl Slot {
             }));
         }
         if !self.batch.drawing.sheets.is_empty() {
-            let atlas = Atlas::reserve(self.atlas.take(), gpu, self.batch.drawing.size)?;
+            let atlas = RenderAtlas::reserve(self.atlas.take(), gpu, self.batch.drawing.size)?;
             self.atlas = Some(atlas);
         }
         Ok(())

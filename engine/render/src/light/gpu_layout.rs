@@ -1,9 +1,9 @@
 //! Light as rows of four numbers, as `gpu/shaders/light.wgsl` reads it.
 
-use super::air::Air;
-use super::openings::Window;
-use super::rooms::HouseLight;
-use super::{Exposure, Lamp, Lighting};
+use super::indirect::HouseLight;
+use super::openings::WindowLight;
+use super::outdoor::OutdoorLight;
+use super::{Exposure, Lighting, PointLamp};
 use dwell_scene::bvh::flat::PackedRow;
 use glam::Vec3;
 
@@ -25,7 +25,7 @@ fn split(vector: Vec3) -> (Vec3, f32) {
     (vector / length, length)
 }
 
-fn window_rows(window: &Window) -> [PackedRow; 6] {
+fn window_rows(window: &WindowLight) -> [PackedRow; 6] {
     let [(across, width), (along, height)] = window.half.map(split);
     let [up, down] = window.luminance_cd_m2;
     [
@@ -38,7 +38,7 @@ fn window_rows(window: &Window) -> [PackedRow; 6] {
     ]
 }
 
-fn air_rows(air: &Air) -> Vec<PackedRow> {
+fn air_rows(air: &OutdoorLight) -> Vec<PackedRow> {
     let mut rows = vec![
         row(air.to_sun, air.per_lx),
         row(air.sun_lx, 0.0),
@@ -103,7 +103,7 @@ fn tagged(place: Vec3, tag: u32) -> PackedRow {
     [x, y, z, tag]
 }
 
-fn lamp_rows(lamp: &Lamp) -> [PackedRow; 4] {
+fn lamp_rows(lamp: &PointLamp) -> [PackedRow; 4] {
     let (axis, cutoff, exponent) = lamp.cone.unwrap_or((Vec3::ZERO, -2.0, 0.0));
     [
         tagged(lamp.position, lamp.entity as u32),

@@ -2,8 +2,8 @@
 //!
 //! A chandelier's bulbs or the quarters of a line hang so near to one another that one ray tells for all of them.
 
-use super::lamps::Lamp;
-use super::rooms::luminance;
+use super::indirect::luminance;
+use super::lamps::PointLamp;
 use dwell_scene::House;
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ const ASIDE_M: f32 = 0.6;
 
 /// Lamps of one thing in one room.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Caster {
+pub(crate) struct LampCluster {
     /// The middle of its lamps by their light.
     pub(crate) center: Vec3,
     /// Where its lamps start among all, and how many there are.
@@ -33,22 +33,22 @@ pub(crate) struct Caster {
 /// to another past a thing.
 ///
 /// What light cannot leave, such as a lamp above the ceiling that it shall light, casts no shadows: then its light passes all.
-pub(crate) fn assign(
+pub(crate) fn cluster_lamps(
     house: &House,
-    lamps: &mut [Lamp],
-    casters: &mut Vec<Caster>,
+    lamps: &mut [PointLamp],
+    casters: &mut Vec<LampCluster>,
     passes: impl Fn(Vec3, Vec3, i32) -> bool,
 ) {
     casters.clear();
     let mut first = 0;
     for group in lamps.chunk_by_mut(|a, b| (a.room, a.entity) == (b.room, b.entity)) {
-        let weight = |lamp: &Lamp| luminance(lamp.flux_lm).max(1e-6);
+        let weight = |lamp: &PointLamp| luminance(lamp.flux_lm).max(1e-6);
         let all: f32 = group.iter().map(weight).sum();
         let middle = group
             .iter()
             .fold(Vec3::ZERO, |sum, lamp| sum + lamp.position * weight(lamp));
         let center = middle / all;
-        let caster = Caster {
+        let caster = LampCluster {
             center,
             lamps: (first, group.len()),
             entity: group[0].entity,

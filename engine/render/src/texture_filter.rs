@@ -1,7 +1,7 @@
 //! What a pixel covers of an image that is seen at an angle, and how it is averaged.
 
-use crate::surfaces::Standing;
 use crate::texture::{Textures, level_of};
+use crate::triangle_table::PosedTriangle;
 use glam::{Vec2, Vec3, Vec4};
 
 /// The least cosine between ray and normal at which a pixel's footprint still grows.
@@ -14,7 +14,7 @@ const STRAIGHT: f32 = 1e-3;
 
 /// What a pixel covers of an image: a strip of samples, each about as wide as long.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Footprint {
+pub(crate) struct TextureFootprint {
     /// Samples, at least 1.
     taps: u32,
     /// From one to the next, in texture coordinates.
@@ -23,7 +23,7 @@ pub(crate) struct Footprint {
     texels: f32,
 }
 
-impl Footprint {
+impl TextureFootprint {
     /// Of a ray that is `width_m` wide where it meets a triangle. `size`: pixels of the image, across and down.
     ///
     /// # Source
@@ -32,7 +32,7 @@ impl Footprint {
     /// by the inverse of the cosine. The samples: `GL_EXT_texture_filter_anisotropic`, after P. S. Heckbert, *Fundamentals of
     /// Texture Mapping and Image Warping*, 1989; their places are the middles of equal parts of the longer axis.
     #[inline]
-    pub(crate) fn new(standing: &Standing, direction: Vec3, width_m: f32, size: Vec2) -> Self {
+    pub(crate) fn new(standing: &PosedTriangle, direction: Vec3, width_m: f32, size: Vec2) -> Self {
         let normal = standing.normal;
         let along = normal.dot(direction);
         let ahead = direction - normal * along;

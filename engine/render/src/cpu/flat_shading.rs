@@ -10,12 +10,12 @@
 )]
 
 use super::CpuRenderer;
-use super::band::Band;
-use super::rays::{LANES, Packet, Seen};
-use crate::color::Srgb;
-use crate::footprint::GRAZING;
-use crate::surfaces::{SLOW, Standing, coordinate};
-use crate::texture::{Corners, Image, level_of};
+use super::camera_rays::{CameraPacket, LANES, PacketView};
+use super::tile::ImageTile;
+use crate::color::SrgbTables;
+use crate::texture::{BilinearTaps, MipImage, level_of};
+use crate::texture_filter::GRAZING;
+use crate::triangle_table::{PosedTriangle, SLOW, coordinate};
 use dwell_scene::simd::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
@@ -35,37 +35,37 @@ pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
 /// Where the pixels of a packet find their colour on an image. Shapes (lane,) and (corner, lane).
 #[repr(C, align(64))]
 #[derive(Debug, PartialEq)]
-struct Places {
+struct TexelLookups {
     level: [u32; LANES],
     texels: [[u32; LANES]; 4],
     weights: [[f32; LANES]; 2],
 }
 
 /// Finds the places of pixels that see one triangle.
-struct Locate<'a> {
-    seen: Seen<'a>,
-    standing: &'a Standing,
-    image: &'a Image,
+struct TexelLocator<'a> {
+    seen: PacketView<'a>,
+    standing: &'a PosedTriangle,
+    image: &'a MipImage,
     /// Of the triangle, texels of the largest level for each m².
     density: f32,
     /// See [`crate::camera::Camera::pixel_area`].
     pixel_area: (f32, f32),
 }
 
-impl SimdKernel for Locate<'_> {
-    type Output = Places;
+impl SimdKernel for TexelLocator<'_> {
+    type Output = TexelLookups;
 
     #[inline(always)]
-    fn run(self) -> Places {
-        let Seen {
+    fn run(self) -> TexelLookups {
+        let PacketView {
             rays,
             hits,
             per_length,
         } = self.seen;
         let [x, y, z] = &rays.direction;
-        let Standing { uv, normal } = self.standing;
+        let PosedTriangle { uv, normal } = self.standing;
         let (start, (fixed, growing)) = (rays.origin, self.pixel_area);
-        let mut places = Places {
+        let mut places = TexelLookups {
             level: [0; LANES],
             texels: [[0; LANES]; 4],
             weights: [[0.0; LANES]; 2],
@@ -88,7 +88,7 @@ impl SimdKernel for Locate<'_> {
                 coordinate(&uv[0], px, py, pz),
                 coordinate(&uv[1], px, py, pz),
             );
-            let Corners { texels, weights } = self.image.place(level, u, v);
+            let BilinearTaps { texels, weights } = self.image.place(level, u, v);
             places.level[k] = level;
             for corner in 0..4 {
                 places.texels[corner][k] = texels[corner];
@@ -101,16 +101,16 @@ impl SimdKernel for Locate<'_> {
     }
 }
 
-impl Band<'_> {
+impl ImageTile<'_> {
     /// Colours the pixels, of those in `lanes`, that see nothing or something opaque; returns the others.
     pub(super) fn plain_colors(
         &self,
         renderer: &CpuRenderer,
-        packet: &Packet,
+        packet: &CameraPacket,
         mut lanes: u64,
         bytes: &mut [[u8; 3]; LANES],
     ) -> u64 {
-        let Some(seen) = packet.seen_from_one_point() else {
+        let Some(seen) = packet.packet_view() else {
             return lanes;
         };
         let mut others = 0;
@@ -144,17 +144,17 @@ impl Band<'_> {
             }
             let pose = renderer.surfaces.pose(instance, self.state);
             let image = renderer.textures.image(texture);
-            let places = SimdLevel::best().run(Locate {
+            let places = SimdLevel::best().run(TexelLocator {
                 seen,
-                standing: &triangle.stand(pose),
+                standing: &triangle.posed(pose),
                 image,
                 density: triangle.density * look.texels,
                 pixel_area: self.rays.pixel_area,
             });
             let base = Vec3::from_array(look.base).extend(1.0);
-            let srgb = Srgb::tables();
+            let srgb = SrgbTables::tables();
             for lane in bits(same) {
-                let corners = Corners {
+                let corners = BilinearTaps {
                     texels: std::array::from_fn(|corner| places.texels[corner][lane]),
                     weights: std::array::from_fn(|axis| places.weights[axis][lane]),
                 };
@@ -169,8 +169,8 @@ impl Band<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::surfaces::coordinate;
     use crate::texture::Textures;
+    use crate::triangle_table::coordinate;
     use dwell_scene::bvh::{InstanceSet, PacketHits, RayPacket, SceneBvh, TriangleBvh};
     use dwell_scene::random::RandomKey;
     use dwell_scene::{House, HouseData, Texture};
@@ -210,7 +210,7 @@ mod tests {
                 per_length[k] = stream.range(0.4, 1.0);
             }
             let mut hits = PacketHits::new();
-            let seen = super::super::rays::SEEN;
+            let seen = super::super::camera_rays::SEEN;
             scene.closest_packet(&rays, seen, None, &mut hits);
             let row = |stream: &mut dwell_scene::random::RandomStream| {
                 (stream.direction() * stream.range(0.01, 9.0)).extend(stream.range(-2.0, 2.0))
@@ -221,13 +221,13 @@ mod tests {
             let density = stream.range(0.0, 90_000.0);
             let (fixed, growing) = (0.0, 1.0 / 64.0_f32.powi(2));
             let places = |level: SimdLevel| {
-                level.run(Locate {
-                    seen: Seen {
+                level.run(TexelLocator {
+                    seen: PacketView {
                         rays: &rays,
                         hits: &hits,
                         per_length: &per_length,
                     },
-                    standing: &Standing { uv, normal },
+                    standing: &PosedTriangle { uv, normal },
                     image,
                     density,
                     pixel_area: (fixed, growing),
@@ -244,7 +244,7 @@ mod tests {
                 let area = (fixed + growing * depth * depth) * per_length[k] / slope;
                 let level = level_of(area * density).min(image.last_level);
                 let [u, v] = uv.map(|row| coordinate(&row, x, y, z));
-                let Corners { texels, weights } = image.place(level, u, v);
+                let BilinearTaps { texels, weights } = image.place(level, u, v);
                 assert_eq!(found.level[k], level);
                 assert_eq!(found.texels.map(|corner| corner[k]), texels);
                 assert_eq!(found.weights.map(|axis| axis[k]), weights);

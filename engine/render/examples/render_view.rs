@@ -12,7 +12,7 @@
 )]
 
 use dwell_render::{
-    Camera, Channels, CpuRenderer, Frame, FrameMut, Map, Preset, View, semantic_classes,
+    Camera, CpuRenderer, Frame, FrameMut, ImageChannels, Preset, StoreyMap, View, semantic_classes,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -30,7 +30,7 @@ struct World {
 
 impl World {
     fn shot(&self, view: &View) -> Frame {
-        let mut frame = Frame::new(&view.camera, Channels::ALL);
+        let mut frame = Frame::new(&view.camera, ImageChannels::ALL);
         let threads = Threads::default();
         self.renderer
             .render(
@@ -45,7 +45,7 @@ impl World {
     }
 
     /// Whole passes over the views until two seconds are over; views a second of the fastest pass.
-    fn rate(&self, views: &[View], channels: Channels, threads: usize) -> f64 {
+    fn rate(&self, views: &[View], channels: ImageChannels, threads: usize) -> f64 {
         let mut frames: Vec<Frame> = views
             .iter()
             .map(|view| Frame::new(&view.camera, channels))
@@ -108,8 +108,8 @@ fn main() {
     if size > 0 {
         pictures(&house, &world, &views, size, out);
     }
-    let rgb_depth_ids = Channels::default();
-    let only_depth = Channels {
+    let rgb_depth_ids = ImageChannels::default();
+    let only_depth = ImageChannels {
         rgb: false,
         instance: false,
         ..rgb_depth_ids
@@ -205,7 +205,7 @@ fn pictures(house: &House, world: &World, views: &[View], size: u32, out: &Path)
         save(&out.join(format!("view{k:02}.png")), size, size, &strip);
     }
     for level in house.levels.ids() {
-        if let Ok(mut map) = Map::new(house, level, 800) {
+        if let Ok(mut map) = StoreyMap::new(house, level, 800) {
             let (width, height) = (map.view.camera.width(), map.view.camera.height());
             for (name, preset) in [("flat", Preset::Flat), ("lit", Preset::Lit)] {
                 map.view.preset = preset;

@@ -3,11 +3,11 @@
 use super::cull::Culler;
 use super::device::Gpu;
 use super::occluders::occluders;
-use super::raster::Drawable;
-use crate::color::Srgb;
+use super::raster::RasterScene;
+use crate::color::SrgbTables;
 use crate::cpu::{CpuRenderer, SEEN};
 use crate::error::RenderError;
-use crate::semantic::Classes;
+use crate::semantic::ClassSet;
 use dwell_scene::bvh::TriangleBvh;
 use dwell_scene::bvh::flat::{BLOCK_ROWS, FlatBvh, NO_LINK, PackedRow};
 use dwell_scene::rays::{BODY_PIECES, body_trees};
@@ -27,7 +27,7 @@ pub(super) struct HouseBuffers {
     /// As `stack`, for the deepest mesh of an instance.
     pub(super) mesh_stack: usize,
     /// For the raster path.
-    pub(super) drawable: Drawable,
+    pub(super) drawable: RasterScene,
     /// Memory held, bytes.
     pub(super) bytes: u64,
 }
@@ -53,9 +53,9 @@ fn rows_of_words(words: impl Iterator<Item = u32>) -> Vec<PackedRow> {
 }
 
 /// Tables one behind the other, after the header.
-struct Tables(Vec<PackedRow>);
+struct TableOffsets(Vec<PackedRow>);
 
-impl Tables {
+impl TableOffsets {
     /// Appends a table and returns its first row.
     fn add(&mut self, rows: impl IntoIterator<Item = PackedRow>) -> u32 {
         let first = self.0.len() as u32;
@@ -106,14 +106,18 @@ impl HouseBuffers {
             ranges.push(range);
         }
         debug_assert_eq!(trees.len(), geometry.movable.len() + BODY_PIECES);
-        let mut tables = Tables(vec![[0; 4]; HEADER_ROWS]);
+        let mut tables = TableOffsets(vec![[0; 4]; HEADER_ROWS]);
         let (levels, images, texels) = cpu.textures.flat();
         let levels = tables.add(levels);
         let images = tables.add(images);
-        let looks = tables.add(cpu.looks.iter().flat_map(crate::look::Look::flat));
-        let classes = cpu.classes(Classes::Coarse).all();
+        let looks = tables.add(
+            cpu.looks
+                .iter()
+                .flat_map(crate::material::ShadingMaterial::flat),
+        );
+        let classes = cpu.classes(ClassSet::Coarse).all();
         let class_rows = tables.add(rows_of_words(classes.iter().map(|class| *class as u32)));
-        let (decode, encode) = Srgb::tables().entries();
+        let (decode, encode) = SrgbTables::tables().entries();
         let decode = tables.add(rows_of_words(decode.iter().map(|light| light.to_bits())));
         let steps = encode.as_chunks::<4>().0.iter();
         let encode = tables.add(rows_of_words(steps.map(|bytes| u32::from_le_bytes(*bytes))));
@@ -169,7 +173,7 @@ impl HouseBuffers {
             group,
             stack: fixed.stack,
             mesh_stack: trees.iter().map(|tree| tree.stack).max().unwrap_or(0),
-            drawable: Drawable {
+            drawable: RasterScene {
                 culler,
                 meshes: ranges,
                 culls: true,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 /// A thing in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sighting {
+pub struct VisibleObject {
     /// What it is.
     pub entity: EntityId,
     /// Pixels that show it.
@@ -21,11 +21,11 @@ pub struct Sighting {
 /// All that an instance image shows, by id, without void.
 ///
 /// `instance`: shape (height, `width`).
-pub fn sightings(instance: &[i32], width: u32) -> Vec<Sighting> {
-    let mut all: BTreeMap<i32, Sighting> = BTreeMap::new();
+pub fn sightings(instance: &[i32], width: u32) -> Vec<VisibleObject> {
+    let mut all: BTreeMap<i32, VisibleObject> = BTreeMap::new();
     for (row, ids) in (0_u32..).zip(instance.chunks(width.max(1) as usize)) {
         for (column, id) in (0_u32..).zip(ids).filter(|(_, id)| **id != 0) {
-            let thing = all.entry(*id).or_insert(Sighting {
+            let thing = all.entry(*id).or_insert(VisibleObject {
                 entity: EntityId(*id),
                 pixels: 0,
                 first: [column, row],

@@ -16,7 +16,7 @@ const OUTSIDE: u16 = u16::MAX;
 
 /// The rooms of one storey from above.
 #[derive(Debug)]
-pub(super) struct Storey {
+pub(super) struct StoreyGrid {
     /// Heights between which the storey is meant, m.
     pub(super) low_y: f32,
     pub(super) high_y: f32,
@@ -27,7 +27,7 @@ pub(super) struct Storey {
 /// All storeys.
 #[derive(Debug)]
 pub(crate) struct RoomGrid {
-    pub(super) storeys: Vec<Storey>,
+    pub(super) storeys: Vec<StoreyGrid>,
     /// The corner of the first cell, (x, z), m.
     pub(super) corner: Vec2,
     pub(super) cells_per_m: f32,
@@ -96,7 +96,7 @@ impl RoomGrid {
             for _ in 0..REACH {
                 grid.grow(&mut cells);
             }
-            grid.storeys.push(Storey {
+            grid.storeys.push(StoreyGrid {
                 low_y: low_y - 0.3,
                 high_y: high_y + 0.3,
                 cells,

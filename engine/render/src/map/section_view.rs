@@ -1,11 +1,11 @@
 //! Pictures of what lies below a level cut: each ray begins where it passes the cut.
 
-use super::{Map, walls};
+use super::{StoreyMap, walls};
 use crate::camera::Camera;
-use crate::color::Srgb;
-use crate::cpu::{CpuRenderer, Job};
+use crate::color::SrgbTables;
+use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
-use crate::frame::{Channels, Frame, FrameMut, View};
+use crate::frame::{Frame, FrameMut, ImageChannels, View};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
@@ -25,16 +25,16 @@ const LIGHT: Vec3 = Vec3::new(-0.35, 0.72, 0.6);
 const AMBIENT: f32 = 0.5;
 
 /// What colours are made from.
-const BESIDE: Channels = Channels {
+const BESIDE: ImageChannels = ImageChannels {
     depth: true,
     instance: true,
     normals: true,
-    ..Channels::NONE
+    ..ImageChannels::NONE
 };
 
 /// A level cut through a storey.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cut<'a> {
+pub(super) struct SectionView<'a> {
     /// From above, without roll: then a row of the image meets the cut at one depth.
     pub(super) view: View,
     /// Height of the cut, m.
@@ -42,10 +42,10 @@ pub(super) struct Cut<'a> {
     /// What lies deeper belongs to another storey and is left out, m.
     pub(super) floor_y: f32,
     /// The map on which walls at the cut are looked up.
-    pub(super) plan: &'a Map,
+    pub(super) plan: &'a StoreyMap,
 }
 
-impl Cut<'_> {
+impl SectionView<'_> {
     /// The picture in flat colours, darker where a surface turns away, with dark walls at the cut. Shape (height, width, 3).
     pub(super) fn picture(
         &self,
@@ -124,9 +124,9 @@ impl Cut<'_> {
                     camera: camera.with_range(near_m, camera.far_m())?,
                     ..self.view
                 };
-                jobs.push(Job {
+                jobs.push(RenderJob {
                     rows: Some((first, end)),
-                    ..Job::new(scene, state, view, part)
+                    ..RenderJob::new(scene, state, view, part)
                 });
             }
             first = end;
@@ -136,7 +136,7 @@ impl Cut<'_> {
 
     /// Colours by how surfaces stand to the light; paper where nothing of the storey is.
     fn shade(&self, first_row: u32, renderer: &CpuRenderer, beside: &Frame, rgb: &mut [u8]) {
-        let srgb = Srgb::tables();
+        let srgb = SrgbTables::tables();
         let house = renderer.house();
         let pose = &self.view.world_from_camera;
         let light = LIGHT.normalize_or_zero();
@@ -217,7 +217,7 @@ mod tests {
         let house = Arc::new(house);
         let (scene, state) = (RayScene::new(house.clone()), State::new(&house));
         let renderer = CpuRenderer::new(&house);
-        let map = Map::new(&house, LevelId(0), 90).unwrap();
+        let map = StoreyMap::new(&house, LevelId(0), 90).unwrap();
         let turned = space::rotation_from_yaw_pitch(0.4, -0.9);
         let eye = Vec3::new(4.0, 2.0, 2.0) - turned * Vec3::NEG_Z * 12.0;
         let beside = View::new(
@@ -225,7 +225,7 @@ mod tests {
             Pose::new(eye, turned),
         );
         for view in [map.view, beside] {
-            let cut = Cut {
+            let cut = SectionView {
                 view,
                 level_y: map.cut_y,
                 floor_y: -0.5,

@@ -1,6 +1,6 @@
 //! What each triangle of a house looks like, in the order in which hits name triangles.
 
-use crate::look::Look;
+use crate::material::ShadingMaterial;
 use dwell_scene::bvh::flat::PackedRow;
 use dwell_scene::interrupt::PollEvery;
 use dwell_scene::rays::{BODY_PIECES, body_meshes};
@@ -14,7 +14,7 @@ const TRIANGLES_PER_CHECK: usize = 1 << 12;
 /// One triangle; a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Triangle {
+pub(crate) struct TriangleShading {
     /// Maps a point on the triangle to its texture coordinates.
     uv: [Vec4; 2],
     /// Geometric normal by the winding, unit length; world space, or part space for parts that move.
@@ -26,18 +26,18 @@ pub(crate) struct Triangle {
 
 /// A triangle where it stands, in world space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Standing {
-    /// See [`Triangle::uv`].
+pub(crate) struct PosedTriangle {
+    /// See [`TriangleShading::uv`].
     pub(crate) uv: [Vec4; 2],
     pub(crate) normal: Vec3,
 }
 
-impl Triangle {
+impl TriangleShading {
     /// As it stands with what it moves with.
     #[inline]
-    pub(crate) fn stand(&self, pose: Option<&Pose>) -> Standing {
+    pub(crate) fn posed(&self, pose: Option<&Pose>) -> PosedTriangle {
         let Some(pose) = pose else {
-            return Standing {
+            return PosedTriangle {
                 uv: self.uv,
                 normal: self.normal,
             };
@@ -46,14 +46,14 @@ impl Triangle {
             let gradient = pose.rotation * row.truncate();
             gradient.extend(row.w - gradient.dot(pose.position))
         });
-        Standing {
+        PosedTriangle {
             uv,
             normal: pose.rotation * self.normal,
         }
     }
 }
 
-impl Standing {
+impl PosedTriangle {
     /// Texture coordinates at a point on the triangle.
     #[inline]
     pub(crate) fn uv(&self, point: Vec3) -> Vec2 {
@@ -65,7 +65,7 @@ impl Standing {
     }
 }
 
-impl Standing {
+impl PosedTriangle {
     /// How texture coordinates change along a way on the triangle.
     #[inline]
     pub(crate) fn uv_along(&self, way: Vec3) -> Vec2 {
@@ -84,14 +84,14 @@ pub(crate) fn coordinate(row: &Vec4, x: f32, y: f32, z: f32) -> f32 {
     ((row.x * x + row.y * y) + row.z * z) + row.w
 }
 
-/// Marks a triangle whose colour needs more than [`Surfaces::quick`].
+/// Marks a triangle whose colour needs more than [`TriangleTable::quick`].
 pub(crate) const SLOW: u8 = 0;
 
 /// Tables over all triangles: static ones first, then those of parts that move, once for all that look alike.
 #[derive(Debug)]
-pub(crate) struct Surfaces {
+pub(crate) struct TriangleTable {
     /// Shape (triangle,).
-    triangles: Vec<Triangle>,
+    triangles: Vec<TriangleShading>,
     /// Normals of the corners, packed; equal where the mesh has none. Shape (triangle,).
     corner_normals: Vec<[u32; 3]>,
     /// R, G, B of plain colours and 255, or [`SLOW`] as the last byte. Shape (triangle,).
@@ -104,8 +104,8 @@ pub(crate) struct Surfaces {
     bodies: [u32; BODY_PIECES],
 }
 
-impl Surfaces {
-    pub(crate) fn new(house: &House, looks: &[Look]) -> Self {
+impl TriangleTable {
+    pub(crate) fn new(house: &House, looks: &[ShadingMaterial]) -> Self {
         let geometry = house.geometry();
         let count = geometry.static_triangles.len();
         let mut all = Self {
@@ -157,10 +157,16 @@ impl Surfaces {
     }
 
     /// A triangle of agents' bodies. Pieces are only stretched along the axes of their symmetry, so that normals stay.
-    fn add_body(&mut self, mesh: &Mesh, triangle: usize, material: usize, looks: &[Look]) {
+    fn add_body(
+        &mut self,
+        mesh: &Mesh,
+        triangle: usize,
+        material: usize,
+        looks: &[ShadingMaterial],
+    ) {
         let [a, b, c] = mesh.corners(triangle);
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        self.triangles.push(Triangle {
+        self.triangles.push(TriangleShading {
             uv: [Vec4::ZERO; 2],
             normal,
             density: 0.0,
@@ -180,7 +186,7 @@ impl Surfaces {
         placed: &PlacedMesh,
         map: &Affine3A,
         triangle: usize,
-        looks: &[Look],
+        looks: &[ShadingMaterial],
     ) {
         let mesh = &house.meshes[placed.mesh];
         let materials = match placed.owner {
@@ -200,7 +206,7 @@ impl Surfaces {
         };
         let normal = (area_normal * mirror).normalize_or_zero().as_vec3();
         let (uv, density) = texture_map(corners, area_normal, texture_coordinates(mesh, triangle));
-        self.triangles.push(Triangle {
+        self.triangles.push(TriangleShading {
             uv,
             normal,
             density,
@@ -258,7 +264,7 @@ impl Surfaces {
     }
 
     #[inline]
-    pub(crate) fn triangle(&self, position: usize) -> &Triangle {
+    pub(crate) fn triangle(&self, position: usize) -> &TriangleShading {
         &self.triangles[position]
     }
 
@@ -267,13 +273,13 @@ impl Surfaces {
         self.quick[position]
     }
 
-    /// The interpolated normal at a hit, in the space of [`Triangle::normal`]; not of unit length.
+    /// The interpolated normal at a hit, in the space of [`TriangleShading::normal`]; not of unit length.
     pub(crate) fn smooth_normal(&self, position: usize, u: f32, v: f32) -> Vec3 {
         let [a, b, c] = self.corner_normals[position].map(unpack_normal);
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// From the space of [`Triangle::normal`] to the world; nothing where that is the world, or turned as the world is.
+    /// From the space of [`TriangleShading::normal`] to the world; nothing where that is the world, or turned as the world is.
     #[inline]
     pub(crate) fn pose<'a>(&self, instance: Option<u32>, state: &'a State) -> Option<&'a Pose> {
         let part = self.part_of(instance?)?;
@@ -419,14 +425,14 @@ mod tests {
         let wide = corners.map(Vec3::as_dvec3);
         let area_normal = (wide[1] - wide[0]).cross(wide[2] - wide[0]);
         let (map, _) = texture_map(wide, area_normal, uv);
-        let triangle = Triangle {
+        let triangle = TriangleShading {
             uv: map,
             normal: Vec3::Y,
             density: 0.0,
             material: 0,
         };
         for (corner, expected) in corners.into_iter().zip(uv) {
-            let found = triangle.stand(None).uv(corner);
+            let found = triangle.posed(None).uv(corner);
             assert!(
                 (found - (expected - Vec2::new(7.0, -4.0))).length() < 1e-4,
                 "{found} {expected}"
@@ -439,9 +445,9 @@ mod tests {
     #[test]
     fn a_room_has_one_texture_unit_a_metre_and_normals_to_the_inside() {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
-        let mut looks = Look::all(&house, &Textures::new(&house));
-        looks.push(Look::body());
-        let surfaces = Surfaces::new(&house, &looks);
+        let mut looks = ShadingMaterial::all(&house, &Textures::new(&house));
+        looks.push(ShadingMaterial::body());
+        let surfaces = TriangleTable::new(&house, &looks);
         assert_eq!(surfaces.bodies[0], 12);
         for (k, source) in house.geometry().static_triangles.iter().enumerate() {
             let triangle = surfaces.triangle(surfaces.position(None, k as u32));

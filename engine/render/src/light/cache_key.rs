@@ -1,12 +1,12 @@
 //! What the light of a world was made from, so that it is made anew only when some of that has changed.
 
-use super::rooms::HouseLight;
+use super::indirect::HouseLight;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, State};
 
 /// All that the light of a world depends on, but what never changes about its house.
 #[derive(Clone, Copy)]
-pub(crate) struct Inputs<'a> {
+pub(crate) struct LightingInputs<'a> {
     pub(crate) house: &'a House,
     pub(crate) fixed: &'a HouseLight,
     /// What stands in the way of light.
@@ -15,7 +15,7 @@ pub(crate) struct Inputs<'a> {
     pub(crate) state: &'a State,
 }
 
-impl Inputs<'_> {
+impl LightingInputs<'_> {
     /// Tells the bits of all of it.
     fn each(&self, mut tell: impl FnMut(u32)) {
         let places = (0..).map_while(|instance| self.scene.world_from_mesh(instance));
@@ -50,19 +50,19 @@ impl Inputs<'_> {
 
 /// The inputs of the light that was made last.
 #[derive(Debug, Default)]
-pub(crate) struct Kept {
+pub(crate) struct LightingCacheKey {
     hash: Option<u64>,
     words: Vec<u32>,
 }
 
-impl Kept {
+impl LightingCacheKey {
     /// Whether inputs of this hash may be the ones.
     pub(crate) fn has(&self, hash: u64) -> bool {
         self.hash == Some(hash)
     }
 
     /// Whether these are the ones, to the bit; notes them otherwise. `hash`: theirs.
-    pub(crate) fn renew(&mut self, inputs: &Inputs<'_>, hash: u64) -> bool {
+    pub(crate) fn renew(&mut self, inputs: &LightingInputs<'_>, hash: u64) -> bool {
         if self.has(hash) {
             let (mut is_same, mut known) = (true, self.words.iter());
             inputs.each(|word| is_same &= known.next() == Some(&word));
@@ -93,7 +93,7 @@ mod tests {
             asked.set(asked.get() + 1);
             true
         };
-        let inputs = Inputs {
+        let inputs = LightingInputs {
             house: cpu.house(),
             fixed: cpu.house_light(),
             scene,

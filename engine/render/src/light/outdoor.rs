@@ -12,7 +12,7 @@ const STEPS: [u32; 2] = [16, 32];
 
 /// Sun, sky and ground.
 #[derive(Debug)]
-pub(crate) struct Air {
+pub(crate) struct OutdoorLight {
     pub(super) dome: SkyDome,
     /// Unit length.
     pub(crate) to_sun: Vec3,
@@ -41,7 +41,7 @@ fn basis(d: Vec3) -> [f32; 9] {
     ]
 }
 
-impl Air {
+impl OutdoorLight {
     pub(crate) fn new(sky: &Sky) -> Self {
         let dome = SkyDome::new(sky);
         let [rows, columns] = STEPS;
@@ -66,9 +66,9 @@ impl Air {
             ground_lx: Vec3::ZERO,
             per_lx: 1.0,
         };
-        let level = air.skylight(Vec3::Y) + air.sun_lx * air.to_sun.y.max(0.0);
+        let level = air.sky_illuminance(Vec3::Y) + air.sun_lx * air.to_sun.y.max(0.0);
         air.ground_lx = level * GROUND;
-        air.per_lx = tone::exposure_per_lx(super::rooms::luminance(level));
+        air.per_lx = tone::exposure_per_lx(super::indirect::luminance(level));
         air
     }
 
@@ -77,7 +77,7 @@ impl Air {
     /// # Source
     /// R. Ramamoorthi, P. Hanrahan, "An Efficient Representation for Irradiance Environment Maps", SIGGRAPH 2001: the
     /// cosine weighs the bands by pi, 2 pi / 3 and pi / 4 (equation 8).
-    pub(crate) fn skylight(&self, normal: Vec3) -> Vec3 {
+    pub(crate) fn sky_illuminance(&self, normal: Vec3) -> Vec3 {
         let weight = |k: usize| match k {
             0 => PI,
             1..=3 => TAU / 3.0,
@@ -89,7 +89,7 @@ impl Air {
     }
 
     /// Illuminance by the ground on a surface that faces along `normal`, lx: the share of what it sees.
-    pub(crate) fn groundlight(&self, normal: Vec3) -> Vec3 {
+    pub(crate) fn ground_illuminance(&self, normal: Vec3) -> Vec3 {
         self.ground_lx * (0.5 - 0.5 * normal.y)
     }
 
@@ -100,7 +100,7 @@ impl Air {
     }
 
     /// What is seen where nothing is, cd/m² times pi.
-    pub(crate) fn behind_everything(&self, direction: Vec3) -> Vec3 {
+    pub(crate) fn background_luminance(&self, direction: Vec3) -> Vec3 {
         if direction.y >= 0.0 {
             self.dome.luminance(direction) * PI
         } else {
@@ -129,7 +129,7 @@ mod tests {
                 ..Daytime::default()
             })
             .unwrap();
-            let air = Air::new(&sky);
+            let air = OutdoorLight::new(&sky);
             let most = sky.diffuse_lx;
             for normal in [Vec3::Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z] {
                 let count = 20_000_u16;
@@ -144,10 +144,10 @@ mod tests {
                     .sum();
                 let exact = sum * (TAU / f32::from(count));
                 // Nine harmonics keep irradiance to some percent (the paper: 1 % on average of smooth skies).
-                let off = (air.skylight(normal) - exact).abs().max_element();
+                let off = (air.sky_illuminance(normal) - exact).abs().max_element();
                 assert!(off < 0.06 * most, "{hour_h} {normal}: {off} of {most}");
             }
-            let below = air.skylight(Vec3::NEG_Y).max_element();
+            let below = air.sky_illuminance(Vec3::NEG_Y).max_element();
             assert!(below < 0.06 * most, "{below}");
         }
     }

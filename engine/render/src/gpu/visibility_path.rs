@@ -3,9 +3,9 @@
 use super::device::Gpu;
 use super::renderer::GpuRenderer;
 use crate::camera::Camera;
-use crate::cpu::{CpuRenderer, Job};
+use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
-use crate::frame::{Channels, Frame, View};
+use crate::frame::{Frame, ImageChannels, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State, space};
@@ -15,7 +15,7 @@ use std::time::Instant;
 
 /// How an adapter finds what each pixel sees first. All images are made from that in one way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Path {
+pub enum VisibilityPath {
     /// A kernel walks the trees of `cpu`, ray by ray.
     Compute,
     /// Triangles are drawn, those that cannot be seen left out; rays decide at edges. Cameras other than pinholes go the way of
@@ -23,7 +23,7 @@ pub enum Path {
     Raster,
 }
 
-impl Path {
+impl VisibilityPath {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Compute, Self::Raster];
 
@@ -38,20 +38,20 @@ impl Path {
 
 /// Views a second of each path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PathSpeeds {
-    /// Of [`Path::Compute`].
+pub struct VisibilityPathSpeeds {
+    /// Of [`VisibilityPath::Compute`].
     pub compute_views_per_s: f64,
-    /// Of [`Path::Raster`].
+    /// Of [`VisibilityPath::Raster`].
     pub raster_views_per_s: f64,
 }
 
-impl PathSpeeds {
+impl VisibilityPathSpeeds {
     /// The quicker one.
-    pub fn best(&self) -> Path {
+    pub fn best(&self) -> VisibilityPath {
         if self.raster_views_per_s > self.compute_views_per_s {
-            Path::Raster
+            VisibilityPath::Raster
         } else {
-            Path::Compute
+            VisibilityPath::Compute
         }
     }
 }
@@ -61,7 +61,7 @@ const VIEWS: usize = 16;
 const EDGE: u32 = 64;
 const ROUNDS: usize = 3;
 
-impl PathSpeeds {
+impl VisibilityPathSpeeds {
     /// Measures both over views in the rooms of a house, as it stands at the start: the best of three rounds each, after one
     /// that compiles.
     ///
@@ -84,22 +84,22 @@ impl PathSpeeds {
             let center = house.geometry().static_bvh.bounds().center();
             rooms.get(k % rooms.len().max(1)).copied().unwrap_or(center)
         };
-        let wanted = Channels {
+        let wanted = ImageChannels {
             depth: true,
-            ..Channels::NONE
+            ..ImageChannels::NONE
         };
         let mut frames: Vec<Frame> = (0..VIEWS).map(|_| Frame::new(&camera, wanted)).collect();
-        let mut speed = |path: Path| {
+        let mut speed = |path: VisibilityPath| {
             let renderer = GpuRenderer::new(gpu.clone(), tables.clone(), path)?;
             let mut best = f64::INFINITY;
             for round in 0..=ROUNDS {
-                let mut jobs: Vec<Job<'_>> = frames
+                let mut jobs: Vec<RenderJob<'_>> = frames
                     .iter_mut()
                     .enumerate()
                     .map(|(k, frame)| {
                         let turn = space::rotation_from_yaw_pitch(k as f32 * 2.4, -0.1);
                         let view = View::new(camera, Pose::new(eye(k), turn));
-                        Job::new(&scene, &state, view, frame.as_mut())
+                        RenderJob::new(&scene, &state, view, frame.as_mut())
                     })
                     .collect();
                 let start = Instant::now();
@@ -111,8 +111,8 @@ impl PathSpeeds {
             Ok::<f64, RenderError>(VIEWS as f64 / best)
         };
         Ok(Self {
-            compute_views_per_s: speed(Path::Compute)?,
-            raster_views_per_s: speed(Path::Raster)?,
+            compute_views_per_s: speed(VisibilityPath::Compute)?,
+            raster_views_per_s: speed(VisibilityPath::Raster)?,
         })
     }
 }
