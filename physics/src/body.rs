@@ -1,10 +1,10 @@
 //! The rigid bodies of a world: making them, and reading where they are.
 
-use crate::contact::{Dress, Entry};
+use crate::contact::{ColliderEntry, ContactProperties};
 use crate::convert::from_rapier;
-use crate::engine::Engine;
-use crate::inertia::Inertia;
-use crate::model::{BodyPlan, PhysicsModel, Piece};
+use crate::engine::RapierWorld;
+use crate::inertia::BodyInertia;
+use crate::model::{BodyPlan, CollisionPiece, PhysicsModel};
 use dwell_scene::material::PairContact;
 use dwell_scene::{House, ObjectId, PartId, Pose, State, Velocity};
 use rapier3d::dynamics::{
@@ -16,13 +16,13 @@ use rapier3d::pipeline::{ActiveEvents, ActiveHooks};
 
 /// A rigid body of a world.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Body {
+pub(crate) struct BodyHandle {
     pub(crate) handle: RigidBodyHandle,
 }
 
 /// What a body may do at present.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub(crate) enum Hold {
+pub(crate) enum BodyStatus {
     /// It moves.
     Free,
     /// It could not be freed at the start: it stands for good.
@@ -34,15 +34,15 @@ pub(crate) enum Hold {
 /// rapier's type for a body under a hold. What stands is kinematic with no velocity, not fixed: rapier 0.36.1 loses count
 /// of its islands when a body becomes fixed before the first step. It is not moved by position either: the velocity that
 /// rapier derives from two equal rotations is not exactly zero, and would keep what touches it awake.
-pub(crate) fn body_type(hold: Hold) -> RigidBodyType {
+pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
     match hold {
-        Hold::Free => RigidBodyType::Dynamic,
-        Hold::Frozen | Hold::Latched => RigidBodyType::KinematicVelocityBased,
+        BodyStatus::Free => RigidBodyType::Dynamic,
+        BodyStatus::Frozen | BodyStatus::Latched => RigidBodyType::KinematicVelocityBased,
     }
 }
 
 /// What is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
-pub(crate) fn dress(
+pub(crate) fn set_contact_properties(
     builder: ColliderBuilder,
     (own, special): (PairContact, bool),
     filtered: bool,
@@ -62,18 +62,18 @@ pub(crate) fn dress(
 
 /// Inserts everything that never moves and returns the entries.
 pub(crate) fn insert_statics(
-    engine: &mut Engine,
+    engine: &mut RapierWorld,
     model: &PhysicsModel,
-    values: Dress<'_>,
-) -> Vec<Entry> {
+    values: ContactProperties<'_>,
+) -> Vec<ColliderEntry> {
     let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut entries = Vec::with_capacity(model.statics.len());
     for piece in &model.statics {
-        let entry = Entry::new(piece.owner, None, values.table.surface(&piece.cover));
+        let entry = ColliderEntry::new(piece.owner, None, values.table.surface(&piece.cover));
         let builder = ColliderBuilder::new(piece.shape.clone())
             .position(piece.place)
             .density(0.0);
-        let builder = dress(builder, values.rule(&entry), false, entries.len());
+        let builder = set_contact_properties(builder, values.rule(&entry), false, entries.len());
         engine
             .colliders
             .insert_with_parent(builder, ground, &mut engine.bodies);
@@ -84,12 +84,12 @@ pub(crate) fn insert_statics(
 
 /// Inserts a rigid body with its colliders.
 pub(crate) fn insert_body(
-    engine: &mut Engine,
+    engine: &mut RapierWorld,
     plan: &BodyPlan,
-    values: Dress<'_>,
-    entries: &mut Vec<Entry>,
-    place: BodyPlace<'_>,
-) -> Body {
+    values: ContactProperties<'_>,
+    entries: &mut Vec<ColliderEntry>,
+    place: BodyPlacement<'_>,
+) -> BodyHandle {
     let mut builder = RigidBodyBuilder::new(body_type(place.hold))
         .pose(place.world_from_body)
         .can_sleep(place.sleeping_allowed)
@@ -103,7 +103,7 @@ pub(crate) fn insert_body(
     let handle = engine.bodies.insert(builder);
     for piece in &plan.pieces {
         let surface = values.table.surface(&piece.cover);
-        let entry = Entry::new(piece.owner, Some(place.index), surface);
+        let entry = ColliderEntry::new(piece.owner, Some(place.index), surface);
         let factor = plan.factor_of(piece, place.mass_factors);
         let density = density(piece, factor, place.inertia.as_ref());
         let builder = ColliderBuilder::new(piece.shape.clone())
@@ -111,25 +111,26 @@ pub(crate) fn insert_body(
             .density(density)
             .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
             .contact_force_event_threshold(place.event_force_n);
-        let builder = dress(builder, values.rule(&entry), place.asks, entries.len());
+        let builder =
+            set_contact_properties(builder, values.rule(&entry), place.asks, entries.len());
         engine
             .colliders
             .insert_with_parent(builder, handle, &mut engine.bodies);
         entries.push(entry);
     }
-    Body { handle }
+    BodyHandle { handle }
 }
 
 /// Where and how a body starts.
 #[derive(Clone, Copy)]
-pub(crate) struct BodyPlace<'a> {
+pub(crate) struct BodyPlacement<'a> {
     pub(crate) index: u32,
     pub(crate) world_from_body: RapierPose,
-    pub(crate) hold: Hold,
+    pub(crate) hold: BodyStatus,
     /// What its parts' densities are multiplied with. Shape (part,).
     pub(crate) mass_factors: &'a [f32],
     /// What a law makes of its mass and inertia.
-    pub(crate) inertia: Option<Inertia>,
+    pub(crate) inertia: Option<BodyInertia>,
     pub(crate) sleeping_allowed: bool,
     pub(crate) event_force_n: f32,
     /// Whether rapier asks which of its pairs meet: leaves do; free bodies only against agents, who ask themselves, and where there
@@ -138,7 +139,11 @@ pub(crate) struct BodyPlace<'a> {
 }
 
 /// The density of a collider, kg/m3: none where the body's mass and inertia are given as a whole.
-pub(crate) fn density(piece: &Piece, mass_factor: f32, inertia: Option<&Inertia>) -> f32 {
+pub(crate) fn density(
+    piece: &CollisionPiece,
+    mass_factor: f32,
+    inertia: Option<&BodyInertia>,
+) -> f32 {
     match inertia {
         Some(_) => 0.0,
         None => piece.density_kg_m3 * mass_factor,
@@ -146,18 +151,21 @@ pub(crate) fn density(piece: &Piece, mass_factor: f32, inertia: Option<&Inertia>
 }
 
 /// Changes a collider's contact values in place.
-pub(crate) fn redress(collider: &mut Collider, (own, special): (PairContact, bool)) {
+pub(crate) fn update_collider_properties(
+    collider: &mut Collider,
+    (own, special): (PairContact, bool),
+) {
     let mut hooks = collider.active_hooks();
     hooks.set(ActiveHooks::MODIFY_SOLVER_CONTACTS, special);
     collider.set_friction(own.friction);
     collider.set_restitution(own.restitution);
     collider.set_active_hooks(hooks);
-    look_anew(collider);
+    invalidate_contacts(collider);
 }
 
 /// Makes rapier compute a collider's contacts anew: it keeps the values, and the arms to the centres of mass, of contacts that
 /// hardly move, but not where a collider's groups changed.
-pub(crate) fn look_anew(collider: &mut Collider) {
+pub(crate) fn invalidate_contacts(collider: &mut Collider) {
     let groups = collider.solver_groups();
     collider.set_solver_groups(InteractionGroups::none());
     collider.set_solver_groups(groups);
@@ -205,7 +213,12 @@ pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>>
 }
 
 /// Writes a body's poses and velocities into the state.
-pub(crate) fn write_parts(engine: &Engine, plan: &BodyPlan, body: &Body, state: &mut State) {
+pub(crate) fn write_parts(
+    engine: &RapierWorld,
+    plan: &BodyPlan,
+    body: &BodyHandle,
+    state: &mut State,
+) {
     let Some(rigid) = engine.bodies.get(body.handle) else {
         return;
     };
@@ -236,7 +249,7 @@ pub(crate) fn place_of(
 }
 
 /// The handles of a body's colliders, in order.
-pub(crate) fn colliders<'a>(engine: &'a Engine, body: &Body) -> &'a [ColliderHandle] {
+pub(crate) fn colliders<'a>(engine: &'a RapierWorld, body: &BodyHandle) -> &'a [ColliderHandle] {
     engine
         .bodies
         .get(body.handle)

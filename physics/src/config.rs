@@ -71,7 +71,7 @@ impl Default for PhysicsConfig {
 
 /// A checked [`PhysicsConfig`] with what follows from it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Settings {
+pub(crate) struct ResolvedConfig {
     /// The numbers.
     pub(crate) config: PhysicsConfig,
     /// Length of a physics step, s.
@@ -173,9 +173,9 @@ impl PhysicsConfig {
         )
     }
 
-    pub(crate) fn build(&self) -> Result<Settings, PhysicsError> {
+    pub(crate) fn build(&self) -> Result<ResolvedConfig, PhysicsError> {
         self.check()?;
-        Ok(Settings {
+        Ok(ResolvedConfig {
             config: self.clone(),
             dt_s: 1.0 / self.physics_rate_hz,
             steps_per_control: (self.physics_rate_hz / self.control_rate_hz) as u32,

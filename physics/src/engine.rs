@@ -1,10 +1,10 @@
 //! rapier's parts in one place.
 
-use crate::config::Settings;
-use crate::contact::Kept;
-use crate::laid::Laid;
-use crate::laws::Compliance;
-use crate::softness;
+use crate::config::ResolvedConfig;
+use crate::contact::FrictionStorage;
+use crate::contact_compliance;
+use crate::laws::ContactCompliance;
+use crate::sleeping_cache::SleepingIslandCache;
 use crate::workspace::Workspace;
 use glam::Vec3;
 use rapier3d::dynamics::{
@@ -33,7 +33,7 @@ pub(crate) fn points(
 
 /// The simulation itself.
 #[derive(Clone)]
-pub(crate) struct Engine {
+pub(crate) struct RapierWorld {
     pub(crate) gravity: Vec3,
     parameters: IntegrationParameters,
     /// Runs of rapier in a physics step: 1, or as many as soft contacts need.
@@ -43,7 +43,7 @@ pub(crate) struct Engine {
     pub(crate) workspace: Workspace,
     /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
     lost: Vec<RigidBodyHandle>,
-    pub(crate) laid: Laid,
+    pub(crate) sleeping_cache: SleepingIslandCache,
     pub(crate) islands: IslandManager,
     pub(crate) broad_phase: BroadPhaseBvh,
     pub(crate) narrow_phase: NarrowPhase,
@@ -52,16 +52,16 @@ pub(crate) struct Engine {
     pub(crate) joints: ImpulseJointSet,
 }
 
-impl Engine {
-    pub(crate) fn new(settings: &Settings, gravity_m_s2: f32) -> Self {
+impl RapierWorld {
+    pub(crate) fn new(settings: &ResolvedConfig, gravity_m_s2: f32) -> Self {
         Self {
             gravity: Vec3::new(0.0, -gravity_m_s2, 0.0),
-            parameters: softness::rigid(settings),
+            parameters: contact_compliance::rigid(settings),
             runs: 1,
             soft: false,
             workspace: Workspace::new(),
             lost: Vec::new(),
-            laid: Laid::default(),
+            sleeping_cache: SleepingIslandCache::default(),
             islands: IslandManager::new(),
             broad_phase: BroadPhaseBvh::new(),
             narrow_phase: NarrowPhase::new(),
@@ -72,11 +72,15 @@ impl Engine {
     }
 
     /// Makes contacts give as a law says, or as hard as the rate allows.
-    pub(crate) fn soften(&mut self, settings: &Settings, compliance: Option<Compliance>) {
+    pub(crate) fn soften(
+        &mut self,
+        settings: &ResolvedConfig,
+        compliance: Option<ContactCompliance>,
+    ) {
         self.soft = compliance.is_some();
         (self.parameters, self.runs) = match compliance {
-            Some(compliance) => softness::soft(settings, compliance),
-            None => (softness::rigid(settings), 1),
+            Some(compliance) => contact_compliance::soft(settings, compliance),
+            None => (contact_compliance::rigid(settings), 1),
         };
     }
 
@@ -95,15 +99,15 @@ impl Engine {
     }
 
     /// How rapier keeps friction in contact points.
-    pub(crate) fn friction_kept(&self) -> Kept {
-        Kept {
+    pub(crate) fn friction_kept(&self) -> FrictionStorage {
+        FrictionStorage {
             by_patch: self.parameters.friction_model == FrictionModel::Simplified,
             once: self.runs == 1,
         }
     }
 
     /// Whether rapier runs several times in a physics step; contacts then tell of the last run.
-    pub(crate) fn runs_often(&self) -> bool {
+    pub(crate) fn has_multiple_runs(&self) -> bool {
         self.runs > 1
     }
 
@@ -131,7 +135,7 @@ impl Engine {
     }
 
     /// For how long of a step gravity acts on a body that hits something in it, s.
-    pub(crate) fn falls_for_s(&self, flies: bool) -> f32 {
+    pub(crate) fn free_fall_time_s(&self, flies: bool) -> f32 {
         self.parameters.dt - if flies { 0.5 * self.substep_s() } else { 0.0 }
     }
 
@@ -205,7 +209,7 @@ impl Engine {
     /// One physics step.
     ///
     /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time. What
-    /// flies freely (`flying`: [`Engine::in_free_flight`]) has half of one substep's gravity taken off before and added after:
+    /// flies freely (`flying`: [`RapierWorld::in_free_flight`]) has half of one substep's gravity taken off before and added after:
     /// then it follows its parabola exactly (the leapfrog method). What hit something in the step keeps what the contact made
     /// of its velocity. Returns what flew and hit something.
     pub(crate) fn step(
@@ -224,7 +228,7 @@ impl Engine {
         let (landed, flew): (Vec<RigidBodyHandle>, Vec<RigidBodyHandle>) =
             flying.into_iter().partition(hit);
         self.fall(&flew, 0.5);
-        self.tighten(&awake);
+        self.shrink_bounds(&awake);
         self.workspace.fit(awake.len());
         landed
     }

@@ -1,6 +1,6 @@
 //! Mass, centre of mass and inertia of a body.
 
-use crate::laws::Installed;
+use crate::laws::InstalledLaw;
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::{House, State};
 use glam::{Mat3, Vec3};
@@ -8,7 +8,7 @@ use rapier3d::dynamics::MassProperties;
 
 /// Mass, centre of mass and inertia of a body, in the body's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Inertia {
+pub(crate) struct BodyInertia {
     pub(crate) mass_kg: f32,
     /// The centre of mass, m.
     pub(crate) center: Vec3,
@@ -18,7 +18,7 @@ pub(crate) struct Inertia {
     pub(crate) gravity_scale: f32,
 }
 
-impl Inertia {
+impl BodyInertia {
     /// What a body's pieces have and its parts state in a world, with each part's density times its factor. Shape of
     /// `factors`: (part,).
     pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
@@ -55,18 +55,20 @@ pub(crate) fn altered(
     model: &PhysicsModel,
     state: &State,
     factors: &[Vec<f32>],
-    laws: &[Installed],
-) -> Vec<Option<Inertia>> {
+    laws: &[InstalledLaw],
+) -> Vec<Option<BodyInertia>> {
     let bodies = model.bodies.iter().zip(factors).enumerate();
     bodies
         .map(|(index, (plan, factor))| {
             if laws.is_empty() && !plan.states_inertia {
                 return None;
             }
-            let own = Inertia::of(&model.house, plan, state, factor);
+            let own = BodyInertia::of(&model.house, plan, state, factor);
             let mut changed = own;
             for installed in laws {
-                installed.law.weigh(index as u32, &mut changed);
+                installed
+                    .law
+                    .modify_mass_properties(index as u32, &mut changed);
             }
             (changed != own || plan.states_inertia).then_some(changed)
         })

@@ -22,44 +22,46 @@
 //! ```
 
 mod actions;
+mod agent_placement;
 mod agents;
 pub mod bases;
 mod body;
 mod config;
 mod contact;
+mod contact_compliance;
+mod control_step;
 mod convert;
-mod edit;
 mod engine;
 mod error;
+mod external_changes;
 mod inertia;
 mod joints;
-mod laid;
 pub mod laws;
 mod limits;
-mod lost;
 mod model;
 mod motors;
+mod non_finite;
+mod pair_reduction;
 mod parameters;
-mod placement;
 mod report;
-mod reset;
-mod resting;
-mod settling;
+mod set_state;
+mod settle_start;
+mod sleeping_cache;
 mod snapshot;
-mod softness;
 mod start;
-mod step;
 mod workspace;
 mod world;
 
-pub use actions::{Action, ActionCode, ActionOutcome, Grasp, Notice, Pointed, Target};
+pub use actions::{
+    Action, ActionCode, ActionOutcome, DelayedOutcome, Grasp, PointedTarget, Target,
+};
+pub use agent_placement::AgentPlacement;
 pub use agents::AgentControl;
 pub use config::{ContactFriction, PhysicsConfig};
-pub use contact::{ContactEvent, ContactKind, ContactPhase, MergedEvents, Toucher};
+pub use contact::{ContactEntity, ContactEvent, ContactKind, ContactPhase, MergedEvents};
 pub use error::PhysicsError;
 pub use model::PhysicsModel;
-pub use placement::AgentPlacement;
+pub use pair_reduction::PairCounts;
 pub use report::{FrozenObject, MovedAgent, MovedObject, PassingJoint, StartReport};
-pub use reset::{BodyState, JointState};
-pub use resting::PairCounts;
+pub use set_state::{BodyState, JointState};
 pub use world::PhysicsWorld;

@@ -2,7 +2,7 @@
 
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
-use crate::joints::{Joint, Tree};
+use crate::joints::{KinematicTree, PhysicsJoint};
 use crate::model::{PhysicsModel, shapes};
 use dwell_scene::interrupt;
 use dwell_scene::{House, ObjectId, State};
@@ -74,7 +74,7 @@ pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, Phy
     if pieces * pieces.saturating_sub(1) / 2 <= MANY_PAIRS {
         return Ok(Crowding::Few);
     }
-    let near = near_pairs(model, state)?;
+    let near = broad_phase_pairs(model, state)?;
     Ok(if near > MANY_PAIRS {
         Crowding::Many
     } else {
@@ -85,8 +85,8 @@ pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, Phy
 /// Whether joints that act on each other are few enough.
 pub(crate) fn check_trees(
     house: &House,
-    joints: &[Joint],
-    trees: &[Tree],
+    joints: &[PhysicsJoint],
+    trees: &[KinematicTree],
 ) -> Result<(), PhysicsError> {
     let Some(tree) = trees.iter().max_by_key(|tree| tree.joints.len()) else {
         return Ok(());
@@ -122,7 +122,7 @@ pub(crate) fn check_passing(
 }
 
 /// How many pairs of pieces rapier will keep as a world begins.
-fn near_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
+fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
     /// What stands belongs to one body.
     const STANDS: u32 = u32::MAX;
     let mut boxes: Vec<Aabb> = Vec::new();

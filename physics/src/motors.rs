@@ -1,17 +1,17 @@
 //! Motors under laws: what they follow and give changes in every physics step.
 
 use crate::joints;
-use crate::laws::{Installed, MotorStep};
+use crate::laws::{InstalledLaw, MotorStep};
 use crate::world::PhysicsWorld;
 use dwell_scene::{JointCommand, JointId, State};
 
 /// Whether a law changes what motors do between control steps.
-pub(crate) fn are_driven(laws: &[Installed]) -> bool {
+pub(crate) fn are_driven(laws: &[InstalledLaw]) -> bool {
     laws.iter().any(|installed| installed.law.drives())
 }
 
 /// What a joint's motor is told in this control step.
-pub(crate) fn told(state: &State, joint: JointId) -> JointCommand {
+pub(crate) fn commanded(state: &State, joint: JointId) -> JointCommand {
     let command = state.joint_command[joint];
     if command.is_finite() {
         command
@@ -33,7 +33,7 @@ impl PhysicsWorld {
             if articulation.servo.is_none() {
                 continue;
             }
-            let now = joints::stands(&self.engine, &joint, self.near[index]);
+            let now = joints::stands(&self.engine, &joint, self.joint_coordinates[index]);
             let (position, velocity) = (now.position as f32, now.velocity as f32);
             let motor = MotorStep {
                 joint: joint.id,
@@ -41,7 +41,7 @@ impl PhysicsWorld {
                 velocity,
                 dt_s: self.settings.dt_s,
             };
-            let mut command = told(state, joint.id);
+            let mut command = commanded(state, joint.id);
             for installed in &mut self.laws {
                 installed.law.drive(&motor, &mut command);
             }
@@ -50,7 +50,7 @@ impl PhysicsWorld {
                 joints::advance(joint.kind, &joint.values, command, None, now, (0.0, 0.0));
             if let Some(pull) = &mut pull {
                 for installed in &self.laws {
-                    installed.law.strengthen(joint.id, pull);
+                    installed.law.modify_motor(joint.id, pull);
                 }
             }
             // One that lets go wakes what it held, too.

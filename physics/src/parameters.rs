@@ -1,12 +1,12 @@
 //! Parameters that change while a world runs.
 
-use crate::agents::Grip;
-use crate::body::{self, Hold};
-use crate::contact::{ContactTable, Dress};
+use crate::agents::HeldObject;
+use crate::body::{self, BodyStatus};
+use crate::contact::{ContactProperties, ContactTable};
 use crate::error::PhysicsError;
-use crate::joints::{self, Stand};
+use crate::joints::{self, JointPlacement};
 use crate::laws;
-use crate::world::{PhysicsWorld, Weights};
+use crate::world::{BodyMasses, PhysicsWorld};
 use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
@@ -27,12 +27,12 @@ impl PhysicsWorld {
         self.check_room(state)?;
         let model = self.model.clone();
         let table = ContactTable::new(&model.house, state);
-        let weights = Weights::new(&model, state, &laws);
+        let weights = BodyMasses::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
         // What changes shapes, masses or joints is taken over by a step of no length, which looks at all contacts anew; what only
         // changes how things act from the next step on is not, so that a number set and set back leaves no trace.
         let mut changed = weights != self.weights || table.differs(&self.table);
-        let values = Dress {
+        let values = ContactProperties {
             house: &model.house,
             table: &table,
             laws: &laws,
@@ -65,7 +65,7 @@ impl PhysicsWorld {
             }
             let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
             let handle = self.bodies[index].handle;
-            let held = |grip: &Grip| grip.body as usize == index && grip.is_firm();
+            let held = |grip: &HeldObject| grip.body as usize == index && grip.is_firm();
             let held = self.grips.iter().any(held);
             if let Some(rigid) = self.engine.bodies.get_mut(handle) {
                 rigid.set_additional_mass_properties(properties, false);
@@ -98,7 +98,7 @@ impl PhysicsWorld {
                 longer = true;
             }
         }
-        longer |= self.keep_motion(state, &shifted);
+        longer |= self.preserve_part_motion(state, &shifted);
         let acts_anew = gravity != self.engine.gravity
             || laws.len() != self.laws.len()
             || laws
@@ -112,7 +112,7 @@ impl PhysicsWorld {
         self.applied.clone_from(&state.overrides);
         self.laws = laws;
         if changed || longer || acts_anew {
-            self.engine.wake_laid();
+            self.engine.wake_cached();
         }
         if changed {
             self.flush();
@@ -139,7 +139,7 @@ impl PhysicsWorld {
     }
 
     /// Bodies whose centre of mass has moved go on as their parts did. Returns whether joints move some of them.
-    fn keep_motion(&mut self, state: &State, shifted: &[usize]) -> bool {
+    fn preserve_part_motion(&mut self, state: &State, shifted: &[usize]) -> bool {
         let mut on_joints = false;
         for index in shifted {
             let plan = &self.model.bodies[*index];
@@ -149,13 +149,13 @@ impl PhysicsWorld {
                 rigid.recompute_mass_properties_from_colliders(&self.engine.colliders);
                 for collider in rigid.colliders() {
                     if let Some(collider) = self.engine.colliders.get_mut(*collider) {
-                        body::look_anew(collider);
+                        body::invalidate_contacts(collider);
                     }
                 }
             }
             if let Some(rigid) = self.engine.bodies.get_mut(handle)
                 && plan.joint.is_none()
-                && self.holds[*index] == Hold::Free
+                && self.holds[*index] == BodyStatus::Free
             {
                 let velocity = state.part_velocity[plan.root()];
                 let arm = rigid.center_of_mass() - rigid.position().translation;
@@ -167,14 +167,14 @@ impl PhysicsWorld {
 
     /// Moves what hangs on joints whose frames have changed; joints keep their positions and velocities.
     fn follow_lengths(&mut self, state: &mut State) {
-        let stands: Vec<Stand> = self
+        let stands: Vec<JointPlacement> = self
             .joints
             .iter()
-            .map(|joint| Stand {
+            .map(|joint| JointPlacement {
                 position: state.joint_position[joint.id],
                 velocity: state.joint_velocity[joint.id],
                 anew: true,
-                shut: self.holds[joint.child as usize] == Hold::Latched,
+                shut: self.holds[joint.child as usize] == BodyStatus::Latched,
             })
             .collect();
         for tree in &self.trees {
@@ -194,7 +194,12 @@ impl PhysicsWorld {
     }
 
     /// Gives a collider its contact values and density. Returns whether they were others before.
-    fn redress(&mut self, entry: usize, values: Dress<'_>, density: Option<f32>) -> bool {
+    fn redress(
+        &mut self,
+        entry: usize,
+        values: ContactProperties<'_>,
+        density: Option<f32>,
+    ) -> bool {
         // Colliders are inserted in the order of entries and never removed.
         let Some((collider, handle)) = self.engine.colliders.get_unknown_gen(entry as u32) else {
             return false;
@@ -213,7 +218,7 @@ impl PhysicsWorld {
         }
         if let Some(collider) = self.engine.colliders.get_mut(handle) {
             if !same_rule {
-                body::redress(collider, rule);
+                body::update_collider_properties(collider, rule);
             }
             if let Some(density) = density
                 && !same_density

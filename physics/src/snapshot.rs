@@ -5,19 +5,22 @@
 //! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
 //! that a world built this way is the same, bit for bit.
 
-use crate::actions::Shove;
-use crate::agents::{self, Grip, Loose};
-use crate::body::Hold;
+use crate::actions::OngoingPush;
+use crate::agents::{self, HeldObject, PassiveVelocity};
+use crate::body::BodyStatus;
 use crate::config::PhysicsConfig;
 use crate::contact::rolling;
-use crate::contact::{ContactTable, Dress, Excluded, Hooks, MergedEvents, Ongoing};
-use crate::engine::Engine;
+use crate::contact::{
+    CollisionExclusions, ContactHooks, ContactProperties, ContactTable, ContactTracker,
+    MergedEvents,
+};
+use crate::engine::RapierWorld;
 use crate::error::PhysicsError;
-use crate::joints::{self, Drives, Pull};
-use crate::laid::Laid;
-use crate::laws::{self, Installed};
+use crate::joints::{self, HandDrives, JointActuation};
+use crate::laws::{self, InstalledLaw};
 use crate::limits::Crowding;
-use crate::world::{Assembly, PhysicsWorld, Weights, assemble, pose_of};
+use crate::sleeping_cache::SleepingIslandCache;
+use crate::world::{AssembledWorld, BodyMasses, PhysicsWorld, assemble, pose_of};
 use dwell_scene::columnar;
 use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentId, Id, State};
@@ -36,43 +39,43 @@ const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
 /// What this crate remembers between steps.
 #[derive(Clone, Serialize, Deserialize)]
-struct Memory {
+struct WorldMemory {
     tick: u64,
-    holds: Vec<Hold>,
-    loose: Vec<Loose>,
-    excluded: Excluded,
-    grips: Vec<Grip>,
-    parting: Vec<(u32, AgentId)>,
-    drives: Drives,
-    shoves: Vec<Shove>,
-    pulls: Vec<Option<Pull>>,
-    ongoing: Ongoing,
-    laid: Laid,
+    holds: Vec<BodyStatus>,
+    passive_velocities: Vec<PassiveVelocity>,
+    excluded: CollisionExclusions,
+    grips: Vec<HeldObject>,
+    released_overlapping: Vec<(u32, AgentId)>,
+    drives: HandDrives,
+    ongoing_pushes: Vec<OngoingPush>,
+    pulls: Vec<Option<JointActuation>>,
+    contact_tracker: ContactTracker,
+    sleeping_cache: SleepingIslandCache,
     laws: Vec<Vec<f32>>,
 }
 
 /// What rapier remembers between steps.
 #[derive(Serialize, Deserialize)]
-struct Shot<'a> {
-    memory: Memory,
+struct SnapshotData<'a> {
+    memory: WorldMemory,
     #[serde(borrow)]
-    islands: Owned<'a, IslandManager>,
-    broad_phase: Owned<'a, BroadPhaseBvh>,
-    narrow_phase: Owned<'a, NarrowPhase>,
-    bodies: Owned<'a, RigidBodySet>,
-    joints: Owned<'a, ImpulseJointSet>,
+    islands: CowField<'a, IslandManager>,
+    broad_phase: CowField<'a, BroadPhaseBvh>,
+    narrow_phase: CowField<'a, NarrowPhase>,
+    bodies: CowField<'a, RigidBodySet>,
+    joints: CowField<'a, ImpulseJointSet>,
 }
 
 /// Written by reference, read by value.
-struct Owned<'a, T: Clone>(Cow<'a, T>);
+struct CowField<'a, T: Clone>(Cow<'a, T>);
 
-impl<T: Clone + Serialize> Serialize for Owned<'_, T> {
+impl<T: Clone + Serialize> Serialize for CowField<'_, T> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         self.0.serialize(serializer)
     }
 }
 
-impl<'de, T: Clone + Deserialize<'de>> Deserialize<'de> for Owned<'_, T> {
+impl<'de, T: Clone + Deserialize<'de>> Deserialize<'de> for CowField<'_, T> {
     fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         T::deserialize(deserializer).map(|value| Self(Cow::Owned(value)))
     }
@@ -114,31 +117,31 @@ impl PhysicsWorld {
         self.with_header(MAGIC_OF_MOMENTS, &self.body())
     }
 
-    fn shot(&self) -> Shot<'_> {
-        Shot {
-            memory: Memory {
+    fn shot(&self) -> SnapshotData<'_> {
+        SnapshotData {
+            memory: WorldMemory {
                 tick: self.tick,
                 holds: self.holds.clone(),
-                loose: self.loose.clone(),
+                passive_velocities: self.passive_velocities.clone(),
                 excluded: self.excluded.clone(),
                 grips: self.grips.clone(),
-                parting: self.parting.clone(),
+                released_overlapping: self.released_overlapping.clone(),
                 drives: self.drives.clone(),
-                shoves: self.shoves.clone(),
+                ongoing_pushes: self.ongoing_pushes.clone(),
                 pulls: self.pulls.clone(),
-                ongoing: self.ongoing.clone(),
-                laid: self.engine.laid.clone(),
+                contact_tracker: self.contact_tracker.clone(),
+                sleeping_cache: self.engine.sleeping_cache.clone(),
                 laws: self
                     .laws
                     .iter()
                     .map(|installed| installed.law.memory())
                     .collect(),
             },
-            islands: Owned(Cow::Borrowed(&self.engine.islands)),
-            broad_phase: Owned(Cow::Borrowed(&self.engine.broad_phase)),
-            narrow_phase: Owned(Cow::Borrowed(&self.engine.narrow_phase)),
-            bodies: Owned(Cow::Borrowed(&self.engine.bodies)),
-            joints: Owned(Cow::Borrowed(&self.engine.joints)),
+            islands: CowField(Cow::Borrowed(&self.engine.islands)),
+            broad_phase: CowField(Cow::Borrowed(&self.engine.broad_phase)),
+            narrow_phase: CowField(Cow::Borrowed(&self.engine.narrow_phase)),
+            bodies: CowField(Cow::Borrowed(&self.engine.bodies)),
+            joints: CowField(Cow::Borrowed(&self.engine.joints)),
         }
     }
 
@@ -177,18 +180,18 @@ impl PhysicsWorld {
     /// state; the world is then as it was before.
     pub fn restore(&mut self, state: &mut State, bytes: &[u8]) -> Result<(), PhysicsError> {
         let body = self.check_header(bytes)?;
-        let shot: Shot = columnar::from_bytes(&body)
+        let shot: SnapshotData = columnar::from_bytes(&body)
             .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
         let memory = shot.memory;
         let bodies = shot.bodies.0.into_owned();
         let foreign = memory.holds.len() != self.bodies.len()
             || memory.pulls.len() != self.joints.len()
-            || memory.loose.len() != state.agents.len();
+            || memory.passive_velocities.len() != state.agents.len();
         if foreign {
             return refuse(format!(
                 "it has {} bodies and {} agents; the world has {} and the state {}",
                 memory.holds.len(),
-                memory.loose.len(),
+                memory.passive_velocities.len(),
                 self.bodies.len(),
                 state.agents.len()
             ));
@@ -199,11 +202,11 @@ impl PhysicsWorld {
             return refuse("it was taken with other laws than the state has");
         }
         for (installed, remembered) in laws.iter_mut().zip(&memory.laws) {
-            installed.law.recall(remembered);
+            installed.law.restore_memory(remembered);
         }
         // The same overrides and laws give the same values.
         let specs =
-            |laws: &[Installed]| laws.iter().map(|law| law.spec.clone()).collect::<Vec<_>>();
+            |laws: &[InstalledLaw]| laws.iter().map(|law| law.spec.clone()).collect::<Vec<_>>();
         let same = state.overrides == self.applied;
         let table = if same {
             self.table.clone()
@@ -213,9 +216,9 @@ impl PhysicsWorld {
         let weights = if same && specs(&laws) == specs(&self.laws) {
             self.weights.clone()
         } else {
-            Weights::new(&model, state, &laws)
+            BodyMasses::new(&model, state, &laws)
         };
-        let values = Dress {
+        let values = ContactProperties {
             house: &model.house,
             table: &table,
             laws: &laws,
@@ -226,7 +229,7 @@ impl PhysicsWorld {
             let place = bodies
                 .get(handle)
                 .map_or(RapierPose::IDENTITY, |rigid| *rigid.position());
-            (place, Hold::Frozen)
+            (place, BodyStatus::Frozen)
         };
         let gravity = state.gravity_m_s2();
         let sizes = (gravity, state.agents.len(), Crowding::Few);
@@ -241,18 +244,18 @@ impl PhysicsWorld {
             values.rule(entry).1
         });
         flush(&mut built, values, &memory.excluded);
-        let Assembly {
+        let AssembledWorld {
             engine: scaffold,
             entries,
             ..
         } = built;
-        let mut engine = Engine::new(&self.settings, gravity);
+        let mut engine = RapierWorld::new(&self.settings, gravity);
         engine.soften(&self.settings, laws::compliance(&laws));
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();
         engine.bodies = bodies;
-        engine.laid = memory.laid;
+        engine.sleeping_cache = memory.sleeping_cache;
         engine.joints = shot.joints.0.into_owned();
         engine.colliders = scaffold.colliders;
         for (plan, body) in model.bodies.iter().zip(&self.bodies) {
@@ -284,17 +287,17 @@ impl PhysicsWorld {
         self.laws = laws;
         self.tick = memory.tick;
         self.holds = memory.holds;
-        self.loose = memory.loose;
+        self.passive_velocities = memory.passive_velocities;
         self.excluded = memory.excluded;
         self.grips = memory.grips;
-        self.parting = memory.parting;
+        self.released_overlapping = memory.released_overlapping;
         self.drives = memory.drives;
-        self.shoves = memory.shoves;
+        self.ongoing_pushes = memory.ongoing_pushes;
         self.pulls = memory.pulls;
         for joint in &mut self.joints {
             joints::set_values(&mut self.engine, &model, joint, state);
         }
-        self.ongoing = memory.ongoing;
+        self.contact_tracker = memory.contact_tracker;
         self.merged_events = MergedEvents::default();
         self.notices.clear();
         Ok(())
@@ -333,12 +336,16 @@ impl PhysicsWorld {
     }
 }
 
-fn flush(assembly: &mut Assembly, dress: Dress<'_>, excluded: &Excluded) {
+fn flush(
+    assembly: &mut AssembledWorld,
+    properties: ContactProperties<'_>,
+    excluded: &CollisionExclusions,
+) {
     let entries = &assembly.entries;
     let kept = assembly.engine.friction_kept();
-    assembly.engine.flush(&Hooks {
+    assembly.engine.flush(&ContactHooks {
         entries,
-        dress,
+        properties,
         excluded,
         kept,
         dt_s: 0.0,

@@ -1,22 +1,25 @@
 //! A running physics world.
 
-use crate::actions::{Notice, Shove};
-use crate::agents::{Agent, Grip, Loose};
-use crate::body::{self, Body, BodyPlace, Hold};
-use crate::config::{PhysicsConfig, Settings};
+use crate::actions::{DelayedOutcome, OngoingPush};
+use crate::agents::{Agent, HeldObject, PassiveVelocity};
+use crate::body::{self, BodyHandle, BodyPlacement, BodyStatus};
+use crate::config::{PhysicsConfig, ResolvedConfig};
 use crate::contact::{
-    ContactTable, Dress, Entry, Excluded, Hooks, MergedEvents, Motion, Ongoing, Toucher,
+    BodyMotion, ColliderEntry, CollisionExclusions, ContactEntity, ContactHooks, ContactProperties,
+    ContactTable, ContactTracker, MergedEvents,
 };
 use crate::convert::{from_rapier, to_rapier};
-use crate::engine::Engine;
+use crate::engine::RapierWorld;
 use crate::error::PhysicsError;
-use crate::inertia::{self, Inertia};
-use crate::joints::{self, Coordinate, Drives, Joint, Pull, Tree};
-use crate::laws::{self, Installed};
+use crate::inertia::{self, BodyInertia};
+use crate::joints::{
+    self, HandDrives, JointActuation, JointCoordinate, KinematicTree, PhysicsJoint,
+};
+use crate::laws::{self, InstalledLaw};
 use crate::limits::{self, Crowding};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
-use crate::start::Start;
+use crate::start::StartResolver;
 use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{Address, AgentId, AgentState, House, JointId, State};
@@ -35,54 +38,54 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub struct PhysicsWorld {
     pub(crate) model: Arc<PhysicsModel>,
-    pub(crate) settings: Settings,
-    pub(crate) engine: Engine,
+    pub(crate) settings: ResolvedConfig,
+    pub(crate) engine: RapierWorld,
     /// What each collider stands for, by its user data.
-    pub(crate) entries: Vec<Entry>,
+    pub(crate) entries: Vec<ColliderEntry>,
     pub(crate) table: ContactTable,
-    pub(crate) bodies: Vec<Body>,
-    pub(crate) holds: Vec<Hold>,
-    pub(crate) weights: Weights,
+    pub(crate) bodies: Vec<BodyHandle>,
+    pub(crate) holds: Vec<BodyStatus>,
+    pub(crate) weights: BodyMasses,
     /// The overrides that are in force.
     pub(crate) applied: BTreeMap<Address, f64>,
-    pub(crate) joints: Vec<Joint>,
+    pub(crate) joints: Vec<PhysicsJoint>,
     /// Joints that act on each other.
-    pub(crate) trees: Vec<Tree>,
+    pub(crate) trees: Vec<KinematicTree>,
     /// Each joint's numbers within a control step; the turns of hinges are counted here. Between control steps the state has
     /// them. Shape (joint,).
-    pub(crate) near: Vec<Coordinate>,
+    pub(crate) joint_coordinates: Vec<JointCoordinate>,
     /// What pulls at each joint during this control step.
-    pub(crate) pulls: Vec<Option<Pull>>,
+    pub(crate) pulls: Vec<Option<JointActuation>>,
     pub(crate) agents: Vec<Agent>,
     /// What each agent has of speed that is not its own will.
-    pub(crate) loose: Vec<Loose>,
-    pub(crate) excluded: Excluded,
-    pub(crate) grips: Vec<Grip>,
+    pub(crate) passive_velocities: Vec<PassiveVelocity>,
+    pub(crate) excluded: CollisionExclusions,
+    pub(crate) grips: Vec<HeldObject>,
     /// Bodies that were let go and still overlap the agent that held them.
-    pub(crate) parting: Vec<(u32, AgentId)>,
-    pub(crate) drives: Drives,
-    pub(crate) shoves: Vec<Shove>,
-    pub(crate) laws: Vec<Installed>,
+    pub(crate) released_overlapping: Vec<(u32, AgentId)>,
+    pub(crate) drives: HandDrives,
+    pub(crate) ongoing_pushes: Vec<OngoingPush>,
+    pub(crate) laws: Vec<InstalledLaw>,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
-    pub(crate) ongoing: Ongoing,
+    pub(crate) contact_tracker: ContactTracker,
     /// What the last control step did not tell one by one.
     pub(crate) merged_events: MergedEvents,
-    pub(crate) notices: Vec<Notice>,
-    pub(crate) motion: Vec<Motion>,
+    pub(crate) notices: Vec<DelayedOutcome>,
+    pub(crate) motion: Vec<BodyMotion>,
 }
 
 /// What bodies weigh in a world.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Weights {
+pub(crate) struct BodyMasses {
     /// What densities are multiplied with. Shape (body, part).
     pub(crate) factors: Vec<Vec<f32>>,
     /// What laws make of mass and inertia. Shape (body,).
-    pub(crate) altered: Vec<Option<Inertia>>,
+    pub(crate) altered: Vec<Option<BodyInertia>>,
 }
 
-impl Weights {
-    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &[Installed]) -> Self {
+impl BodyMasses {
+    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &[InstalledLaw]) -> Self {
         let factors = body::mass_factors(model, state);
         let altered = inertia::altered(model, state, &factors, laws);
         Self { factors, altered }
@@ -90,10 +93,10 @@ impl Weights {
 }
 
 /// The parts of a world that its shapes make up.
-pub(crate) struct Assembly {
-    pub(crate) engine: Engine,
-    pub(crate) entries: Vec<Entry>,
-    pub(crate) bodies: Vec<Body>,
+pub(crate) struct AssembledWorld {
+    pub(crate) engine: RapierWorld,
+    pub(crate) entries: Vec<ColliderEntry>,
+    pub(crate) bodies: Vec<BodyHandle>,
     pub(crate) anchor: RigidBodyHandle,
 }
 
@@ -104,13 +107,13 @@ const STANDING: usize = 2;
 /// come, and how many pairs the pieces make.
 pub(crate) fn assemble(
     model: &PhysicsModel,
-    settings: &Settings,
-    values: Dress<'_>,
+    settings: &ResolvedConfig,
+    values: ContactProperties<'_>,
     (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
-    places: impl Fn(usize) -> (RapierPose, Hold),
-    weights: &Weights,
-) -> Assembly {
-    let mut engine = Engine::new(settings, gravity_m_s2);
+    places: impl Fn(usize) -> (RapierPose, BodyStatus),
+    weights: &BodyMasses,
+) -> AssembledWorld {
+    let mut engine = RapierWorld::new(settings, gravity_m_s2);
     // rapier doubles its lists when they are full.
     let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
     let pieces: usize = pieces.sum::<usize>() + model.statics.len();
@@ -123,7 +126,7 @@ pub(crate) fn assemble(
     for (index, plan) in model.bodies.iter().enumerate() {
         interrupt::check();
         let (world_from_body, hold) = places(index);
-        let place = BodyPlace {
+        let place = BodyPlacement {
             index: index as u32,
             world_from_body,
             hold,
@@ -141,7 +144,7 @@ pub(crate) fn assemble(
             place,
         ));
     }
-    Assembly {
+    AssembledWorld {
         engine,
         entries,
         bodies,
@@ -182,15 +185,15 @@ impl PhysicsWorld {
         check_counts(&model.house, state)?;
         let table = ContactTable::new(&model.house, state);
         let laws = laws::install(&model, state, &[])?;
-        let weights = Weights::new(&model, state, &laws);
+        let weights = BodyMasses::new(&model, state, &laws);
         align_joints(&model, state);
         let crowding = limits::check(&model, state)?;
         let places = |index: usize| {
             let root = model.bodies[index].root();
-            (to_rapier(&state.part_pose[root]), Hold::Free)
+            (to_rapier(&state.part_pose[root]), BodyStatus::Free)
         };
         let gravity = state.gravity_m_s2();
-        let values = Dress {
+        let values = ContactProperties {
             house: &model.house,
             table: &table,
             laws: &laws,
@@ -198,7 +201,7 @@ impl PhysicsWorld {
         let sizes = (gravity, state.agents.len(), crowding);
         let assembly = assemble(&model, &settings, values, sizes, places, &weights);
         let mut world = Self {
-            holds: vec![Hold::Free; model.bodies.len()],
+            holds: vec![BodyStatus::Free; model.bodies.len()],
             model,
             settings,
             engine: assembly.engine,
@@ -209,18 +212,18 @@ impl PhysicsWorld {
             applied: state.overrides.clone(),
             joints: Vec::new(),
             trees: Vec::new(),
-            near: Vec::new(),
+            joint_coordinates: Vec::new(),
             pulls: Vec::new(),
             agents: Vec::new(),
-            loose: Vec::new(),
-            excluded: Excluded::default(),
+            passive_velocities: Vec::new(),
+            excluded: CollisionExclusions::default(),
             grips: Vec::new(),
-            parting: Vec::new(),
-            drives: Drives::new(),
-            shoves: Vec::new(),
+            released_overlapping: Vec::new(),
+            drives: HandDrives::new(),
+            ongoing_pushes: Vec::new(),
             laws,
             tick: 0,
-            ongoing: Ongoing::default(),
+            contact_tracker: ContactTracker::default(),
             merged_events: MergedEvents::default(),
             notices: Vec::new(),
             motion: Vec::new(),
@@ -260,7 +263,7 @@ impl PhysicsWorld {
         limits::check_trees(&model.house, &self.joints, &self.trees)?;
         self.pulls = vec![None; self.joints.len()];
         self.flush();
-        let start = Start {
+        let start = StartResolver {
             engine: &self.engine,
             model: &model,
             entries: &self.entries,
@@ -279,7 +282,7 @@ impl PhysicsWorld {
                 rigid.set_body_type(body::body_type(resolved.hold), false);
             }
         }
-        self.hang_joints(state);
+        self.carry_jointed_bodies(state);
         if self.settings.config.latches {
             for joint in &self.joints {
                 let articulation = &model.house.joints[joint.id];
@@ -291,19 +294,19 @@ impl PhysicsWorld {
                 }
             }
         }
-        self.forget_pairs_of_what_stands();
+        self.forget_fixed_pairs();
         Ok(report)
     }
 
     /// Brings what hangs on joints along where what it hangs on was moved.
-    fn hang_joints(&mut self, state: &State) {
-        let stands = self.joints.iter().map(|joint| joints::Stand {
+    fn carry_jointed_bodies(&mut self, state: &State) {
+        let stands = self.joints.iter().map(|joint| joints::JointPlacement {
             position: state.joint_position[joint.id],
             velocity: 0.0,
             anew: false,
             shut: false,
         });
-        let stands: Vec<joints::Stand> = stands.collect();
+        let stands: Vec<joints::JointPlacement> = stands.collect();
         for tree in &self.trees {
             let moved = tree.root_body().is_some_and(|body| {
                 let body = body as usize;
@@ -327,7 +330,7 @@ impl PhysicsWorld {
     }
 
     /// What became, in the last step, of doors and grips that take time.
-    pub fn notices(&self) -> &[Notice] {
+    pub fn notices(&self) -> &[DelayedOutcome] {
         &self.notices
     }
 
@@ -339,8 +342,8 @@ impl PhysicsWorld {
     /// Friction and restitution between two things as overrides have them, by their first surfaces (a wall or mesh of
     /// several materials has others too); `None` for what touches nothing. Laws may change what acts; each contact event
     /// carries the values of its own surfaces.
-    pub fn pair(&self, a: Toucher, b: Toucher) -> Option<PairContact> {
-        let class = |toucher: Toucher| {
+    pub fn pair(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
+        let class = |toucher: ContactEntity| {
             let entry = self.entries.iter();
             let mut found = entry.filter(|entry| entry.toucher == Some(toucher));
             found.next().map(|entry| entry.surface.class(0))
@@ -355,7 +358,7 @@ impl PhysicsWorld {
 
     /// How many rigid bodies are awake.
     pub fn awake_count(&self) -> usize {
-        let awake = |body: &&Body| {
+        let awake = |body: &&BodyHandle| {
             let rigid = self.engine.bodies.get(body.handle);
             rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
         };
@@ -365,7 +368,7 @@ impl PhysicsWorld {
     /// The number of the body that rapier knows by a handle.
     pub(crate) fn body_of(&self, handle: RigidBodyHandle) -> Option<usize> {
         // They were inserted in order.
-        let key = |body: &Body| body.handle.into_raw_parts();
+        let key = |body: &BodyHandle| body.handle.into_raw_parts();
         let place = self
             .bodies
             .binary_search_by_key(&handle.into_raw_parts(), key);
@@ -379,10 +382,10 @@ impl PhysicsWorld {
 
     /// Brings positions, contacts and queries up to date after a change from outside.
     pub(crate) fn flush(&mut self) {
-        self.watch_rolling();
-        let hooks = Hooks {
+        self.update_rolling_contacts();
+        let hooks = ContactHooks {
             entries: &self.entries,
-            dress: Dress {
+            properties: ContactProperties {
                 house: &self.model.house,
                 table: &self.table,
                 laws: &self.laws,
@@ -400,10 +403,10 @@ impl PhysicsWorld {
             body::write_parts(&self.engine, plan, body, state);
         }
         for joint in &self.joints {
-            let now = joints::stands(&self.engine, joint, said(state, joint.id));
+            let now = joints::stands(&self.engine, joint, joint_from_state(state, joint.id));
             let (position, velocity) = (now.position as f32, now.velocity as f32);
             // A door that is shut stands at its closed position, whatever rounding says.
-            let shut = self.holds[joint.child as usize] == Hold::Latched;
+            let shut = self.holds[joint.child as usize] == BodyStatus::Latched;
             let closed = self.model.house.joints[joint.id].closed;
             state.joint_position[joint.id] = if shut { closed } else { position };
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
@@ -413,8 +416,8 @@ impl PhysicsWorld {
 }
 
 /// A joint's numbers as the state has them.
-pub(crate) fn said(state: &State, joint: JointId) -> Coordinate {
-    Coordinate {
+pub(crate) fn joint_from_state(state: &State, joint: JointId) -> JointCoordinate {
+    JointCoordinate {
         position: state.joint_position[joint].into(),
         velocity: state.joint_velocity[joint].into(),
     }
@@ -459,15 +462,15 @@ fn align_joints(model: &PhysicsModel, state: &mut State) {
         });
         let pose = state.world_from_child(&model.house, id, &parent, state.joint_position[id]);
         let now = state.part_pose[joint.child];
-        let near = (pose.position - now.position).length() < 1e-4
+        let joint_coordinates = (pose.position - now.position).length() < 1e-4
             && pose.rotation.dot(now.rotation).abs() > 1.0 - 1e-6;
-        if !near {
+        if !joint_coordinates {
             state.part_pose[joint.child] = pose;
         }
     }
 }
 
-impl Settings {
+impl ResolvedConfig {
     /// Force from which rapier reports a contact, N.
     pub(crate) fn event_force_n(&self) -> f32 {
         // An impact may be spread over a few steps.
@@ -487,7 +490,7 @@ impl fmt::Debug for PhysicsWorld {
 }
 
 /// Where a body is, in the scene's words.
-pub(crate) fn pose_of(engine: &Engine, body: &Body) -> Option<dwell_scene::Pose> {
+pub(crate) fn pose_of(engine: &RapierWorld, body: &BodyHandle) -> Option<dwell_scene::Pose> {
     engine
         .bodies
         .get(body.handle)

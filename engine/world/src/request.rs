@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_physics::{Action, ActionOutcome, Grasp, Notice, Target};
+use dwell_physics::{Action, ActionOutcome, DelayedOutcome, Grasp, Target};
 use dwell_render::{Camera, Projection};
 use dwell_scene::{AgentId, EntityId, House, ObjectId, PartId, Pose};
 use glam::{Vec2, Vec3};
@@ -383,7 +383,7 @@ impl World {
     }
 
     /// What became, in the last step, of actions that take time.
-    pub fn notices(&self) -> &[Notice] {
+    pub fn notices(&self) -> &[DelayedOutcome] {
         self.physics().notices()
     }
 }

@@ -1,11 +1,11 @@
 //! Opening and closing.
 
-use super::outcome::{ActionCode, Notice, done, fail};
+use super::outcome::{ActionCode, DelayedOutcome, done, fail};
 use super::request::Target;
-use super::target::Aim;
-use super::{Actor, Told};
-use crate::contact::Toucher;
-use crate::joints::{self, Drive, Joint, Progress};
+use super::target::ResolvedTarget;
+use super::{ActionResult, Actor};
+use crate::contact::ContactEntity;
+use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint};
 use crate::world::PhysicsWorld;
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
@@ -22,8 +22,8 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         target: &Target,
         fraction: f32,
-    ) -> Told {
-        let (object, aim) = self.aim_at_object(state, actor, target)?;
+    ) -> ActionResult {
+        let (object, aim) = self.resolve_object_target(state, actor, target)?;
         let name = self.call(object);
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if !(0.0..=1.0).contains(&fraction) {
@@ -80,13 +80,13 @@ impl PhysicsWorld {
             };
             let goal = state.joint_values(&self.model.house, *id).clamp(goal);
             state.joint_command[*id] = JointCommand::Position(goal);
-            let drive = Drive::new(goal, state.joint_position[*id], Some(actor.id));
+            let drive = HandDrive::new(goal, state.joint_position[*id], Some(actor.id));
             self.drives.insert(*id, drive);
         }
     }
 
     /// The joints of an object that are meant: the one that moves the part that was named or met, or all.
-    fn joints_meant(&self, object: ObjectId, aim: &Aim) -> Vec<JointId> {
+    fn joints_meant(&self, object: ObjectId, aim: &ResolvedTarget) -> Vec<JointId> {
         let house = &self.model().house;
         let moved_by = |part| {
             let body = self.model().body_of_part[part]?;
@@ -101,7 +101,12 @@ impl PhysicsWorld {
     }
 
     /// Takes a hand off a joint that has arrived or is blocked, and says so.
-    pub(crate) fn finish_drive(&mut self, state: &mut State, joint: &Joint, progress: Progress) {
+    pub(crate) fn finish_drive(
+        &mut self,
+        state: &mut State,
+        joint: &PhysicsJoint,
+        progress: DriveProgress,
+    ) {
         let Some(drive) = self.drives.remove(&joint.id) else {
             return;
         };
@@ -110,7 +115,7 @@ impl PhysicsWorld {
         let object = articulation.object;
         let name = self.call(object);
         let position = state.joint_position[joint.id];
-        if progress == Progress::Arrived
+        if progress == DriveProgress::Arrived
             && self.settings.config.latches
             && drive.goal == articulation.closed
             && joints::stands_shut(joint, &articulation, position)
@@ -126,7 +131,7 @@ impl PhysicsWorld {
             );
         }
         let share = (articulation.openness(position) * 100.0).round();
-        let outcome = if progress == Progress::Arrived {
+        let outcome = if progress == DriveProgress::Arrived {
             let asked = articulation.openness(drive.goal);
             let sentence = if asked <= CLOSED {
                 format!("The {name} is closed.")
@@ -144,14 +149,14 @@ impl PhysicsWorld {
             let sentence = format!("The {name} stopped {share:.0} % open: {what}");
             fail(ActionCode::Blocked, sentence, Some(object))
         };
-        self.notices.push(Notice {
+        self.notices.push(DelayedOutcome {
             agent: drive.agent,
             outcome,
         });
     }
 
     /// The name of a thing that a joint's leaf touches, other than its own object and the building.
-    fn in_the_way(&self, state: &State, joint: &Joint) -> Option<String> {
+    fn in_the_way(&self, state: &State, joint: &PhysicsJoint) -> Option<String> {
         let child = &self.model().bodies[joint.child as usize];
         let house = &self.model().house;
         let own = |part| house.parts[part].object == child.object;
@@ -174,10 +179,10 @@ impl PhysicsWorld {
                 continue;
             }
             match other.toucher {
-                Some(Toucher::Part(part)) if !own(part) => {
+                Some(ContactEntity::Part(part)) if !own(part) => {
                     return Some(self.call(house.parts[part].object));
                 }
-                Some(Toucher::Agent(agent)) if (agent.0 as usize) < state.agents.len() => {
+                Some(ContactEntity::Agent(agent)) if (agent.0 as usize) < state.agents.len() => {
                     return Some(format!("body of agent {}", agent.0));
                 }
                 _ => {}

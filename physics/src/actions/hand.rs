@@ -2,9 +2,9 @@
 
 use super::outcome::{ActionCode, ActionOutcome, done, fail};
 use super::request::{Grasp, Target};
-use super::{Actor, Notice, Told};
-use crate::agents::{Grip, hand_pose, release};
-use crate::body::Hold;
+use super::{ActionResult, Actor, DelayedOutcome};
+use crate::agents::{HeldObject, hand_pose, release};
+use crate::body::BodyStatus;
 use crate::convert::{from_rapier, to_rapier};
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentId, AgentState, Mobility, ObjectId, State};
@@ -22,9 +22,9 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         target: &Target,
         grasp: Grasp,
-    ) -> Told {
+    ) -> ActionResult {
         let holder = actor.body;
-        let (object, _) = self.aim_at_object(state, actor, target)?;
+        let (object, _) = self.resolve_object_target(state, actor, target)?;
         let name = self.call(object);
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if !grasp.is_valid() {
@@ -56,7 +56,7 @@ impl PhysicsWorld {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        if self.holds[body] != Hold::Free {
+        if self.holds[body] != BodyStatus::Free {
             let sentence = format!("The {name} is stuck where it stands. Choose something else.");
             return refuse(ActionCode::Stuck, sentence);
         }
@@ -86,7 +86,7 @@ impl PhysicsWorld {
             .objects
             .ids()
             .any(|other| state.rests_on(house, other).contains(&Some(object)));
-        let grip = Grip::new(
+        let grip = HeldObject::new(
             self.model(),
             body as u32,
             actor.id,
@@ -104,7 +104,7 @@ impl PhysicsWorld {
             self.clear_between(body, &holder, &place, &target)
         };
         let gravity_scale = self.gravity_scale(body);
-        self.engine.disturb(self.bodies[body].handle);
+        self.engine.wake_around(self.bodies[body].handle);
         if let Some(rigid) = self.engine.bodies.get_mut(self.bodies[body].handle) {
             rigid.set_gravity_scale(gravity_scale, true);
             rigid.set_linvel(Vec3::ZERO, true);
@@ -138,7 +138,7 @@ impl PhysicsWorld {
             let mut place = *to;
             place.translation = to.translation.lerp(from.translation, share);
             let middle = self.model().bodies[body].bounds(&place).center();
-            let open = self.barred_by(eye, middle).is_none();
+            let open = self.first_obstacle(eye, middle).is_none();
             (open && self.is_clear(body, &place)).then_some(place)
         })
     }
@@ -161,7 +161,7 @@ impl PhysicsWorld {
     pub(crate) fn drop_too_heavy(&mut self, state: &mut State) {
         let mut place = 0;
         while place < self.grips.len() {
-            let Grip {
+            let HeldObject {
                 body,
                 agent,
                 object,
@@ -176,7 +176,7 @@ impl PhysicsWorld {
             }
             self.ungrip(state, place);
             let name = self.call(object);
-            self.notices.push(Notice {
+            self.notices.push(DelayedOutcome {
                 agent: Some(agent),
                 outcome: fail(
                     ActionCode::TooHeavy,
@@ -199,12 +199,12 @@ impl PhysicsWorld {
         state.agents[grip.agent].holding = None;
         state.held_by[grip.object] = None;
         // The pair meets again once they have parted.
-        self.parting.push((grip.body, grip.agent));
+        self.released_overlapping.push((grip.body, grip.agent));
     }
 
     /// The share of its weight that a body has: none in a hand that holds it firmly, else what laws leave of it.
     pub(crate) fn gravity_scale(&self, body: usize) -> f32 {
-        let carried = |grip: &Grip| grip.body as usize == body && grip.is_firm();
+        let carried = |grip: &HeldObject| grip.body as usize == body && grip.is_firm();
         if self.grips.iter().any(carried) {
             return 0.0;
         }

@@ -1,25 +1,25 @@
 //! What an agent's hand does: take, put, throw, push, let go, open, close, switch, point. Each says whether it worked and
 //! why.
 
+mod clearance;
 mod doors;
 mod hand;
-mod open_way;
 mod outcome;
 mod place;
 mod place_at;
+mod placement_trial;
 mod point;
 mod push;
 mod put_in;
 mod reach;
 mod request;
-mod settle;
-mod stance;
+mod stable_pose;
 mod switch;
 mod target;
 mod throw;
 
-pub use outcome::{ActionCode, ActionOutcome, Notice, Pointed};
-pub(crate) use push::Shove;
+pub use outcome::{ActionCode, ActionOutcome, DelayedOutcome, PointedTarget};
+pub(crate) use push::OngoingPush;
 pub use request::{Action, Grasp, Target};
 
 use crate::world::PhysicsWorld;
@@ -74,8 +74,12 @@ impl PhysicsWorld {
                 direction,
                 speed_m_s,
             } => self.throw(state, actor, direction, speed_m_s),
-            Action::Push { target, force_n } => self.shove(state, actor, &target, force_n, 1.0),
-            Action::Pull { target, force_n } => self.shove(state, actor, &target, force_n, -1.0),
+            Action::Push { target, force_n } => {
+                self.start_push(state, actor, &target, force_n, 1.0)
+            }
+            Action::Pull { target, force_n } => {
+                self.start_push(state, actor, &target, force_n, -1.0)
+            }
             Action::Open { target, fraction } => self.swing(state, actor, &target, fraction),
             Action::Close { target } => self.swing(state, actor, &target, 0.0),
             Action::Toggle { target } => self.toggle(state, actor, &target),
@@ -90,4 +94,4 @@ impl PhysicsWorld {
 }
 
 /// What an action comes to, or why it was refused.
-type Told = Result<ActionOutcome, Box<ActionOutcome>>;
+type ActionResult = Result<ActionOutcome, Box<ActionOutcome>>;

@@ -121,7 +121,7 @@ impl ActionCode {
 
 /// What an agent points at.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pointed {
+pub struct PointedTarget {
     /// The sensors' id.
     pub entity: EntityId,
     /// Where, m.
@@ -142,7 +142,7 @@ pub struct ActionOutcome {
     /// The object it was about.
     pub object: Option<ObjectId>,
     /// What was pointed at, after [`crate::Action::Point`].
-    pub pointed: Option<Pointed>,
+    pub pointed: Option<PointedTarget>,
 }
 
 impl ActionOutcome {
@@ -168,7 +168,7 @@ impl ActionOutcome {
 
 /// What came later of something that an agent began.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Notice {
+pub struct DelayedOutcome {
     /// Whose action it was; `None` when the state asked for it.
     pub agent: Option<AgentId>,
     /// What came of it.

@@ -1,11 +1,11 @@
 //! Putting what is held down on something.
 
-use super::open_way::Ground;
+use super::clearance::SupportFilter;
 use super::outcome::{ActionCode, ActionOutcome, done, fail};
 use super::request::Target;
-use super::stance::Stance;
-use super::{Actor, Told};
-use crate::agents::Grip;
+use super::stable_pose::StablePose;
+use super::{ActionResult, Actor};
+use crate::agents::HeldObject;
 use crate::world::PhysicsWorld;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -25,7 +25,7 @@ const LOOK_STEP_RAD: f32 = 0.1;
 const ABOVE_M: f32 = 0.5;
 
 /// Where something was put, and on what.
-struct Spot {
+struct ObjectPlacement {
     pose: RapierPose,
     on: Option<ObjectId>,
     name: String,
@@ -37,9 +37,9 @@ impl PhysicsWorld {
         state: &mut State,
         actor: Actor<'_>,
         on: Option<&Target>,
-    ) -> Told {
+    ) -> ActionResult {
         let grip = self.grip_of(actor)?;
-        let stances = self.stances(grip.body as usize);
+        let stances = self.stable_poses(grip.body as usize);
         let spot = match on {
             Some(target) => self.spot_on(state, actor, &grip, &stances, target)?,
             None => self.spot_in_view(actor, &grip, &stances)?,
@@ -54,7 +54,7 @@ impl PhysicsWorld {
     }
 
     /// The agent's grip, or the refusal for an empty hand.
-    pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<Grip, Box<ActionOutcome>> {
+    pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<HeldObject, Box<ActionOutcome>> {
         let grip = self.grips.iter().find(|grip| grip.agent == actor.id);
         grip.copied().ok_or_else(|| {
             let sentence = "You hold nothing. Pick something first.";
@@ -82,22 +82,26 @@ impl PhysicsWorld {
         &self,
         state: &State,
         actor: Actor<'_>,
-        grip: &Grip,
-        stances: &[Stance],
+        grip: &HeldObject,
+        stances: &[StablePose],
         target: &Target,
-    ) -> Result<Spot, Box<ActionOutcome>> {
+    ) -> Result<ObjectPlacement, Box<ActionOutcome>> {
         let refuse = |code, sentence: String, on| Err(Box::new(fail(code, sentence, on)));
         let held = self.call(grip.object);
-        let aim = self.aim(state, actor, target)?;
+        let aim = self.resolve_target(state, actor, target)?;
         let (ground, on, name) = match aim.entity {
             Entity::Object(object) if object == grip.object => {
                 let sentence = "A thing cannot stand on itself. Choose something else.";
                 return refuse(ActionCode::NoSpace, sentence.to_owned(), Some(object));
             }
-            Entity::Object(object) => (Ground::Object(object), Some(object), self.call(object)),
+            Entity::Object(object) => (
+                SupportFilter::Object(object),
+                Some(object),
+                self.call(object),
+            ),
             Entity::Structure(id) => {
                 let name = self.surface_name(SurfaceOwner::Structure(id));
-                (Ground::Building, None, name)
+                (SupportFilter::Structure, None, name)
             }
             _ => {
                 let sentence = "Nothing can be put on somebody. Choose a surface.".to_owned();
@@ -132,7 +136,7 @@ impl PhysicsWorld {
             }
         };
         let pose = self.first_spot(actor, grip.body as usize, stances, &feet);
-        pose.map(|pose| Spot { pose, on, name: name.clone() }).ok_or_else(|| {
+        pose.map(|pose| ObjectPlacement { pose, on, name: name.clone() }).ok_or_else(|| {
             let sentence = format!(
                 "There is no free space for the {held} on the {name} within your reach and sight. Clear it or walk around it."
             );
@@ -144,9 +148,9 @@ impl PhysicsWorld {
     fn spot_in_view(
         &self,
         actor: Actor<'_>,
-        grip: &Grip,
-        stances: &[Stance],
-    ) -> Result<Spot, Box<ActionOutcome>> {
+        grip: &HeldObject,
+        stances: &[StablePose],
+    ) -> Result<ObjectPlacement, Box<ActionOutcome>> {
         let house = &self.model().house;
         let held = house.entity_of_object(grip.object);
         let eye = actor.body.eye_position();
@@ -170,21 +174,21 @@ impl PhysicsWorld {
                 continue;
             }
             let (ground, on) = match surface.owner {
-                SurfaceOwner::Structure(_) => (Ground::Building, None),
+                SurfaceOwner::Structure(_) => (SupportFilter::Structure, None),
                 SurfaceOwner::Part(part) => {
                     let object = house.parts[part].object;
-                    (Ground::Object(object), Some(object))
+                    (SupportFilter::Object(object), Some(object))
                 }
             };
             let foot = ray.at(hit.distance_m) + Vec3::Y * RING_M;
             let feet: Vec<Vec3> = self
-                .levels_under(grip.body as usize, ground, foot, 2.0 * RING_M)
+                .support_heights(grip.body as usize, ground, foot, 2.0 * RING_M)
                 .into_iter()
                 .map(|height| Vec3::new(foot.x, height, foot.z))
                 .collect();
             if let Some(pose) = self.first_spot(actor, grip.body as usize, stances, &feet) {
                 let name = self.surface_name(surface.owner);
-                return Ok(Spot { pose, on, name });
+                return Ok(ObjectPlacement { pose, on, name });
             }
         }
         let sentence = format!(
@@ -199,7 +203,7 @@ impl PhysicsWorld {
         &self,
         actor: Actor<'_>,
         body: usize,
-        stances: &[Stance],
+        stances: &[StablePose],
         feet: &[Vec3],
     ) -> Option<RapierPose> {
         let eye = actor.body.eye_position();
@@ -208,7 +212,7 @@ impl PhysicsWorld {
             feet.iter().find_map(|foot| {
                 let middle = *foot + Vec3::Y * (0.5 * stance.size().y);
                 let near = (*foot - eye).length() <= reach;
-                if !near || self.barred_by(eye, middle).is_some() {
+                if !near || self.first_obstacle(eye, middle).is_some() {
                     return None;
                 }
                 self.stand_at(body, stance, *foot).ok()
@@ -235,7 +239,7 @@ impl PhysicsWorld {
             let z = low.z + (high.z - low.z) * share(k / GRID);
             let from = Vec3::new(x, all.max.y + ABOVE_M, z);
             let down_m = all.size().y + 2.0 * ABOVE_M;
-            let levels = self.levels_under(body, Ground::Object(object), from, down_m);
+            let levels = self.support_heights(body, SupportFilter::Object(object), from, down_m);
             feet.extend(levels.into_iter().map(|height| Vec3::new(x, height, z)));
         }
         feet.retain(|foot| (*foot - eye).length() <= reach_m);
@@ -244,7 +248,7 @@ impl PhysicsWorld {
     }
 
     /// Places on rings around a point, the nearest first.
-    fn feet_around(&self, body: usize, ground: Ground, point: Vec3) -> Vec<Vec3> {
+    fn feet_around(&self, body: usize, ground: SupportFilter, point: Vec3) -> Vec<Vec3> {
         let mut feet = Vec::new();
         for ring in 0..RINGS {
             let count = if ring == 0 { 1 } else { 6 * ring };
@@ -253,7 +257,7 @@ impl PhysicsWorld {
                 let (s, c) = dwell_scene::math::sin_cos(angle);
                 let radius = RING_M * ring as f32;
                 let from = point + Vec3::new(radius * c, RING_M, radius * s);
-                let levels = self.levels_under(body, ground, from, 2.0 * RING_M);
+                let levels = self.support_heights(body, ground, from, 2.0 * RING_M);
                 feet.extend(levels.first().map(|height| from.with_y(*height)));
             }
         }

@@ -1,8 +1,8 @@
 //! Putting what is held down at a point.
 
-use super::open_way::Ground;
+use super::clearance::SupportFilter;
 use super::outcome::{ActionCode, done, fail};
-use super::{Actor, Told};
+use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::State;
 use glam::Vec3;
@@ -11,7 +11,12 @@ use glam::Vec3;
 const SURFACE_M: f32 = 0.03;
 
 impl PhysicsWorld {
-    pub(super) fn put_at(&mut self, state: &mut State, actor: Actor<'_>, point: Vec3) -> Told {
+    pub(super) fn put_at(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        point: Vec3,
+    ) -> ActionResult {
         let grip = self.grip_of(actor)?;
         let held = self.call(grip.object);
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
@@ -28,14 +33,14 @@ impl PhysicsWorld {
             return refuse(ActionCode::TooFar, sentence);
         }
         let above = point + Vec3::Y * SURFACE_M;
-        if let Some(blocker) = self.barred_by(eye, above) {
+        if let Some(blocker) = self.first_obstacle(eye, above) {
             let name = self.name_of_entry(blocker);
             let sentence =
                 format!("The {name} is between you and that place. Choose one in the open.");
             return refuse(ActionCode::NotVisible, sentence);
         }
         let body = grip.body as usize;
-        let levels = self.levels_under(body, Ground::Anything, above, 2.0 * SURFACE_M);
+        let levels = self.support_heights(body, SupportFilter::Any, above, 2.0 * SURFACE_M);
         let Some(height) = levels
             .into_iter()
             .min_by(|a, b| (a - point.y).abs().total_cmp(&(b - point.y).abs()))
@@ -46,7 +51,7 @@ impl PhysicsWorld {
         };
         let foot = point.with_y(height);
         let mut blocker = None;
-        for stance in self.stances(body) {
+        for stance in self.stable_poses(body) {
             match self.stand_at(body, &stance, foot) {
                 Ok(pose) => {
                     self.put_down(state, actor, &pose);

@@ -1,14 +1,19 @@
 //! Pointing.
 
-use super::outcome::{ActionCode, Pointed, done, fail};
+use super::outcome::{ActionCode, PointedTarget, done, fail};
 use super::request::Target;
-use super::{Actor, Told};
+use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
 
 impl PhysicsWorld {
-    pub(super) fn point(&mut self, state: &State, actor: Actor<'_>, target: &Target) -> Told {
-        let aim = self.aim(state, actor, target)?;
+    pub(super) fn point(
+        &mut self,
+        state: &State,
+        actor: Actor<'_>,
+        target: &Target,
+    ) -> ActionResult {
+        let aim = self.resolve_target(state, actor, target)?;
         let house = &self.model().house;
         let eye = actor.body.eye_position();
         let (entity, name, object, middle) = match aim.entity {
@@ -40,7 +45,7 @@ impl PhysicsWorld {
         let distance_m = (point - eye).length();
         let sentence = format!("You point at {name}, {distance_m:.1} m away.");
         let mut outcome = done(ActionCode::Done, sentence, object);
-        outcome.pointed = Some(Pointed {
+        outcome.pointed = Some(PointedTarget {
             entity,
             point,
             distance_m,

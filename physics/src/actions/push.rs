@@ -1,10 +1,10 @@
 //! Pushing and pulling: a force for a short while, and then how far the thing went.
 
-use super::outcome::{ActionCode, ActionOutcome, Notice, done, fail};
+use super::outcome::{ActionCode, ActionOutcome, DelayedOutcome, done, fail};
 use super::request::Target;
-use super::target::Aim;
-use super::{Actor, Told};
-use crate::body::Hold;
+use super::target::ResolvedTarget;
+use super::{ActionResult, Actor};
+use crate::body::BodyStatus;
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentId, ObjectId, State};
 use glam::Vec3;
@@ -20,7 +20,7 @@ const MOVED_M: f32 = 0.01;
 
 /// A push or pull that goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Shove {
+pub(crate) struct OngoingPush {
     agent: AgentId,
     object: ObjectId,
     body: u32,
@@ -36,17 +36,17 @@ pub(crate) struct Shove {
 }
 
 impl PhysicsWorld {
-    pub(super) fn shove(
+    pub(super) fn start_push(
         &mut self,
         state: &State,
         actor: Actor<'_>,
         target: &Target,
         force_n: Option<f32>,
         way: f32,
-    ) -> Told {
+    ) -> ActionResult {
         let most = actor.body.body.push_force_n;
         let verb = if way > 0.0 { "push" } else { "pull" };
-        let (object, aim) = self.aim_at_object(state, actor, target)?;
+        let (object, aim) = self.resolve_object_target(state, actor, target)?;
         let name = self.call(object);
         let wanted = force_n.unwrap_or(most);
         if !wanted.is_finite() || wanted <= 0.0 {
@@ -64,7 +64,7 @@ impl PhysicsWorld {
             );
             return Ok(fail(ActionCode::HeldByOther, sentence, Some(object)));
         }
-        let body = self.body_to_shove(object, &aim)?;
+        let body = self.body_to_push(object, &aim)?;
         if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
             return Ok(refusal);
         }
@@ -95,13 +95,13 @@ impl PhysicsWorld {
         let point_in_body = rigid.position().inverse() * point;
         // One hand, one push: what it pushed until now ends in the next step, and is told of.
         for shove in self
-            .shoves
+            .ongoing_pushes
             .iter_mut()
             .filter(|shove| shove.agent == actor.id)
         {
             shove.left = true;
         }
-        self.shoves.push(Shove {
+        self.ongoing_pushes.push(OngoingPush {
             agent: actor.id,
             object,
             body: body as u32,
@@ -111,14 +111,18 @@ impl PhysicsWorld {
             start: point,
             left: false,
         });
-        self.shoves.sort_by_key(|shove| shove.agent);
+        self.ongoing_pushes.sort_by_key(|shove| shove.agent);
         let limit = if force < wanted { ", all you have" } else { "" };
         let sentence = format!("You {verb} the {name} with {force:.0} N{limit}.");
         Ok(done(ActionCode::Started, sentence, Some(object)))
     }
 
     /// The body of an object that a push moves.
-    fn body_to_shove(&self, object: ObjectId, aim: &Aim) -> Result<usize, Box<ActionOutcome>> {
+    fn body_to_push(
+        &self,
+        object: ObjectId,
+        aim: &ResolvedTarget,
+    ) -> Result<usize, Box<ActionOutcome>> {
         let name = self.call(object);
         let model = self.model();
         let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
@@ -129,7 +133,10 @@ impl PhysicsWorld {
                 .collect(),
             None => self.bodies_of(object),
         };
-        if let Some(body) = bodies.iter().find(|body| self.holds[**body] == Hold::Free) {
+        if let Some(body) = bodies
+            .iter()
+            .find(|body| self.holds[**body] == BodyStatus::Free)
+        {
             return Ok(*body);
         }
         match bodies.first().map(|body| self.holds[*body]) {
@@ -137,7 +144,7 @@ impl PhysicsWorld {
                 ActionCode::NotMovable,
                 format!("The {name} stands firm. Choose something loose."),
             ),
-            Some(Hold::Latched) => refuse(
+            Some(BodyStatus::Latched) => refuse(
                 ActionCode::Shut,
                 format!("The {name} is shut and does not give way. Open it first."),
             ),
@@ -149,16 +156,17 @@ impl PhysicsWorld {
     }
 
     /// Applies all pushes for one physics step and tells of those that end.
-    pub(crate) fn shove_on(&mut self, state: &State) {
+    pub(crate) fn advance_pushes(&mut self, state: &State) {
         let dt_s = self.settings.dt_s;
         let mut place = 0;
-        while place < self.shoves.len() {
-            let shove = self.shoves[place];
+        while place < self.ongoing_pushes.len() {
+            let shove = self.ongoing_pushes[place];
             let index = shove.body as usize;
             let handle = self.bodies[index].handle;
             let agent = &state.agents[shove.agent];
             let reach = agent.body.reach_m + SLACK_M;
-            let free = self.holds[index] == Hold::Free && state.held_by[shove.object].is_none();
+            let free =
+                self.holds[index] == BodyStatus::Free && state.held_by[shove.object].is_none();
             let point = self
                 .engine
                 .bodies
@@ -175,11 +183,11 @@ impl PhysicsWorld {
                 if let Some(rigid) = self.engine.bodies.get_mut(handle) {
                     rigid.apply_impulse_at_point(shove.force * dt_s, point, false);
                 }
-                self.shoves[place].left_s -= dt_s;
+                self.ongoing_pushes[place].left_s -= dt_s;
                 place += 1;
                 continue;
             }
-            self.shoves.remove(place);
+            self.ongoing_pushes.remove(place);
             let moved = point.map_or(0.0, |point| (point - shove.start).length());
             let name = self.call(shove.object);
             let outcome = if shove.left {
@@ -197,7 +205,7 @@ impl PhysicsWorld {
                 );
                 fail(ActionCode::Blocked, sentence, Some(shove.object))
             };
-            self.notices.push(Notice {
+            self.notices.push(DelayedOutcome {
                 agent: Some(shove.agent),
                 outcome,
             });

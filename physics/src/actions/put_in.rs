@@ -1,12 +1,12 @@
 //! Putting what is held into a container.
 
-use super::open_way::Ground;
+use super::clearance::SupportFilter;
 use super::outcome::{ActionCode, done, fail};
 use super::request::Target;
-use super::stance::Stance;
-use super::target::Aim;
-use super::{Actor, Told};
-use crate::contact::Toucher;
+use super::stable_pose::StablePose;
+use super::target::ResolvedTarget;
+use super::{ActionResult, Actor};
+use crate::contact::ContactEntity;
 use crate::convert::to_rapier;
 use crate::model::BodyPlan;
 use crate::world::PhysicsWorld;
@@ -30,7 +30,7 @@ const WAY_STEPS: u32 = 32;
 
 /// What was found while looking for a spot inside.
 #[derive(Default)]
-struct Search {
+struct InsertionSearch {
     pose: Option<RapierPose>,
     fits: bool,
     in_reach: bool,
@@ -43,9 +43,9 @@ impl PhysicsWorld {
         state: &mut State,
         actor: Actor<'_>,
         container: &Target,
-    ) -> Told {
+    ) -> ActionResult {
         let grip = self.grip_of(actor)?;
-        let (object, aim) = self.aim_at_object(state, actor, container)?;
+        let (object, aim) = self.resolve_object_target(state, actor, container)?;
         let (held, name) = (self.call(grip.object), self.call(object));
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if grip.object == object {
@@ -74,7 +74,7 @@ impl PhysicsWorld {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        let mut search = Search::default();
+        let mut search = InsertionSearch::default();
         // The space that was pointed at comes first, then the others.
         let meant = |space: &&Receptacle| is_meant(space, &aim, state);
         let (first, rest): (Vec<_>, Vec<_>) = spaces.into_iter().partition(meant);
@@ -89,23 +89,23 @@ impl PhysicsWorld {
                 .joints_of(object)
                 .any(|id| house.joints[id].openness(state.joint_position[id]) < OPEN);
             return match search {
-                Search { fits: false, .. } => refuse(
+                InsertionSearch { fits: false, .. } => refuse(
                     ActionCode::TooLarge,
                     format!("The {held} is too large for the {name}. Choose something roomier."),
                 ),
-                Search {
+                InsertionSearch {
                     in_reach: false, ..
                 } => refuse(
                     ActionCode::TooFar,
                     format!("You do not reach into the {name}. Walk closer."),
                 ),
-                Search {
+                InsertionSearch {
                     in_sight: false, ..
                 } if shut => refuse(
                     ActionCode::Closed,
                     format!("The {name} is closed. Open it first."),
                 ),
-                Search {
+                InsertionSearch {
                     in_sight: false, ..
                 } => refuse(
                     ActionCode::NotVisible,
@@ -131,7 +131,7 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         body: usize,
         space: &Receptacle,
-        search: &mut Search,
+        search: &mut InsertionSearch,
     ) {
         let house = &self.model().house;
         let plan = &self.model().bodies[body];
@@ -150,7 +150,7 @@ impl PhysicsWorld {
             && house
                 .joints_of(space.object)
                 .any(|id| house.joints[id].opens());
-        for stance in self.stances(body) {
+        for stance in self.stable_poses(body) {
             let size = size_in(plan, &stance, &world_from_part);
             let room = inside.size();
             if size.x > room.x || size.z > room.z || size.y * (1.0 - sticks_out) > room.y {
@@ -164,7 +164,7 @@ impl PhysicsWorld {
                 let x = inside.min.x + share(k % GRID, size.x, room.x);
                 let z = inside.min.z + share(k / GRID, size.z, room.z);
                 let top = world_from_part.transform_point(Vec3::new(x, inside.max.y, z));
-                let levels = self.levels_under(body, Ground::Anything, top, room.y + 0.02);
+                let levels = self.support_heights(body, SupportFilter::Any, top, room.y + 0.02);
                 for height in levels {
                     let foot = top.with_y(height);
                     let middle = foot + Vec3::Y * (0.5 * stance.size().y);
@@ -179,7 +179,7 @@ impl PhysicsWorld {
                     let gets_in = if loose_with_lid {
                         self.gets_in(eye, middle, space.object, &outer, &world_from_part)
                     } else {
-                        self.barred_by(eye, middle).is_none()
+                        self.first_obstacle(eye, middle).is_none()
                     };
                     if !gets_in || !house.encloses(state, space.object, &outer, &inner) {
                         continue;
@@ -209,7 +209,7 @@ impl PhysicsWorld {
         let house = &self.model().house;
         let own = |_: ColliderHandle, collider: &Collider| {
             let part = self.entry_of(collider).toucher;
-            matches!(part, Some(Toucher::Part(part)) if house.parts[part].object == container)
+            matches!(part, Some(ContactEntity::Part(part)) if house.parts[part].object == container)
         };
         let queries = self.engine.queries(QueryFilter::default().predicate(&own));
         let beyond = outer.size().length();
@@ -231,14 +231,14 @@ impl PhysicsWorld {
             outside.is_some_and(|outside| {
                 let ray = Ray::new(inside, outside - inside);
                 queries.cast_ray(&ray, 1.0, true).is_none()
-                    && self.barred_by(eye, outside).is_none()
+                    && self.first_obstacle(eye, outside).is_none()
             })
         })
     }
 }
 
 /// Whether a space is the one that was pointed at: by its part, or by the point.
-fn is_meant(space: &Receptacle, aim: &Aim, state: &State) -> bool {
+fn is_meant(space: &Receptacle, aim: &ResolvedTarget, state: &State) -> bool {
     match (aim.point, aim.part) {
         (Some(point), _) => {
             let point_in_part = state.part_pose[space.part].inverse().transform_point(point);
@@ -250,7 +250,7 @@ fn is_meant(space: &Receptacle, aim: &Aim, state: &State) -> bool {
 }
 
 /// The edges of a stance along a part's axes, m.
-fn size_in(plan: &BodyPlan, stance: &Stance, world_from_part: &Pose) -> Vec3 {
+fn size_in(plan: &BodyPlan, stance: &StablePose, world_from_part: &Pose) -> Vec3 {
     let turned = to_rapier(&Pose::new(
         Vec3::ZERO,
         world_from_part.rotation.inverse() * stance.rotation,
@@ -259,7 +259,7 @@ fn size_in(plan: &BodyPlan, stance: &Stance, world_from_part: &Pose) -> Vec3 {
 }
 
 /// The box around a stance on a foot, m.
-fn bounds_on(stance: &Stance, foot: Vec3) -> Aabb {
+fn bounds_on(stance: &StablePose, foot: Vec3) -> Aabb {
     let half = 0.5 * stance.size();
     let middle = foot + Vec3::Y * half.y;
     Aabb::new(middle - half, middle + half)

@@ -3,7 +3,7 @@
 use super::Actor;
 use super::outcome::{ActionCode, ActionOutcome, fail};
 use crate::body;
-use crate::contact::{Toucher, entry_index};
+use crate::contact::{ContactEntity, entry_index};
 use crate::model::PhysicsModel;
 use crate::world::PhysicsWorld;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -208,7 +208,7 @@ impl PhysicsWorld {
         let (handle, _) = queries.cast_shape(&place, down, &Ball::new(radius), options)?;
         let collider = self.engine.colliders.get(handle)?;
         match self.entries[entry_index(collider)].toucher {
-            Some(Toucher::Part(part)) => Some(self.model().house.parts[part].object),
+            Some(ContactEntity::Part(part)) => Some(self.model().house.parts[part].object),
             _ => None,
         }
     }

@@ -2,13 +2,18 @@
 
 use super::outcome::{ActionCode, done, fail};
 use super::request::Target;
-use super::{Actor, Told};
+use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::{JointId, State};
 
 impl PhysicsWorld {
-    pub(super) fn toggle(&mut self, state: &mut State, actor: Actor<'_>, target: &Target) -> Told {
-        let (object, _) = self.aim_at_object(state, actor, target)?;
+    pub(super) fn toggle(
+        &mut self,
+        state: &mut State,
+        actor: Actor<'_>,
+        target: &Target,
+    ) -> ActionResult {
+        let (object, _) = self.resolve_object_target(state, actor, target)?;
         let name = self.call(object);
         if self.model().house.objects[object].switch.is_none() {
             let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");

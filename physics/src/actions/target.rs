@@ -15,7 +15,7 @@ const WORLD_M: f32 = 32_768.0;
 
 /// A thing that was meant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Aim {
+pub(super) struct ResolvedTarget {
     pub(super) entity: Entity,
     /// The part that was named or met.
     pub(super) part: Option<PartId>,
@@ -25,15 +25,15 @@ pub(super) struct Aim {
 
 impl PhysicsWorld {
     /// Finds what is meant.
-    pub(super) fn aim(
+    pub(super) fn resolve_target(
         &self,
         state: &State,
         actor: Actor<'_>,
         target: &Target,
-    ) -> Result<Aim, Box<ActionOutcome>> {
+    ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
         let house = &self.model().house;
         let found = |entity, part, point| {
-            Ok(Aim {
+            Ok(ResolvedTarget {
                 entity,
                 part,
                 point,
@@ -91,14 +91,14 @@ impl PhysicsWorld {
         }
     }
 
-    /// As [`Self::aim`] where only an object will do.
-    pub(super) fn aim_at_object(
+    /// As [`Self::resolve_target`] where only an object will do.
+    pub(super) fn resolve_object_target(
         &self,
         state: &State,
         actor: Actor<'_>,
         target: &Target,
-    ) -> Result<(ObjectId, Aim), Box<ActionOutcome>> {
-        let aim = self.aim(state, actor, target)?;
+    ) -> Result<(ObjectId, ResolvedTarget), Box<ActionOutcome>> {
+        let aim = self.resolve_target(state, actor, target)?;
         let (code, sentence) = match aim.entity {
             Entity::Object(object) => return Ok((object, aim)),
             Entity::Agent(agent) if agent == actor.id => (
@@ -131,7 +131,7 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         origin: Vec3,
         direction: Vec3,
-    ) -> Result<Aim, Box<ActionOutcome>> {
+    ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
         let house = &self.model().house;
         let direction = direction.normalize_or_zero();
         let ray = Ray::new(origin, direction).between(0.0, FAR_M);
@@ -143,7 +143,7 @@ impl PhysicsWorld {
         let until = hit.map_or(FAR_M, |hit| hit.distance_m);
         if let Some((agent, distance)) = self.meet_agent(state, actor.id, origin, direction, until)
         {
-            return Ok(Aim {
+            return Ok(ResolvedTarget {
                 entity: Entity::Agent(agent),
                 part: None,
                 point: Some(origin + direction * distance),
@@ -159,7 +159,7 @@ impl PhysicsWorld {
             SurfaceOwner::Structure(id) => (Entity::Structure(id), None),
             SurfaceOwner::Part(id) => (Entity::Object(house.parts[id].object), Some(id)),
         };
-        Ok(Aim {
+        Ok(ResolvedTarget {
             entity,
             part,
             point,

@@ -1,7 +1,7 @@
 //! Throwing.
 
 use super::outcome::{ActionCode, done, fail};
-use super::{Actor, Told};
+use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::State;
 use glam::Vec3;
@@ -26,7 +26,7 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         direction: Vec3,
         speed_m_s: f32,
-    ) -> Told {
+    ) -> ActionResult {
         let grip = self.grip_of(actor)?;
         let along = direction.normalize_or_zero();
         let good = direction.is_finite() && along != Vec3::ZERO && speed_m_s.is_finite();

@@ -1,8 +1,8 @@
 //! Carrying: a held thing follows the hand in front of the eye as a rigid body, so that walls stop it.
 
 use crate::actions::Grasp;
-use crate::body::Body;
-use crate::engine::Engine;
+use crate::body::BodyHandle;
+use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
 use dwell_scene::{AgentId, AgentState, ObjectId, Pose, math};
 use glam::{Quat, Vec3};
@@ -36,7 +36,7 @@ const GENTLE_S: f32 = 4.0;
 
 /// A hand that holds something.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Grip {
+pub(crate) struct HeldObject {
     pub(crate) object: ObjectId,
     pub(crate) body: u32,
     pub(crate) agent: AgentId,
@@ -54,7 +54,7 @@ pub(crate) struct Grip {
     loaded: bool,
 }
 
-impl Grip {
+impl HeldObject {
     /// Takes hold of a body where it is.
     pub(crate) fn new(
         model: &PhysicsModel,
@@ -87,7 +87,7 @@ impl Grip {
 }
 
 /// Where a held body shall be.
-pub(crate) fn hand_pose(grip: &Grip, holder: &AgentState) -> Pose {
+pub(crate) fn hand_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
     let yaw = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, 0.0);
     let pitch = holder.pitch_rad.clamp(PITCHES[0], PITCHES[1]);
     let look = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, pitch) * Vec3::NEG_Z;
@@ -99,9 +99,9 @@ pub(crate) fn hand_pose(grip: &Grip, holder: &AgentState) -> Pose {
 
 /// Pulls a held body towards the hand for one physics step. Returns whether it slips.
 pub(crate) fn carry(
-    engine: &mut Engine,
-    body: &Body,
-    grip: &mut Grip,
+    engine: &mut RapierWorld,
+    body: &BodyHandle,
+    grip: &mut HeldObject,
     holder: &AgentState,
     dt_s: f32,
 ) -> bool {
@@ -145,7 +145,7 @@ pub(crate) fn carry(
             frequency_hz,
             damping_ratio,
         } => {
-            let spring = Spring {
+            let spring = ImplicitSpring {
                 rate_rad_s: TAU * frequency_hz,
                 damping_ratio,
                 dt_s,
@@ -172,13 +172,13 @@ pub(crate) fn carry(
 }
 
 /// A damped spring that is stepped implicitly, so that no stiffness makes it grow.
-struct Spring {
+struct ImplicitSpring {
     rate_rad_s: f32,
     damping_ratio: f32,
     dt_s: f32,
 }
 
-impl Spring {
+impl ImplicitSpring {
     /// The change of a velocity in one step, `away` from the target (m or rad); `velocity`: relative to the target, as the
     /// step would end without the spring.
     fn change(&self, away: Vec3, velocity: Vec3) -> Vec3 {
@@ -189,7 +189,7 @@ impl Spring {
     }
 }
 
-impl Grip {
+impl HeldObject {
     /// Whether it carries the whole weight.
     pub(crate) fn is_firm(&self) -> bool {
         self.grasp == Grasp::Kinematic
@@ -202,7 +202,12 @@ impl Grip {
 }
 
 /// Lets go of a body: it has its weight again (`gravity_scale` of it) and the speed of whoever held it.
-pub(crate) fn release(engine: &mut Engine, body: &Body, gravity_scale: f32, velocity: Vec3) {
+pub(crate) fn release(
+    engine: &mut RapierWorld,
+    body: &BodyHandle,
+    gravity_scale: f32,
+    velocity: Vec3,
+) {
     if let Some(rigid) = engine.bodies.get_mut(body.handle) {
         rigid.set_gravity_scale(gravity_scale, true);
         rigid.set_linvel(velocity.clamp_length_max(3.0), true);

@@ -1,25 +1,27 @@
 //! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light things and
 //! carry one.
 
-mod arrive;
 mod carry;
+mod character_controller;
 mod control;
-mod grow;
-mod moving;
-mod probe;
+mod movement;
+mod resize;
+mod shape_queries;
 mod slope;
-mod walk;
+mod spawn;
 
 pub use control::AgentControl;
 pub(crate) use control::STEEPEST_LOOK_RAD;
 
-pub(crate) use carry::{Grip, carry, hand_pose, release};
-pub(crate) use moving::Way;
-pub(crate) use probe::{Probe, Shell};
-pub(crate) use walk::{FASTEST_FALL_M_S, Loose, Push, Walk};
+pub(crate) use carry::{HeldObject, carry, hand_pose, release};
+pub(crate) use character_controller::{
+    CharacterController, CharacterPush, FASTEST_FALL_M_S, PassiveVelocity,
+};
+pub(crate) use movement::MovementRecord;
+pub(crate) use shape_queries::{AgentCylinder, AgentQueries};
 
-use crate::contact::{Dress, Entry, Toucher};
-use crate::engine::Engine;
+use crate::contact::{ColliderEntry, ContactEntity, ContactProperties};
+use crate::engine::RapierWorld;
 use dwell_scene::{AgentBody, AgentId, AgentState};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
@@ -27,7 +29,7 @@ use rapier3d::geometry::{ColliderBuilder, SharedShape};
 
 /// Height of the gap under an agent's rapier shape, m: what lies flat on the floor is stepped on, not shot away.
 const SOLE_M: f32 = 0.05;
-/// An agent's body in rapier: a capsule that pushes and is hit, and is moved by [`Walk`].
+/// An agent's body in rapier: a capsule that pushes and is hit, and is moved by [`CharacterController`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Agent {
     pub(crate) handle: RigidBodyHandle,
@@ -45,7 +47,7 @@ fn capsule(agent: &AgentState) -> (SharedShape, f32) {
 }
 
 /// An agent's body with the height that it has now.
-fn as_it_stands(state: &AgentState) -> AgentBody {
+fn current_body(state: &AgentState) -> AgentBody {
     AgentBody {
         height_m: state.height_m(),
         ..state.body
@@ -53,8 +55,8 @@ fn as_it_stands(state: &AgentState) -> AgentBody {
 }
 
 /// Gives an agent's capsule the size that it has now.
-pub(crate) fn reshape(engine: &mut Engine, agent: &mut Agent, state: &AgentState) {
-    agent.stands = as_it_stands(state);
+pub(crate) fn reshape(engine: &mut RapierWorld, agent: &mut Agent, state: &AgentState) {
+    agent.stands = current_body(state);
     let (shape, center) = capsule(state);
     // Colliders are inserted in the order of entries and never removed.
     let Some((_, handle)) = engine.colliders.get_unknown_gen(agent.entry) else {
@@ -68,9 +70,9 @@ pub(crate) fn reshape(engine: &mut Engine, agent: &mut Agent, state: &AgentState
 
 /// Inserts an agent's capsule.
 pub(crate) fn insert(
-    engine: &mut Engine,
-    values: Dress<'_>,
-    entries: &mut Vec<Entry>,
+    engine: &mut RapierWorld,
+    values: ContactProperties<'_>,
+    entries: &mut Vec<ColliderEntry>,
     id: AgentId,
     state: &AgentState,
     event_force_n: f32,
@@ -79,8 +81,8 @@ pub(crate) fn insert(
         .bodies
         .insert(RigidBodyBuilder::kinematic_position_based().translation(state.position));
     let (shape, center) = capsule(state);
-    let entry = Entry {
-        toucher: Some(Toucher::Agent(id)),
+    let entry = ColliderEntry {
+        toucher: Some(ContactEntity::Agent(id)),
         body: None,
         surface: values.table.human(),
     };
@@ -90,7 +92,7 @@ pub(crate) fn insert(
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder = crate::body::dress(builder, values.rule(&entry), true, number);
+    let builder = crate::body::set_contact_properties(builder, values.rule(&entry), true, number);
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);
@@ -98,6 +100,6 @@ pub(crate) fn insert(
     Agent {
         handle,
         entry: number as u32,
-        stands: as_it_stands(state),
+        stands: current_body(state),
     }
 }

@@ -4,7 +4,7 @@
 //! up, and not beyond. There it slides along the surface with `g (sin a - tan(max_slope) cos a)`, and on the level it
 //! comes to rest under the same friction.
 
-use super::walk::Walk;
+use super::character_controller::CharacterController;
 use dwell_scene::math;
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ const MARGIN: f32 = 1e-3;
 /// Highest speed of a slide, m/s.
 const FASTEST_M_S: f32 = 30.0;
 
-impl Walk<'_> {
+impl CharacterController<'_> {
     /// Whether the surface under the middle of the feet, near `height_m`, is too steep to walk up.
     pub(super) fn is_too_steep(&self, feet: Vec3, height_m: f32) -> bool {
         let steepest = math::cos(self.probe.body.max_slope_rad);

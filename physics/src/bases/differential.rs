@@ -1,18 +1,18 @@
 //! Two driven wheels side by side.
 
-use super::Twist;
+use super::PlanarTwist;
 use dwell_scene::DifferentialDrive;
 
 /// The geometry of a differential drive: what decides how wheels move the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wheels {
+pub struct WheelGeometry {
     /// Radius of the left and right wheel, m.
     pub radius_m: [f64; 2],
     /// Distance between the points where they touch the floor, m.
     pub base_m: f64,
 }
 
-impl From<&DifferentialDrive> for Wheels {
+impl From<&DifferentialDrive> for WheelGeometry {
     fn from(drive: &DifferentialDrive) -> Self {
         Self {
             radius_m: [drive.left_wheel_radius_m, drive.right_wheel_radius_m].map(f64::from),
@@ -21,22 +21,22 @@ impl From<&DifferentialDrive> for Wheels {
     }
 }
 
-impl Wheels {
+impl WheelGeometry {
     /// How the body moves when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean of
     /// both speeds forward, their difference over the wheel base to the left.
     ///
     /// # Source
     /// R. Siegwart, I. R. Nourbakhsh, Introduction to Autonomous Mobile Robots (2004), section 3.2.
-    pub fn twist(&self, wheel_rad_s: [f64; 2]) -> Twist {
+    pub fn twist(&self, wheel_rad_s: [f64; 2]) -> PlanarTwist {
         let [left, right] = [0, 1].map(|side| self.radius_m[side] * wheel_rad_s[side]);
-        Twist {
+        PlanarTwist {
             forward_m_s: 0.5 * (left + right),
             left_m_s: 0.0,
             yaw_rate_rad_s: (right - left) / self.base_m,
         }
     }
 
-    /// The rates of the left and right wheel (rad/s) that make the body go forward and turn so; [`Wheels::twist`]
+    /// The rates of the left and right wheel (rad/s) that make the body go forward and turn so; [`WheelGeometry::twist`]
     /// backwards. Such wheels cannot go sideways.
     pub fn rates(&self, forward_m_s: f64, yaw_rate_rad_s: f64) -> [f64; 2] {
         let turn = 0.5 * self.base_m * yaw_rate_rad_s;
@@ -54,7 +54,12 @@ pub(crate) struct WheelCommand(pub(crate) [f64; 2]);
 impl WheelCommand {
     /// A forward speed and a rate of turn, as the base's own geometry makes them. What is too fast for a wheel is slowed
     /// down as a whole, so that the way keeps its curvature.
-    pub(crate) fn from_twist(nominal: &Wheels, forward: f64, yaw_rate: f64, fastest: f64) -> Self {
+    pub(crate) fn from_twist(
+        nominal: &WheelGeometry,
+        forward: f64,
+        yaw_rate: f64,
+        fastest: f64,
+    ) -> Self {
         let rates = nominal.rates(forward, yaw_rate);
         let most = rates[0].abs().max(rates[1].abs());
         let part = if most > fastest { fastest / most } else { 1.0 };
@@ -64,9 +69,9 @@ impl WheelCommand {
 
 /// What two wheels do in one physics step; laws change it before it becomes a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rolling {
+pub(crate) struct WheelMotion {
     /// The true geometry.
-    pub(crate) wheels: Wheels,
+    pub(crate) wheels: WheelGeometry,
     /// Mean rate of each wheel over the step, rad/s.
     pub(crate) rate_rad_s: [f64; 2],
     /// Mean acceleration of each wheel over the step, rad/s².
@@ -75,9 +80,9 @@ pub(crate) struct Rolling {
     pub(crate) slip: [f64; 2],
 }
 
-impl Rolling {
+impl WheelMotion {
     /// How the body moves.
-    pub(crate) fn twist(&self) -> Twist {
+    pub(crate) fn twist(&self) -> PlanarTwist {
         let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip[side]));
         self.wheels.twist(gripping)
     }
@@ -104,8 +109,8 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    fn wheels(radii: [f64; 2], base: f64) -> Wheels {
-        Wheels {
+    fn wheels(radii: [f64; 2], base: f64) -> WheelGeometry {
+        WheelGeometry {
             radius_m: radii,
             base_m: base,
         }
@@ -145,7 +150,7 @@ mod tests {
     fn a_square_ends_with_the_heading_error_of_its_wheels_and_base() {
         let nominal = wheels([0.05, 0.05], 0.3);
         let side = 4.0;
-        let heading = |truth: &Wheels, direction: f64| {
+        let heading = |truth: &WheelGeometry, direction: f64| {
             let mut pose = PlanarPose::default();
             for _ in 0..4 {
                 for (forward, yaw, seconds) in [(1.0, 0.0, side), (0.0, direction, FRAC_PI_2)] {

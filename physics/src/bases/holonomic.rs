@@ -1,11 +1,16 @@
 //! A base that moves in any direction.
 
-use super::Twist;
+use super::PlanarTwist;
 use dwell_scene::HolonomicBase;
 
 /// The twist after a step towards `wanted`, and the mean over the step. The velocity changes along a straight line, the
 /// rate of turn beside it.
-pub(crate) fn follow(base: &HolonomicBase, now: Twist, wanted: Twist, dt_s: f64) -> (Twist, Twist) {
+pub(crate) fn follow(
+    base: &HolonomicBase,
+    now: PlanarTwist,
+    wanted: PlanarTwist,
+    dt_s: f64,
+) -> (PlanarTwist, PlanarTwist) {
     let within = |value: f64, most: f32| value.clamp(-f64::from(most), f64::from(most));
     let goal = (
         within(wanted.forward_m_s, base.max_forward_m_s),
@@ -32,7 +37,7 @@ pub(crate) fn follow(base: &HolonomicBase, now: Twist, wanted: Twist, dt_s: f64)
         f64::from(base.max_yaw_acceleration_rad_s2),
         dt_s,
     );
-    let twist = |(forward_m_s, left_m_s), yaw_rate_rad_s| Twist {
+    let twist = |(forward_m_s, left_m_s), yaw_rate_rad_s| PlanarTwist {
         forward_m_s,
         left_m_s,
         yaw_rate_rad_s,
@@ -49,12 +54,12 @@ mod tests {
     #[test]
     fn a_twist_is_reached_along_a_straight_line_within_its_limits() {
         let base = HolonomicBase::default();
-        let wanted = Twist {
+        let wanted = PlanarTwist {
             forward_m_s: 0.6,
             left_m_s: -5.0,
             yaw_rate_rad_s: 9.0,
         };
-        let mut now = Twist::default();
+        let mut now = PlanarTwist::default();
         for k in 1..=100 {
             (now, _) = follow(&base, now, wanted, 0.01);
             let t = f64::from(k) * 0.01;

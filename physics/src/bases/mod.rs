@@ -8,11 +8,11 @@
 //! velocity and its heading until it lands. Along a wall that it meets at an angle it scrapes as a walker does.
 
 mod differential;
-mod drive;
 mod holonomic;
 mod planar;
+mod wheeled_step;
 
-pub(crate) use differential::Rolling;
-pub use differential::Wheels;
-pub(crate) use drive::drive;
-pub use planar::{PlanarPose, Twist};
+pub use differential::WheelGeometry;
+pub(crate) use differential::WheelMotion;
+pub use planar::{PlanarPose, PlanarTwist};
+pub(crate) use wheeled_step::drive;

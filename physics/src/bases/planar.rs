@@ -16,7 +16,7 @@ pub struct PlanarPose {
 
 /// The velocity of a body in its own frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Twist {
+pub struct PlanarTwist {
     /// m/s.
     pub forward_m_s: f64,
     /// m/s.
@@ -42,7 +42,7 @@ impl PlanarPose {
     /// The exponential map of SE(2): R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic
     /// Manipulation (1994), section 2.3; written with the chord of the arc, which stays accurate for small turns.
     #[must_use]
-    pub fn advanced(&self, twist: &Twist, duration_s: f64) -> Self {
+    pub fn advanced(&self, twist: &PlanarTwist, duration_s: f64) -> Self {
         let turn = twist.yaw_rate_rad_s * duration_s;
         let chord = sinc(0.5 * turn) * duration_s;
         let (sin, cos) = libm::sincos(self.heading_rad + 0.5 * turn);
@@ -76,8 +76,8 @@ mod tests {
     use super::*;
     use std::f64::consts::{PI, TAU};
 
-    fn twist(forward: f64, left: f64, yaw: f64) -> Twist {
-        Twist {
+    fn twist(forward: f64, left: f64, yaw: f64) -> PlanarTwist {
+        PlanarTwist {
             forward_m_s: forward,
             left_m_s: left,
             yaw_rate_rad_s: yaw,

@@ -1,13 +1,13 @@
 //! How two surfaces approach at a point of contact.
 
-use super::motion::Motion;
+use super::body_motion::BodyMotion;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{ContactManifold, SolverContact};
 
 /// Two surfaces at a contact point, before a step.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Approach {
+pub(super) struct ApproachMotion {
     /// Between the two.
     pub(super) place: Vec3,
     /// From the centre of mass of each to its surface, m.
@@ -22,13 +22,13 @@ pub(super) struct Approach {
     pub(super) meets_s: f32,
 }
 
-impl Approach {
+impl ApproachMotion {
     /// From where the two surfaces stood before the step. `motions`: of the manifold's first and second body.
     pub(super) fn of(
         manifold: &ContactManifold,
         contact: &SolverContact,
         bodies: &RigidBodySet,
-        (a, b): (&Motion, &Motion),
+        (a, b): (&BodyMotion, &BodyMotion),
     ) -> Self {
         let normal = manifold.data.normal;
         let (p, q) = ends_before(manifold, contact, bodies, (a, b));
@@ -60,11 +60,11 @@ fn ends_before(
     manifold: &ContactManifold,
     contact: &SolverContact,
     bodies: &RigidBodySet,
-    (a, b): (&Motion, &Motion),
+    (a, b): (&BodyMotion, &BodyMotion),
 ) -> (Vec3, Vec3) {
     let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
     // Anchors ride on their bodies, or stand in the world.
-    let before = |now: Vec3, anchor: Vec3, motion: &Motion, in_world: bool| {
+    let before = |now: Vec3, anchor: Vec3, motion: &BodyMotion, in_world: bool| {
         if motion.known && !in_world {
             motion.center + motion.rotation * anchor
         } else {

@@ -1,9 +1,9 @@
 //! What rapier tells of contacts while it steps.
 
-use super::approach::Approach;
-use super::entry::{Entry, Toucher, entry_index};
+use super::approach::ApproachMotion;
+use super::body_motion::{BodyMotion, before};
+use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use super::friction;
-use super::motion::{Motion, before};
 use crate::engine::points;
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
@@ -12,8 +12,8 @@ use rapier3d::pipeline::EventHandler;
 use std::sync::{Mutex, PoisonError};
 
 /// What rapier reports of one pair of colliders in one step.
-pub(super) struct Report {
-    pub(super) pair: (Toucher, Toucher),
+pub(super) struct ContactReport {
+    pub(super) pair: (ContactEntity, ContactEntity),
     pub(super) classes: (u16, u16),
     /// N·s.
     pub(super) impulse: f32,
@@ -38,23 +38,23 @@ pub(super) struct Report {
 }
 
 /// Gathers contacts while rapier steps.
-pub(crate) struct Collector<'a> {
-    entries: &'a [Entry],
+pub(crate) struct ContactCollector<'a> {
+    entries: &'a [ColliderEntry],
     /// Below this nothing is told, m/s.
     slowest: f32,
     /// Motion before the step of every body that was awake, by its arena index.
-    before: &'a [Motion],
+    before: &'a [BodyMotion],
     /// How rapier keeps friction.
-    kept: friction::Kept,
-    reports: Mutex<Vec<Report>>,
+    kept: friction::FrictionStorage,
+    reports: Mutex<Vec<ContactReport>>,
 }
 
-impl<'a> Collector<'a> {
+impl<'a> ContactCollector<'a> {
     pub(crate) fn new(
-        entries: &'a [Entry],
-        before: &'a [Motion],
+        entries: &'a [ColliderEntry],
+        before: &'a [BodyMotion],
         slowest: f32,
-        kept: friction::Kept,
+        kept: friction::FrictionStorage,
     ) -> Self {
         Self {
             entries,
@@ -66,7 +66,7 @@ impl<'a> Collector<'a> {
     }
 
     /// The step's reports in an order that does not depend on rapier's order of pairs.
-    pub(super) fn reports(self) -> Vec<Report> {
+    pub(super) fn reports(self) -> Vec<ContactReport> {
         let mut reports = self
             .reports
             .into_inner()
@@ -83,7 +83,7 @@ impl<'a> Collector<'a> {
         bodies: &RigidBodySet,
         colliders: &ColliderSet,
         pair: &ContactPair,
-    ) -> Option<Report> {
+    ) -> Option<ContactReport> {
         let (one, two) = (&colliders[pair.collider1], &colliders[pair.collider2]);
         let a = self.entries.get(entry_index(one))?;
         let b = self.entries.get(entry_index(two))?;
@@ -95,7 +95,7 @@ impl<'a> Collector<'a> {
         if motions.0.fastest + motions.1.fastest < self.slowest {
             return None;
         }
-        let mut report = Report {
+        let mut report = ContactReport {
             pair: (touch_a.min(touch_b), touch_a.max(touch_b)),
             classes: (0, 0),
             impulse: 0.0,
@@ -139,7 +139,7 @@ impl<'a> Collector<'a> {
         &self,
         bodies: &RigidBodySet,
         collider: &Collider,
-        motion: &Motion,
+        motion: &BodyMotion,
     ) -> Option<(RigidBodyHandle, Vec3)> {
         if !self.kept.once {
             return None;
@@ -151,14 +151,14 @@ impl<'a> Collector<'a> {
     }
 }
 
-impl Report {
+impl ContactReport {
     /// Adds a plane of contact; returns its normal impulse.
     fn add(
         &mut self,
         manifold: &ContactManifold,
         bodies: &RigidBodySet,
-        (a, b): &(Motion, Motion),
-        kept: friction::Kept,
+        (a, b): &(BodyMotion, BodyMotion),
+        kept: friction::FrictionStorage,
     ) -> f32 {
         let normal = manifold.data.normal;
         let mut here = 0.0;
@@ -167,7 +167,7 @@ impl Report {
             if push <= 0.0 {
                 continue;
             }
-            let approach = Approach::of(manifold, contact, bodies, (a, b));
+            let approach = ApproachMotion::of(manifold, contact, bodies, (a, b));
             if approach.speed > self.speed {
                 self.speed = approach.speed;
                 self.meeting = approach.meeting;
@@ -189,7 +189,7 @@ impl Report {
     }
 }
 
-impl EventHandler for Collector<'_> {
+impl EventHandler for ContactCollector<'_> {
     fn handle_collision_event(
         &self,
         _bodies: &RigidBodySet,

@@ -1,6 +1,6 @@
 //! What touches tell the world: impacts, scrapes and rolling.
 
-use super::entry::Toucher;
+use super::collider_entry::ContactEntity;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -45,9 +45,9 @@ pub struct ContactEvent {
     /// Where, m: the mean of the contact points, weighted by impulse.
     pub position: Vec3,
     /// The thing that sorts first: structure, then parts, then agents, each by number.
-    pub a: Toucher,
+    pub a: ContactEntity,
     /// The other one.
-    pub b: Toucher,
+    pub b: ContactEntity,
     /// What `a` is made of there, as the materials library names it.
     pub substance_a: &'static str,
     /// What `b` is made of there.

@@ -4,7 +4,7 @@
 //! by beyond gravity, and without the normal impulses, which rapier sums over all substeps, that is friction. So a body that one
 //! thing touches tells all of it; where several touch, each is reckoned from the last substep.
 
-use super::collector::Report;
+use super::collector::ContactReport;
 use crate::engine::points;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
@@ -13,14 +13,14 @@ use std::collections::BTreeSet;
 
 /// How rapier keeps friction in contact points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Kept {
+pub(crate) struct FrictionStorage {
     /// Each point of a plane holds the friction of the whole plane.
     pub(crate) by_patch: bool,
     /// rapier runs once in a physics step.
     pub(crate) once: bool,
 }
 
-impl Kept {
+impl FrictionStorage {
     /// The friction of a plane in the last substep, N·s, on its first body.
     pub(super) fn last(self, plane: &ContactManifold) -> Vec3 {
         let each = points(plane).map(|(_, point)| point.warmstart_tangent_world);
@@ -55,7 +55,7 @@ impl Kept {
 }
 
 /// Puts the friction that a body's momentum tells in the place of estimates. `reports`: of one run, sorted by pair.
-pub(super) fn whole(reports: &mut [Report]) {
+pub(super) fn whole(reports: &mut [ContactReport]) {
     // Bodies that more than one thing touches.
     let (mut touched, mut shared) = (BTreeSet::new(), BTreeSet::new());
     let number = |(body, _): (RigidBodyHandle, Vec3)| body.into_raw_parts();

@@ -1,10 +1,10 @@
 //! What rapier asks during a step: which pairs meet, and with what friction.
 
-use super::entry::{Entry, entry_index};
-use super::friction::Kept;
+use super::collider_entry::{ColliderEntry, entry_index};
+use super::friction::FrictionStorage;
 use super::rolling;
 use super::substances::ContactTable;
-use crate::laws::{self, ContactValues, Installed, Side, Touch};
+use crate::laws::{self, ContactSide, ContactValues, InstalledLaw, LawContact};
 use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};
@@ -21,20 +21,20 @@ const SAME_POINT_M: f32 = 0.002;
 
 /// Pairs that do not meet.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Excluded {
+pub(crate) struct CollisionExclusions {
     /// A body and an entry, sorted: what a door's leaf overlaps where it stands shut.
     pub(crate) entries: Vec<(u32, u32)>,
     /// A body and the agent that holds it or has just let go of it, sorted.
     pub(crate) carriers: Vec<(u32, AgentId)>,
 }
 
-impl Excluded {
-    fn meets(&self, entries: &[Entry], a: usize, b: usize) -> bool {
+impl CollisionExclusions {
+    fn meets(&self, entries: &[ColliderEntry], a: usize, b: usize) -> bool {
         let one_way = |a: usize, b: usize| {
             let Some(body) = entries.get(a).and_then(|entry| entry.body) else {
                 return true;
             };
-            let with_agent = entries.get(b).and_then(Entry::agent);
+            let with_agent = entries.get(b).and_then(ColliderEntry::agent);
             let carried =
                 with_agent.is_some_and(|agent| self.carriers.binary_search(&(body, agent)).is_ok());
             !carried && self.entries.binary_search(&(body, b as u32)).is_err()
@@ -55,15 +55,15 @@ impl Excluded {
 
 /// The values of colliders: the table's, and what laws make of them.
 #[derive(Clone, Copy)]
-pub(crate) struct Dress<'a> {
+pub(crate) struct ContactProperties<'a> {
     pub(crate) house: &'a House,
     pub(crate) table: &'a ContactTable,
-    pub(crate) laws: &'a [Installed],
+    pub(crate) laws: &'a [InstalledLaw],
 }
 
-impl Dress<'_> {
+impl ContactProperties<'_> {
     /// The values of a collider on itself, for rapier's own rule, and whether rapier asks about its pairs instead.
-    pub(crate) fn rule(&self, entry: &Entry) -> (PairContact, bool) {
+    pub(crate) fn rule(&self, entry: &ColliderEntry) -> (PairContact, bool) {
         let (mut own, mut special) = self.table.rule(&entry.surface);
         if self.laws.is_empty() {
             return (own, special);
@@ -82,16 +82,16 @@ impl Dress<'_> {
 }
 
 /// The callbacks of one step.
-pub(crate) struct Hooks<'a> {
-    pub(crate) entries: &'a [Entry],
-    pub(crate) dress: Dress<'a>,
-    pub(crate) excluded: &'a Excluded,
-    pub(crate) kept: Kept,
+pub(crate) struct ContactHooks<'a> {
+    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) properties: ContactProperties<'a>,
+    pub(crate) excluded: &'a CollisionExclusions,
+    pub(crate) kept: FrictionStorage,
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
 
-impl PhysicsHooks for Hooks<'_> {
+impl PhysicsHooks for ContactHooks<'_> {
     fn filter_contact_pair(&self, context: &PairFilterContext) -> Option<SolverFlags> {
         interrupt::check();
         let a = entry_index(&context.colliders[context.collider1]);
@@ -108,7 +108,7 @@ impl PhysicsHooks for Hooks<'_> {
         let (Some(a), Some(b)) = (self.entries.get(a), self.entries.get(b)) else {
             return;
         };
-        let Dress { table, laws, .. } = self.dress;
+        let ContactProperties { table, laws, .. } = self.properties;
         let (bodies, body_a, body_b) = (context.bodies, context.rigid_body1, context.rigid_body2);
         let Some(manifold) = context.rigid_mut() else {
             return;
@@ -118,7 +118,7 @@ impl PhysicsHooks for Hooks<'_> {
                 .map_or(Vec3::ZERO, RigidBody::angvel)
         };
         let turns = (turns(body_a), turns(body_b));
-        rolling::straighten(manifold, (one, two), turns, self.dt_s);
+        rolling::correct_line_contact(manifold, (one, two), turns, self.dt_s);
         let class_a = a.surface.class(manifold.manifold.subshape1);
         let class_b = b.surface.class(manifold.manifold.subshape2);
         let pair = table.pair(class_a, class_b);
@@ -129,9 +129,9 @@ impl PhysicsHooks for Hooks<'_> {
         }
         if laws::compliance(laws).is_some() {
             *manifold.restitution = 0.0;
-            single_out(manifold.solver_contacts);
+            merge_coincident_points(manifold.solver_contacts);
         }
-        let side = |entry: &Entry, class: u16, body: Option<RigidBodyHandle>| Side {
+        let side = |entry: &ColliderEntry, class: u16, body: Option<RigidBodyHandle>| ContactSide {
             toucher: entry.toucher,
             substance: table.substance(class),
             rotation: body
@@ -145,7 +145,7 @@ impl PhysicsHooks for Hooks<'_> {
 
 /// Keeps the deepest of points that are one: a ball on the common edge of two triangles touches both, and as many springs
 /// are as many times as stiff.
-fn single_out(contacts: &mut SolverContacts) {
+fn merge_coincident_points(contacts: &mut SolverContacts) {
     let same = |a: &SolverContact, b: &SolverContact| {
         a.anchor1.distance_squared(b.anchor1) < SAME_POINT_M * SAME_POINT_M
     };
@@ -163,21 +163,21 @@ fn single_out(contacts: &mut SolverContacts) {
     }
 }
 
-impl Hooks<'_> {
+impl ContactHooks<'_> {
     /// Lets the laws change a plane's values.
     fn shape(
         &self,
         plane: &mut ModifiableManifold<'_>,
         bodies: &RigidBodySet,
         (body_a, body_b): (Option<RigidBodyHandle>, Option<RigidBodyHandle>),
-        (a, b): (Side<'_>, Side<'_>),
+        (a, b): (ContactSide<'_>, ContactSide<'_>),
     ) {
         let count = plane.solver_contacts.len();
-        let turns = |installed: &Installed| {
+        let turns = |installed: &InstalledLaw| {
             let scope = installed.law.scope()?;
-            scope.turns(self.dress.house, &a, &b)
+            scope.turns(self.properties.house, &a, &b)
         };
-        if count == 0 || self.dress.laws.iter().all(|law| turns(law).is_none()) {
+        if count == 0 || self.properties.laws.iter().all(|law| turns(law).is_none()) {
             return;
         }
         let sum: Vec3 = plane
@@ -190,7 +190,7 @@ impl Hooks<'_> {
             body.and_then(|body| bodies.get(body))
                 .map_or(Vec3::ZERO, |rigid| rigid.velocity_at_point(point))
         };
-        let touch = Touch {
+        let touch = LawContact {
             surface: a,
             other: b,
             normal: *plane.normal,
@@ -203,7 +203,7 @@ impl Hooks<'_> {
             restitution: *plane.restitution,
             surface_velocity: Vec3::ZERO,
         };
-        for installed in self.dress.laws {
+        for installed in self.properties.laws {
             match turns(installed) {
                 Some(false) => installed.law.shape_contact(&touch, &mut values),
                 Some(true) => {

@@ -1,27 +1,27 @@
 //! What happens where things touch: friction and bounce by pair of substances, events, who touches whom.
 
 mod approach;
-mod bounce;
+mod body_motion;
 mod collector;
-mod entry;
+mod collider_entry;
+mod contact_pairs;
+mod contact_tracker;
 mod events;
 mod friction;
 mod hooks;
-mod motion;
-mod ongoing;
+mod restitution;
 pub(crate) mod rolling;
 mod substances;
-mod touching;
 
-pub(crate) use bounce::Rebounds;
-pub(crate) use collector::Collector;
-pub use entry::Toucher;
-pub(crate) use entry::{Entry, entry_index};
+pub(crate) use body_motion::{BodyMotion, record_motion};
+pub(crate) use collector::ContactCollector;
+pub use collider_entry::ContactEntity;
+pub(crate) use collider_entry::{ColliderEntry, entry_index};
+pub(crate) use contact_pairs::touching;
+pub(crate) use contact_tracker::ContactTracker;
 pub(crate) use events::bound;
 pub use events::{ContactEvent, ContactKind, ContactPhase, MergedEvents};
-pub(crate) use friction::Kept;
-pub(crate) use hooks::{Dress, Excluded, Hooks};
-pub(crate) use motion::{Motion, note_motion};
-pub(crate) use ongoing::Ongoing;
+pub(crate) use friction::FrictionStorage;
+pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties};
+pub(crate) use restitution::RestitutionContext;
 pub(crate) use substances::ContactTable;
-pub(crate) use touching::touching;

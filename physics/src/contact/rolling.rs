@@ -4,10 +4,10 @@
 //! of a radian (its distance hardly changes there), and with it a normal that leans: a cart on such wheels jerks, and stops
 //! on a slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
 
-use super::entry::entry_index;
-use crate::engine::Engine;
-use crate::model::{BodyPlan, Piece};
-use crate::world::Assembly;
+use super::collider_entry::entry_index;
+use crate::engine::RapierWorld;
+use crate::model::{BodyPlan, CollisionPiece};
+use crate::world::AssembledWorld;
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBody, RigidBodySet};
 use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
@@ -25,7 +25,7 @@ const LIFTED: f32 = 0.75;
 
 /// A cylinder of a body that may move.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Roller {
+pub(crate) struct RollingCylinder {
     body: u32,
     /// Its number among the body's pieces.
     piece: usize,
@@ -34,11 +34,11 @@ pub(crate) struct Roller {
 }
 
 /// All cylinders of bodies, in order.
-pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<Roller> {
+pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
     let of_body = |(index, plan): (usize, &BodyPlan)| {
-        let roller = move |(piece, shaped): (usize, &Piece)| {
+        let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
             let cylinder = shaped.shape.as_cylinder()?;
-            Some(Roller {
+            Some(RollingCylinder {
                 body: index as u32,
                 piece,
                 axis_in_body: shaped.place.rotation * Vec3::Y,
@@ -51,7 +51,7 @@ pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<Roller> {
     bodies.iter().enumerate().flat_map(of_body).collect()
 }
 
-impl Roller {
+impl RollingCylinder {
     /// Whether it turns about its axis.
     pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
         let axis = body.position().rotation * self.axis_in_body;
@@ -66,7 +66,7 @@ impl Roller {
     /// Lets rapier ask about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times. Returns
     /// whether that changed.
     pub(crate) fn follow(
-        engine: &mut Engine,
+        engine: &mut RapierWorld,
         rolls: bool,
         own: Option<ColliderHandle>,
         asked: impl Fn(usize) -> bool,
@@ -102,10 +102,10 @@ impl Roller {
 
 /// Lets rapier ask about what rolled at the moment of a snapshot. `bodies`: those of the snapshot.
 pub(crate) fn resume(
-    rollers: &[Roller],
-    built: &mut Assembly,
+    rollers: &[RollingCylinder],
+    built: &mut AssembledWorld,
     bodies: &RigidBodySet,
-    asked: impl Fn(&super::Entry) -> bool,
+    asked: impl Fn(&super::ColliderEntry) -> bool,
 ) {
     for roller in rollers {
         let handle = built.bodies[roller.body()].handle;
@@ -114,13 +114,13 @@ pub(crate) fn resume(
         let entries = &built.entries;
         let asked = |index: usize| entries.get(index).is_some_and(&asked);
         let rolls = bodies.get(handle).is_some_and(|body| roller.rolls(body));
-        Roller::follow(&mut built.engine, rolls, own, asked);
+        RollingCylinder::follow(&mut built.engine, rolls, own, asked);
     }
 }
 
 /// Puts the contacts of a cylinder that lies on something flat where they are, and the normal upright. `turns`: how fast the
 /// first and the second body turn, rad/s.
-pub(super) fn straighten(
+pub(super) fn correct_line_contact(
     plane: &mut ModifiableManifold<'_>,
     (one, two): (&Collider, &Collider),
     turns: (Vec3, Vec3),

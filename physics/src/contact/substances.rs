@@ -1,14 +1,14 @@
 //! Friction and restitution of every pair that can meet in a house, looked up without a string in the step.
 
-use super::entry::Surface;
-use crate::model::Cover;
+use super::collider_entry::ContactClasses;
+use crate::model::MaterialAssignment;
 use dwell_scene::material::{PairContact, library};
 use dwell_scene::{Address, House, IdVec, MaterialId, State};
 use std::sync::Arc;
 
 /// What tells contact behaviour apart: a substance, and its own values where a world overrides a material's.
 #[derive(Clone, Debug, PartialEq)]
-struct Class {
+struct ContactClass {
     substance: &'static str,
     friction: Option<f32>,
     restitution: Option<f32>,
@@ -21,7 +21,7 @@ struct Class {
 /// value holds, as the materials table defines it for pairs without a row of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactTable {
-    classes: Vec<Class>,
+    classes: Vec<ContactClass>,
     class_of_material: IdVec<MaterialId, u16>,
     unknown: u16,
     human: u16,
@@ -50,8 +50,8 @@ fn mean(a: f32, b: f32) -> f32 {
 impl ContactTable {
     pub(crate) fn new(house: &House, state: &State) -> Self {
         let default = library().default_substance().name.as_str();
-        let mut classes: Vec<Class> = Vec::new();
-        let mut intern = |class: Class| -> u16 {
+        let mut classes: Vec<ContactClass> = Vec::new();
+        let mut intern = |class: ContactClass| -> u16 {
             let found = classes.iter().position(|old| *old == class);
             let index = found.unwrap_or_else(|| {
                 classes.push(class);
@@ -59,7 +59,7 @@ impl ContactTable {
             });
             u16::try_from(index).unwrap_or(0)
         };
-        let plain = |substance: &'static str| Class {
+        let plain = |substance: &'static str| ContactClass {
             substance,
             friction: None,
             restitution: None,
@@ -72,7 +72,7 @@ impl ContactTable {
             .materials
             .iter()
             .map(|material| {
-                intern(Class {
+                intern(ContactClass {
                     substance: library().get_or_default(&material.substance).name.as_str(),
                     friction: overridden(state, &format!("material/{}/friction", material.name)),
                     restitution: overridden(
@@ -121,22 +121,22 @@ impl ContactTable {
     }
 
     /// The class or classes of a piece.
-    pub(crate) fn surface(&self, cover: &Cover) -> Surface {
+    pub(crate) fn surface(&self, cover: &MaterialAssignment) -> ContactClasses {
         let class = |material: Option<MaterialId>| {
             material.map_or(self.unknown, |material| self.class_of_material[material])
         };
         match cover {
-            Cover::One(material) => Surface::One(class(*material)),
-            Cover::PerTriangle(materials) => {
+            MaterialAssignment::Uniform(material) => ContactClasses::Uniform(class(*material)),
+            MaterialAssignment::PerTriangle(materials) => {
                 let classes: Arc<[u16]> = materials.iter().map(|m| class(Some(*m))).collect();
-                Surface::PerTriangle(classes)
+                ContactClasses::PerTriangle(classes)
             }
         }
     }
 
     /// The class of an agent's body.
-    pub(crate) fn human(&self) -> Surface {
-        Surface::One(self.human)
+    pub(crate) fn human(&self) -> ContactClasses {
+        ContactClasses::Uniform(self.human)
     }
 
     /// The values between two classes.
@@ -145,13 +145,13 @@ impl ContactTable {
     }
 
     /// The values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
-    pub(crate) fn rule(&self, surface: &Surface) -> (PairContact, bool) {
+    pub(crate) fn rule(&self, surface: &ContactClasses) -> (PairContact, bool) {
         match surface {
-            Surface::One(class) => {
+            ContactClasses::Uniform(class) => {
                 let class = usize::from(*class);
                 (self.own[class], self.special[class])
             }
-            Surface::PerTriangle(_) => (self.own[usize::from(surface.class(0))], true),
+            ContactClasses::PerTriangle(_) => (self.own[usize::from(surface.class(0))], true),
         }
     }
 
@@ -195,7 +195,11 @@ fn cover(exceptions: &[(usize, usize)], usage: &[usize]) -> Vec<bool> {
     covered
 }
 
-fn pair(state: &State, a: (&Class, PairContact), b: (&Class, PairContact)) -> PairContact {
+fn pair(
+    state: &State,
+    a: (&ContactClass, PairContact),
+    b: (&ContactClass, PairContact),
+) -> PairContact {
     let table = state.pair_contact(a.0.substance, b.0.substance);
     let named = |field: &str| {
         let (a, b) = (a.0.substance, b.0.substance);
@@ -246,7 +250,7 @@ mod tests {
         }
         // Cast iron on oak is a published pair: one of the two needs the look-up.
         let special = |k: u32| {
-            let surface = Surface::One(table.class_of_material[MaterialId(k)]);
+            let surface = ContactClasses::Uniform(table.class_of_material[MaterialId(k)]);
             table.rule(&surface).1
         };
         assert!(special(0) || special(1));

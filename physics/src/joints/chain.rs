@@ -1,21 +1,21 @@
 //! A tree as numbers: what moves with each joint, and where all of it is for given positions.
 
-use super::Joint;
-use super::exert::Pushing;
-use super::frame::Frame;
-use super::motion::{Axis, Lump, Motion, Moving};
-use super::support::{self, Support};
-use super::touch::{self, Touch};
-use super::tree::Tree;
-use crate::engine::Engine;
-use crate::laws::{LinkStep, Push};
+use super::PhysicsJoint;
+use super::efforts::LinkWrenchFn;
+use super::external_contact::{self, ExternalContact};
+use super::frame::RigidTransform;
+use super::support::{self, SupportPoint};
+use super::tree::KinematicTree;
+use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, TreeDynamics};
+use crate::engine::RapierWorld;
+use crate::laws::{ExternalWrench, LinkStep};
 use dwell_scene::JointKind;
 use glam::{DMat3, DQuat, DVec3};
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// A body and the joint that moves it.
 #[derive(Clone, Copy, Debug)]
-struct Link {
+struct ChainLink {
     /// The number of the body's plan in the model.
     body: u32,
     kind: JointKind,
@@ -25,17 +25,17 @@ struct Link {
     parent: Option<usize>,
     parent_handle: RigidBodyHandle,
     /// The parent body, where no free joint moves it.
-    world_from_parent: Frame,
-    parent_from_joint: Frame,
-    joint_from_child: Frame,
+    world_from_parent: RigidTransform,
+    parent_from_joint: RigidTransform,
+    joint_from_child: RigidTransform,
     /// Mass, and centre and inertia in the body's own frame.
-    lump: Lump,
+    lump: LumpedBody,
 }
 
 /// How laws push at a tree, and when within a step.
 #[derive(Clone, Copy)]
-pub(super) struct Pushed<'a> {
-    pub(super) push: &'a Pushing<'a>,
+pub(super) struct LawWrenchQuery<'a> {
+    pub(super) push: &'a LinkWrenchFn<'a>,
     /// Length of the step, s.
     pub(super) dt_s: f64,
     /// Whether it is its middle, else its beginning.
@@ -45,14 +45,14 @@ pub(super) struct Pushed<'a> {
 /// The free joints of a tree, parents first. Shape (freedom,).
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
-    links: Vec<Link>,
-    root: Moving,
+    links: Vec<ChainLink>,
+    root: BodyAcceleration,
     root_velocity: DVec3,
-    free_root: Option<Lump>,
+    free_root: Option<LumpedBody>,
     /// The number of a free root's plan in the model.
     root_body: Option<u32>,
-    supports: Vec<Support>,
-    touches: Vec<Touch>,
+    supports: Vec<SupportPoint>,
+    touches: Vec<ExternalContact>,
     /// Whether what it hangs on stands.
     stands: bool,
     gravity: DVec3,
@@ -60,25 +60,30 @@ pub(super) struct Chain {
 
 impl Chain {
     /// `free`: which of the tree's joints may move.
-    pub(super) fn of(engine: &Engine, tree: &Tree, free: &[usize], joints: &[Joint]) -> Self {
+    pub(super) fn of(
+        engine: &RapierWorld,
+        tree: &KinematicTree,
+        free: &[usize],
+        joints: &[PhysicsJoint],
+    ) -> Self {
         let body = |handle| engine.bodies.get(handle);
         let link = |k: &usize| {
             let joint = &joints[tree.joints[*k]];
-            Link {
+            ChainLink {
                 body: joint.child,
                 kind: joint.kind,
                 axis: joint.unit_axis(),
                 parent: tree.parents[*k].and_then(|parent| free.iter().position(|f| *f == parent)),
                 parent_handle: joint.parent_handle,
-                world_from_parent: Frame::IDENTITY,
-                parent_from_joint: Frame::of(&joint.parent_from_joint),
-                joint_from_child: Frame::of(&joint.child_from_joint).inverse(),
-                lump: body(joint.child_handle).map_or_else(Lump::default, Lump::own),
+                world_from_parent: RigidTransform::IDENTITY,
+                parent_from_joint: RigidTransform::of(&joint.parent_from_joint),
+                joint_from_child: RigidTransform::of(&joint.child_from_joint).inverse(),
+                lump: body(joint.child_handle).map_or_else(LumpedBody::default, LumpedBody::own),
             }
         };
         let mut chain = Self {
             links: free.iter().map(link).collect(),
-            root: Moving::default(),
+            root: BodyAcceleration::default(),
             root_velocity: DVec3::ZERO,
             free_root: None,
             root_body: tree.root_body,
@@ -93,26 +98,33 @@ impl Chain {
     }
 
     /// Takes over where what the tree hangs on is and how it moves.
-    pub(super) fn follow_root(&mut self, engine: &Engine, tree: &Tree) {
+    pub(super) fn follow_root(&mut self, engine: &RapierWorld, tree: &KinematicTree) {
         for link in self.links.iter_mut().filter(|link| link.parent.is_none()) {
             let parent = engine.bodies.get(link.parent_handle);
-            link.world_from_parent =
-                parent.map_or(Frame::IDENTITY, |parent| Frame::of(parent.position()));
+            link.world_from_parent = parent.map_or(RigidTransform::IDENTITY, |parent| {
+                RigidTransform::of(parent.position())
+            });
         }
         let Some(root) = engine.bodies.get(tree.root) else {
             return;
         };
         let center = root.center_of_mass().as_dvec3();
-        self.root = Moving::evenly(center, root.angvel().as_dvec3());
+        self.root = BodyAcceleration::at_constant_velocity(center, root.angvel().as_dvec3());
         self.root_velocity = root.linvel().as_dvec3();
-        self.free_root = root.is_dynamic().then(|| Lump::of(root));
+        self.free_root = root.is_dynamic().then(|| LumpedBody::of(root));
         self.stands = !root.is_dynamic()
             && root.linvel() == glam::Vec3::ZERO
             && root.angvel() == glam::Vec3::ZERO;
     }
 
     /// Finds what carries the tree and what presses on it.
-    fn feel(&mut self, engine: &Engine, tree: &Tree, free: &[usize], joints: &[Joint]) {
+    fn feel(
+        &mut self,
+        engine: &RapierWorld,
+        tree: &KinematicTree,
+        free: &[usize],
+        joints: &[PhysicsJoint],
+    ) {
         let child = |k: &usize| joints[tree.joints[*k]].child_handle;
         let mut handles: Vec<RigidBodyHandle> = free.iter().map(child).collect();
         let floats = self.free_root.is_some();
@@ -128,7 +140,7 @@ impl Chain {
         }
         let bodies = handles.iter().enumerate();
         let bodies: Vec<_> = bodies.map(|(k, handle)| (*handle, link_of(k))).collect();
-        self.touches = touch::of_tree(engine, &bodies, floats);
+        self.touches = external_contact::of_tree(engine, &bodies, floats);
     }
 
     /// Whether what the tree hangs on stands.
@@ -142,10 +154,10 @@ impl Chain {
         &self,
         positions: &[f64],
         velocities: &[f64],
-        pushed: Option<Pushed<'_>>,
-    ) -> Motion<'_> {
+        pushed: Option<LawWrenchQuery<'_>>,
+    ) -> TreeDynamics<'_> {
         let count = self.links.len();
-        let mut frames: Vec<Frame> = Vec::with_capacity(count);
+        let mut frames: Vec<RigidTransform> = Vec::with_capacity(count);
         let mut axes = Vec::with_capacity(count);
         let mut masses = Vec::with_capacity(count);
         let mut angular: Vec<DVec3> = Vec::with_capacity(count);
@@ -156,10 +168,10 @@ impl Chain {
             };
             let world_from_joint = parent.then(&link.parent_from_joint);
             let frame = world_from_joint
-                .then(&Frame::along(link.kind, link.axis, positions[k]))
+                .then(&RigidTransform::along(link.kind, link.axis, positions[k]))
                 .then(&link.joint_from_child);
             let direction = world_from_joint.turn * link.axis;
-            axes.push(Axis {
+            axes.push(JointAxisState {
                 kind: link.kind,
                 direction,
                 at: world_from_joint.at,
@@ -167,7 +179,7 @@ impl Chain {
                 velocity: velocities[k],
             });
             let turn = DMat3::from_quat(frame.turn.normalize());
-            masses.push(Lump {
+            masses.push(LumpedBody {
                 center: frame.at + frame.turn * link.lump.center,
                 inertia: turn * link.lump.inertia * turn.transpose(),
                 ..link.lump
@@ -183,9 +195,9 @@ impl Chain {
                 self.pushes(pushed, (&axes, &masses, &angular)),
                 self.root_push(pushed),
             ),
-            None => (Vec::new(), Push::default()),
+            None => (Vec::new(), ExternalWrench::default()),
         };
-        Motion {
+        TreeDynamics {
             pushes,
             root_push,
             axes,
@@ -201,9 +213,9 @@ impl Chain {
     }
 }
 
-impl Pushed<'_> {
+impl LawWrenchQuery<'_> {
     /// How laws push at a body that moves with this velocity and spin.
-    fn at(&self, body: u32, lump: &Lump, velocity: DVec3, spin: DVec3) -> Push {
+    fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
         (self.push)(LinkStep {
             body,
             mass_kg: lump.mass,
@@ -219,11 +231,11 @@ impl Pushed<'_> {
 
 impl Chain {
     /// How laws push at a free root: it is looked at as the step begins.
-    fn root_push(&self, pushed: &Pushed<'_>) -> Push {
+    fn root_push(&self, pushed: &LawWrenchQuery<'_>) -> ExternalWrench {
         let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
-            return Push::default();
+            return ExternalWrench::default();
         };
-        let begins = Pushed {
+        let begins = LawWrenchQuery {
             middle: false,
             ..*pushed
         };
@@ -233,9 +245,9 @@ impl Chain {
     /// How laws push at each joint's body. Shape (freedom,).
     fn pushes(
         &self,
-        pushed: &Pushed<'_>,
-        (axes, masses, angular): (&[Axis], &[Lump], &[DVec3]),
-    ) -> Vec<Push> {
+        pushed: &LawWrenchQuery<'_>,
+        (axes, masses, angular): (&[JointAxisState], &[LumpedBody], &[DVec3]),
+    ) -> Vec<ExternalWrench> {
         let mut linear: Vec<DVec3> = Vec::with_capacity(axes.len());
         let mut pushes = Vec::with_capacity(axes.len());
         for (k, axis) in axes.iter().enumerate() {
@@ -252,7 +264,7 @@ impl Chain {
     }
 }
 
-impl Frame {
+impl RigidTransform {
     const IDENTITY: Self = Self {
         at: DVec3::ZERO,
         turn: DQuat::IDENTITY,

@@ -1,6 +1,6 @@
 //! What moves joints: their own servos, or a hand that opens and closes them.
 
-use super::element::{Gain, Pull};
+use super::effort_term::{ActuationGain, JointActuation};
 use super::latch::tolerance;
 use dwell_scene::{AgentId, JointCommand, JointId, JointKind, JointParameters};
 use serde::{Deserialize, Serialize};
@@ -23,7 +23,7 @@ const PATIENCE_S: f32 = 0.4;
 
 /// A hand that moves a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Drive {
+pub(crate) struct HandDrive {
     /// Where the joint shall go.
     pub(crate) goal: f32,
     /// Where the hand is.
@@ -35,11 +35,11 @@ pub(crate) struct Drive {
 }
 
 /// All hands on joints.
-pub(crate) type Drives = BTreeMap<JointId, Drive>;
+pub(crate) type HandDrives = BTreeMap<JointId, HandDrive>;
 
 /// How a drive stands after a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Progress {
+pub(crate) enum DriveProgress {
     Moving,
     Arrived,
     Blocked,
@@ -52,7 +52,7 @@ fn speed_and_lead(kind: JointKind) -> (f32, f32) {
     }
 }
 
-impl Drive {
+impl HandDrive {
     pub(crate) fn new(goal: f32, position: f32, agent: Option<AgentId>) -> Self {
         Self {
             goal,
@@ -69,7 +69,7 @@ impl Drive {
         limits: Option<[f32; 2]>,
         (position, velocity): (f32, f32),
         step_s: f32,
-    ) -> Progress {
+    ) -> DriveProgress {
         let (rate, lead) = speed_and_lead(kind);
         let left = (position - self.goal).abs();
         // Half open it must stand before the hand lets go, or it would coast on.
@@ -79,7 +79,7 @@ impl Drive {
             CREEP
         };
         if left <= tolerance(kind) && velocity.abs() < slow {
-            return Progress::Arrived;
+            return DriveProgress::Arrived;
         }
         let stride = rate * step_s;
         let stands = velocity.abs() < CREEP;
@@ -101,9 +101,9 @@ impl Drive {
             self.stalled_s = 0.0;
         }
         if self.stalled_s >= PATIENCE_S {
-            Progress::Blocked
+            DriveProgress::Blocked
         } else {
-            Progress::Moving
+            DriveProgress::Moving
         }
     }
 }
@@ -115,26 +115,31 @@ pub(crate) fn advance(
     kind: JointKind,
     values: &JointParameters,
     command: JointCommand,
-    hand: Option<&mut Drive>,
+    hand: Option<&mut HandDrive>,
     (position, velocity): (f32, f32),
     (step_s, hand_effort): (f32, f32),
-) -> (Option<Pull>, Option<Progress>) {
+) -> (Option<JointActuation>, Option<DriveProgress>) {
     if let Some(servo) = &values.servo {
         let (target, gain) = match command {
             JointCommand::Off => return (None, None),
             JointCommand::Position(target) => {
                 let (stiffness, damping) = (servo.stiffness, servo.damping);
-                (values.clamp(target), Gain::Servo { stiffness, damping })
+                (
+                    values.clamp(target),
+                    ActuationGain::Servo { stiffness, damping },
+                )
             }
-            JointCommand::Velocity(target) => (target, Gain::Velocity(servo.velocity_gain)),
-            JointCommand::Effort(target) => (target, Gain::Effort),
+            JointCommand::Velocity(target) => {
+                (target, ActuationGain::Velocity(servo.velocity_gain))
+            }
+            JointCommand::Effort(target) => (target, ActuationGain::Effort),
         };
         let max_effort = servo.joint_effort();
-        let pull = Pull {
+        let pull = JointActuation {
             target,
             max_effort,
             max_velocity: servo.joint_velocity(),
-            feed_forward: if gain == Gain::Effort {
+            feed_forward: if gain == ActuationGain::Effort {
                 0.0
             } else {
                 values.feed_forward
@@ -147,12 +152,12 @@ pub(crate) fn advance(
         return (None, None);
     };
     let progress = hand.follow(kind, values.limits, (position, velocity), step_s);
-    let pull = (progress == Progress::Moving).then_some(Pull {
+    let pull = (progress == DriveProgress::Moving).then_some(JointActuation {
         target: hand.ramp,
         max_effort: hand_effort,
         max_velocity: f32::INFINITY,
         feed_forward: 0.0,
-        gain: Gain::Hand {
+        gain: ActuationGain::Hand {
             frequency_rad_s: HAND_FREQUENCY_RAD_S,
             lead: speed_and_lead(kind).1,
         },

@@ -5,12 +5,12 @@ use rapier3d::math::Pose as RapierPose;
 
 /// A rigid motion in f64: rapier's own rounding does not pile up along a chain.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
+pub(super) struct RigidTransform {
     pub(super) at: DVec3,
     pub(super) turn: DQuat,
 }
 
-impl Frame {
+impl RigidTransform {
     pub(super) fn of(pose: &RapierPose) -> Self {
         Self {
             at: pose.translation.as_dvec3(),

@@ -1,37 +1,39 @@
 //! Doors, drawers, lids and robots: rapier's impulse joints hold the axis and the limits, efforts are ours.
 
+mod base_contacts;
 mod chain;
-mod convex;
-mod course;
+mod convex_solver;
 mod drive;
-mod element;
-mod exert;
-mod floating;
-mod footing;
+mod effort_term;
+mod efforts;
+mod external_contact;
+mod floating_base;
+mod forward_kinematics;
 mod frame;
+mod impulse_dynamics;
+mod integration;
+mod joint_state;
 mod latch;
-mod motion;
-mod place;
 mod project;
-mod reading;
-mod standing;
-mod struck;
 mod support;
-mod touch;
 mod tree;
+mod tree_dynamics;
+mod tree_step;
 
-pub(crate) use drive::{Drive, Drives, Progress, advance};
-pub(crate) use element::{Gain, Pull};
-pub(crate) use exert::{Drivers, Outlook, exert, relax, settle, settle_woken};
+pub(crate) use drive::{DriveProgress, HandDrive, HandDrives, advance};
+pub(crate) use effort_term::{ActuationGain, JointActuation};
+pub(crate) use efforts::{
+    JointDrivers, TreePrediction, apply_efforts, clear_efforts, project_woken, settle,
+};
+pub(crate) use forward_kinematics::{JointPlacement, matches_bodies, place};
+pub(crate) use impulse_dynamics::{ImpulseDynamics, ImpulsePoint};
+pub(crate) use joint_state::{JointCoordinate, read, stands};
 pub(crate) use latch::{release, shut, stands_shut, tolerance};
-pub(crate) use place::{Stand, place, says_the_same};
-pub(crate) use reading::{Coordinate, read, stands};
-pub(crate) use struck::{Point, Struck};
-pub(crate) use tree::{Tree, trees};
+pub(crate) use tree::{KinematicTree, trees};
 
-use crate::body::Body;
+use crate::body::BodyHandle;
 use crate::convert::to_rapier;
-use crate::engine::Engine;
+use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
 use dwell_scene::{Articulation, JointId, JointKind, JointParameters, PartId, Pose, State};
 use glam::{DVec3, Quat, Vec3};
@@ -43,7 +45,7 @@ use rapier3d::math::Pose as RapierPose;
 /// A joint of a world.
 #[derive(Clone, Copy, Debug)]
 #[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
-pub(crate) struct Joint {
+pub(crate) struct PhysicsJoint {
     pub(crate) id: JointId,
     pub(crate) kind: JointKind,
     pub(crate) child: u32,
@@ -60,7 +62,7 @@ pub(crate) struct Joint {
     pub(crate) values: JointParameters,
 }
 
-impl Joint {
+impl PhysicsJoint {
     /// In the joint's frame, unit length.
     fn unit_axis(&self) -> DVec3 {
         self.values.axis.as_dvec3().normalize_or(DVec3::X)
@@ -81,12 +83,12 @@ impl Joint {
 
 /// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
 pub(crate) fn insert(
-    engine: &mut Engine,
+    engine: &mut RapierWorld,
     model: &PhysicsModel,
-    bodies: &[Body],
+    bodies: &[BodyHandle],
     anchor: RigidBodyHandle,
     state: &State,
-) -> Vec<Joint> {
+) -> Vec<PhysicsJoint> {
     let mut joints = Vec::with_capacity(model.house.joints.len());
     for (id, joint) in model.house.joints.iter_ids() {
         let Some(child) = model.body_of_part[joint.child] else {
@@ -113,7 +115,7 @@ pub(crate) fn insert(
         let child_handle = bodies[child as usize].handle;
         let set = &mut engine.joints;
         let handle = set.insert(parent_handle, child_handle, builder.build(), false);
-        joints.push(Joint {
+        joints.push(PhysicsJoint {
             id,
             kind: joint.kind,
             child,
@@ -145,7 +147,7 @@ const SLACK: f32 = 1e-5;
 /// The limits that rapier keeps too.
 fn held_by_rapier(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
     let limits = values.limits?;
-    element::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
+    effort_term::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
 }
 
 /// rapier turns about and slides along the frames' X axes.
@@ -156,7 +158,7 @@ fn to_x(axis: Vec3) -> RapierPose {
 /// The body that a joint hangs on, the part's place on it, and whether it never moves.
 fn parent(
     model: &PhysicsModel,
-    bodies: &[Body],
+    bodies: &[BodyHandle],
     joint: &Articulation,
     anchor: RigidBodyHandle,
 ) -> (RigidBodyHandle, Pose, bool) {
@@ -183,9 +185,9 @@ fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
 
 /// Sets what is in force at a joint from the state's parameters. Returns whether it was different before.
 pub(crate) fn set_values(
-    engine: &mut Engine,
+    engine: &mut RapierWorld,
     model: &PhysicsModel,
-    joint: &mut Joint,
+    joint: &mut PhysicsJoint,
     state: &State,
 ) -> bool {
     let values = state.joint_values(&model.house, joint.id);
@@ -219,7 +221,7 @@ pub(crate) fn set_values(
 }
 
 /// Where the child's body stands when the joint is at `position` and its parent where it is.
-pub(crate) fn child_at(engine: &Engine, joint: &Joint, position: f32) -> RapierPose {
+pub(crate) fn child_at(engine: &RapierWorld, joint: &PhysicsJoint, position: f32) -> RapierPose {
     let parent = engine
         .bodies
         .get(joint.parent_handle)
@@ -231,6 +233,6 @@ pub(crate) fn child_at(engine: &Engine, joint: &Joint, position: f32) -> RapierP
 }
 
 /// Wakes the body that a joint moves.
-pub(crate) fn wake(engine: &mut Engine, joint: &Joint) {
+pub(crate) fn wake(engine: &mut RapierWorld, joint: &PhysicsJoint) {
     engine.wake(joint.child_handle);
 }

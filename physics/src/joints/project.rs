@@ -8,31 +8,31 @@
 //! C. F. Gauss's principle of least constraint: of the motions that joints allow, the one nearest to the unconstrained one,
 //! weighed by mass. R. Featherstone, Rigid Body Dynamics Algorithms (2008), 6.2, for the joint-space inertia.
 
-use super::Joint;
-use super::convex::{Element, Inertia, Problem};
-use super::floating::Floating;
-use super::motion::{Motion, Wrench};
-use super::place;
-use super::reading::Coordinate;
-use super::standing::Standing;
-use super::tree::Tree;
-use crate::engine::Engine;
+use super::PhysicsJoint;
+use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
+use super::floating_base::FloatingBase;
+use super::forward_kinematics;
+use super::joint_state::JointCoordinate;
+use super::tree::KinematicTree;
+use super::tree_dynamics::{TreeDynamics, Wrench};
+use super::tree_step::TreeStep;
+use crate::engine::RapierWorld;
 use glam::DVec3;
 
 /// How much steeper than inertia a stop is that gives way to nothing.
 const RIGID: f64 = 1e6;
 
-impl Standing {
+impl TreeStep {
     /// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow. `ends`: where a joint
-    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `near`: the numbers of each
+    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `joint_coordinates`: the numbers of each
     /// of the world's joints.
     pub(super) fn project(
         mut self,
-        engine: &mut Engine,
-        tree: &Tree,
-        joints: &[Joint],
+        engine: &mut RapierWorld,
+        tree: &KinematicTree,
+        joints: &[PhysicsJoint],
         ends: &[Option<f64>],
-        near: &mut [Coordinate],
+        joint_coordinates: &mut [JointCoordinate],
     ) {
         self.chain.follow_root(engine, tree);
         let (positions, velocities) = (self.positions(), self.velocities());
@@ -78,14 +78,14 @@ impl Standing {
         for ((joint, k), (position, velocity)) in joints.iter().zip(&self.free).zip(states) {
             let [low, high] = joint.stops();
             let position = position.max(low).min(high);
-            near[tree.joints[*k]] = Coordinate { position, velocity };
-            place::put(engine, joint, (position, velocity), false);
+            joint_coordinates[tree.joints[*k]] = JointCoordinate { position, velocity };
+            forward_kinematics::put(engine, joint, (position, velocity), false);
         }
     }
 }
 
 /// Where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
-fn arrives(joint: &Joint, position: f64, end: Option<f64>) -> f64 {
+fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     let [low, high] = joint.stops();
     match end {
         Some(end) if end <= low || end >= high => end,
@@ -94,8 +94,12 @@ fn arrives(joint: &Joint, position: f64, end: Option<f64>) -> f64 {
 }
 
 /// What keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
-fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec<Element> {
-    let held = |(k, (joint, position)): (usize, (&&Joint, &f64))| {
+fn held_by_stops(
+    joints: &[&PhysicsJoint],
+    positions: &[f64],
+    inertia: &SymmetricMatrix,
+) -> Vec<EffortTerm> {
+    let held = |(k, (joint, position)): (usize, (&&PhysicsJoint, &f64))| {
         let [low, high] = joint.stops();
         let bounds = if *position < low {
             [0.0, f64::INFINITY]
@@ -104,7 +108,7 @@ fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec
         } else {
             return None;
         };
-        Some(Element {
+        Some(EffortTerm {
             index: k,
             follows: None,
             offset: 0.0,
@@ -117,7 +121,7 @@ fn held_by_stops(joints: &[&Joint], positions: &[f64], inertia: &Inertia) -> Vec
     pairs.filter_map(held).collect()
 }
 
-impl Motion<'_> {
+impl TreeDynamics<'_> {
     /// A velocity and rotation of a body, less what a root that is led gives it. A free root counts with the others.
     fn beside_root(&self, center: DVec3, linear: DVec3, angular: DVec3) -> (DVec3, DVec3) {
         if self.free_root.is_some() {
@@ -141,9 +145,9 @@ impl Motion<'_> {
     /// origin, less what stops take: those of the joints' bodies, shape (freedom,), and the root's own.
     fn allowed(
         &self,
-        floating: Option<&Floating>,
+        floating: Option<&FloatingBase>,
         mut momenta: Vec<Wrench>,
-        (inertia, stops): (Inertia, Vec<Element>),
+        (inertia, stops): (SymmetricMatrix, Vec<EffortTerm>),
     ) -> (Vec<f64>, Option<(DVec3, DVec3)>) {
         let mut whole = match &self.free_root {
             Some(root) => {
@@ -162,11 +166,13 @@ impl Motion<'_> {
             *above = above.plus(&below, 1.0);
         }
         let along = self.axes.iter().zip(&momenta);
-        let mut along: Vec<f64> = along.map(|(axis, momentum)| axis.feels(momentum)).collect();
+        let mut along: Vec<f64> = along
+            .map(|(axis, momentum)| axis.generalized_force_of(momentum))
+            .collect();
         if let Some(floating) = floating {
-            floating.unload(&whole, &mut along);
+            floating.subtract_base_load(&whole, &mut along);
         }
-        let velocity = Problem {
+        let velocity = EffortProblem {
             free: inertia.factor().solve(&along),
             inertia,
             elements: stops,
@@ -176,7 +182,7 @@ impl Motion<'_> {
         let Some(floating) = floating else {
             return (velocity, None);
         };
-        let mut left = floating.felt(&whole);
+        let mut left = floating.generalized_force(&whole);
         for (column, velocity) in floating.columns.iter().zip(&velocity) {
             for (left, share) in left.iter_mut().zip(column) {
                 *left -= share * velocity;

@@ -1,8 +1,8 @@
 //! What carries a tree whose root is free: the points where it stands on something.
 
-use super::convex::Inertia;
-use super::motion::Wrench;
-use crate::engine::Engine;
+use super::convex_solver::SymmetricMatrix;
+use super::tree_dynamics::Wrench;
+use crate::engine::RapierWorld;
 use glam::{DVec3, Vec3};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{
@@ -20,7 +20,7 @@ const RIDGE: f64 = 1e-9;
 
 /// A point where a tree stands on something.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Support {
+pub(super) struct SupportPoint {
     /// Which joint's body stands there; `None`: the root.
     pub(super) link: Option<usize>,
     /// m.
@@ -30,11 +30,11 @@ pub(super) struct Support {
 
 /// The points where a body stands on what is not of its tree.
 pub(super) fn of_body(
-    engine: &Engine,
+    engine: &RapierWorld,
     handle: RigidBodyHandle,
     link: Option<usize>,
     tree: &[RigidBodyHandle],
-) -> Vec<Support> {
+) -> Vec<SupportPoint> {
     let mut supports = Vec::new();
     let colliders = engine.bodies.get(handle).map_or(&[][..], |b| b.colliders());
     for own in colliders {
@@ -58,7 +58,7 @@ pub(super) fn of_body(
                         continue;
                     }
                     let at = place(engine, pair, plane, contact);
-                    supports.push(Support {
+                    supports.push(SupportPoint {
                         link,
                         at,
                         friction: plane.data.friction.into(),
@@ -74,7 +74,7 @@ pub(super) fn of_body(
 /// Whether a plane of contact carries a body from below on points that stand. A wheel does not: it stands on another line in every
 /// step. `first`: whether the body's is the first of its colliders.
 pub(super) fn carries(
-    engine: &Engine,
+    engine: &RapierWorld,
     own: ColliderHandle,
     plane: &ContactManifold,
     first: bool,
@@ -94,7 +94,7 @@ pub(super) fn carries(
 /// Where the surfaces of a point touch now, m. What is flat carries its points along; on what rolls they stay where it is
 /// nearest.
 pub(super) fn place(
-    engine: &Engine,
+    engine: &RapierWorld,
     pair: &ContactPair,
     plane: &ContactManifold,
     contact: &SolverContact,
@@ -127,18 +127,18 @@ pub(super) fn place(
 
 /// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can. Shape
 /// (support,), N.
-pub(super) fn forces(supports: &[Support], weight: &Wrench, center: DVec3) -> Vec<f64> {
+pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) -> Vec<f64> {
     let mut carries = vec![true; supports.len()];
     let mut forces = vec![0.0; supports.len()];
     let moment = weight.moment - center.cross(weight.force);
     let needed = [weight.force.y, moment.x, moment.z];
-    let row = |support: &Support| {
+    let row = |support: &SupportPoint| {
         let arm = support.at - center;
         [1.0, -arm.z, arm.x]
     };
     // Each round one point at least is let go that would have to pull.
     for _ in 0..supports.len() {
-        let mut squares = Inertia::zero(3);
+        let mut squares = SymmetricMatrix::zero(3);
         for (support, _) in supports
             .iter()
             .zip(&carries)
@@ -176,8 +176,8 @@ pub(super) fn forces(supports: &[Support], weight: &Wrench, center: DVec3) -> Ve
 mod tests {
     use super::*;
 
-    fn at(x: f64, z: f64) -> Support {
-        Support {
+    fn at(x: f64, z: f64) -> SupportPoint {
+        SupportPoint {
             link: None,
             at: DVec3::new(x, 0.0, z),
             friction: 0.5,
@@ -199,7 +199,7 @@ mod tests {
         for (x, z) in [(0.0, 0.0), (0.5, 0.2), (-0.9, 0.05), (0.999, 0.0)] {
             let found = forces(&feet, &weight(100.0, x, z), DVec3::new(0.2, 0.4, 0.1));
             let sum: f64 = found.iter().sum();
-            let along = |of: fn(&Support) -> f64| -> f64 {
+            let along = |of: fn(&SupportPoint) -> f64| -> f64 {
                 feet.iter()
                     .zip(&found)
                     .map(|(foot, force)| of(foot) * force)

@@ -1,7 +1,7 @@
 //! Which joints act on each other: a tree of bodies over one root.
 
-use super::Joint;
-use crate::engine::Engine;
+use super::PhysicsJoint;
+use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;
 use dwell_scene::JointId;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// Joints whose efforts are found together.
 #[derive(Clone, Debug)]
-pub(crate) struct Tree {
+pub(crate) struct KinematicTree {
     /// The body that the first joint hangs on.
     pub(super) root: RigidBodyHandle,
     /// The number of that body's plan in the model; `None`: it never moves.
@@ -22,7 +22,7 @@ pub(crate) struct Tree {
     pub(super) follows: Vec<Option<usize>>,
 }
 
-impl Tree {
+impl KinematicTree {
     /// The body that the first joint hangs on.
     pub(crate) fn root(&self) -> RigidBodyHandle {
         self.root
@@ -34,7 +34,11 @@ impl Tree {
     }
 
     /// The number in the model of a root that is free to answer what its joints do; they push back on it.
-    pub(crate) fn answering_root(&self, engine: &Engine, joints: &[Joint]) -> Option<u32> {
+    pub(crate) fn floating_root(
+        &self,
+        engine: &RapierWorld,
+        joints: &[PhysicsJoint],
+    ) -> Option<u32> {
         let dynamic = |handle| engine.bodies.get(handle).is_some_and(RigidBody::is_dynamic);
         let moves = |k: &usize| dynamic(joints[*k].child_handle);
         let answers = dynamic(self.root) && self.joints.iter().any(moves);
@@ -44,7 +48,11 @@ impl Tree {
 
 /// Sorts a world's joints into trees. Joints hang together where one's child is another's parent, where they hang on one
 /// body that may move, and where one follows the other.
-pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHandle) -> Vec<Tree> {
+pub(crate) fn trees(
+    joints: &[PhysicsJoint],
+    model: &PhysicsModel,
+    anchor: RigidBodyHandle,
+) -> Vec<KinematicTree> {
     let house = &model.house;
     let key = |handle: RigidBodyHandle| handle.into_raw_parts();
     let numbered = || joints.iter().enumerate();
@@ -52,12 +60,12 @@ pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHan
         .map(|(k, joint)| (key(joint.child_handle), k))
         .collect();
     let by_id: BTreeMap<JointId, usize> = numbered().map(|(k, joint)| (joint.id, k)).collect();
-    let above = |joint: &Joint| by_child.get(&key(joint.parent_handle)).copied();
-    let leader = |joint: &Joint| {
+    let above = |joint: &PhysicsJoint| by_child.get(&key(joint.parent_handle)).copied();
+    let leader = |joint: &PhysicsJoint| {
         let mimic = house.joints[joint.id].mimic?;
         by_id.get(&mimic.leader).copied()
     };
-    let mut groups = Groups::new(joints.len());
+    let mut groups = UnionFind::new(joints.len());
     let mut first_on: BTreeMap<_, usize> = BTreeMap::new();
     for (k, joint) in numbered() {
         let sharing = (joint.parent_handle != anchor)
@@ -87,7 +95,7 @@ pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHan
         let place_of = |other: Option<usize>| other.map(|other| places[other]);
         let first = &joints[order[0]];
         let root_part = house.joints[first.id].parent;
-        Tree {
+        KinematicTree {
             root: first.parent_handle,
             root_body: root_part.and_then(|part| model.body_of_part[part]),
             parents: order.iter().map(|k| place_of(above(&joints[*k]))).collect(),
@@ -102,12 +110,12 @@ pub(crate) fn trees(joints: &[Joint], model: &PhysicsModel, anchor: RigidBodyHan
 }
 
 /// Numbers in groups; each group is known by its first one.
-struct Groups {
+struct UnionFind {
     /// Of each, one of its group that is not behind it.
     before: Vec<usize>,
 }
 
-impl Groups {
+impl UnionFind {
     /// Each by itself.
     fn new(count: usize) -> Self {
         Self {

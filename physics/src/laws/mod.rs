@@ -1,23 +1,24 @@
 //! Physical effects that the basic model lacks. One file each, one line in the list.
 //!
-//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is `Acts`: forces on
+//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is `LawHooks`: forces on
 //! bodies, the values of contacts, mass and inertia, how stiff contacts are, where servos go. What wakes a body that
 //! sleeps: laws of air and of contact act on what moves, and leave asleep what sleeps, apart from wind, which wakes what
 //! it is strong enough to move.
 
-mod acts;
 mod actuators;
 mod bases;
 mod bodies;
 mod contacts;
-mod link;
+mod law_hooks;
+mod link_wrench;
 mod target;
 
-pub(crate) use acts::{
-    Acts, Compliance, ContactValues, Elastic, JointLoad, MotorStep, Resistance, Side, Stage, Touch,
+pub(crate) use law_hooks::{
+    ContactCompliance, ContactSide, ContactValues, JointLoad, JointResistance, LawContact,
+    LawContext, LawHooks, MotorStep, SlipSpring,
 };
 
-pub(crate) use link::{LinkStep, Push};
+pub(crate) use link_wrench::{ExternalWrench, LinkStep};
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
@@ -25,16 +26,17 @@ use dwell_scene::{LawInfo, LawSpec, State};
 use std::sync::LazyLock;
 
 /// A law of this engine: what is known about it, and how it is put to work.
-struct Law {
+struct PhysicsLaw {
     info: LawInfo,
-    install: Install,
+    install: InstallFn,
 }
 
 /// Puts a law to work on what its spec names.
-type Install = fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn Acts>, PhysicsError>;
+type InstallFn =
+    fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn LawHooks>, PhysicsError>;
 
 /// The laws of this engine.
-static LAWS: &[Law] = &[
+static LAWS: &[PhysicsLaw] = &[
     bodies::drag::LAW,
     bodies::viscous_damping::LAW,
     bodies::magnus::LAW,
@@ -77,16 +79,16 @@ pub fn all() -> &'static [LawInfo] {
 
 /// An installed law with the words it was installed by.
 #[derive(Debug)]
-pub(crate) struct Installed {
+pub(crate) struct InstalledLaw {
     pub(crate) spec: LawSpec,
-    pub(crate) law: Box<dyn Acts>,
+    pub(crate) law: Box<dyn LawHooks>,
 }
 
-impl Clone for Installed {
+impl Clone for InstalledLaw {
     fn clone(&self) -> Self {
         Self {
             spec: self.spec.clone(),
-            law: self.law.boxed(),
+            law: self.law.clone_box(),
         }
     }
 }
@@ -96,10 +98,10 @@ impl Clone for Installed {
 pub(crate) fn install(
     model: &PhysicsModel,
     state: &State,
-    before: &[Installed],
-) -> Result<Vec<Installed>, PhysicsError> {
+    before: &[InstalledLaw],
+) -> Result<Vec<InstalledLaw>, PhysicsError> {
     LawSpec::check_targets(&model.house, &all().iter().collect::<Vec<_>>(), &state.laws)?;
-    let mut installed: Vec<Installed> = Vec::new();
+    let mut installed: Vec<InstalledLaw> = Vec::new();
     for spec in &state.laws {
         let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id) else {
             continue;
@@ -110,12 +112,12 @@ pub(crate) fn install(
         }
         let mut acts = (law.install)(spec, &law.info, model, state)?;
         // Two laws of one kind on one target are told apart by their order.
-        let same = |old: &&Installed| old.spec.id == spec.id && old.spec.target == spec.target;
+        let same = |old: &&InstalledLaw| old.spec.id == spec.id && old.spec.target == spec.target;
         let earlier = installed.iter().filter(same).count();
         if let Some(old) = before.iter().filter(same).nth(earlier) {
-            acts.recall(&old.law.memory());
+            acts.restore_memory(&old.law.memory());
         }
-        installed.push(Installed {
+        installed.push(InstalledLaw {
             spec: spec.clone(),
             law: acts,
         });
@@ -124,7 +126,7 @@ pub(crate) fn install(
 }
 
 /// How contacts give under the laws; the last law that says so wins.
-pub(crate) fn compliance(laws: &[Installed]) -> Option<Compliance> {
+pub(crate) fn compliance(laws: &[InstalledLaw]) -> Option<ContactCompliance> {
     laws.iter()
         .rev()
         .find_map(|installed| installed.law.compliance())

@@ -1,8 +1,8 @@
 //! What a law's target names: objects, and contacts.
 
-use crate::contact::{ContactTable, Entry, Toucher};
+use crate::contact::{ColliderEntry, ContactEntity, ContactTable};
 use crate::error::PhysicsError;
-use crate::laws::Side;
+use crate::laws::ContactSide;
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::material::library;
 use dwell_scene::{House, LawInfo, LawSpec, ObjectId, PartId, StructureId};
@@ -73,13 +73,13 @@ pub(super) fn no_target<'a>(
 
 /// What one name of a contact's target stands for: all objects, structure pieces and the substance of that name.
 #[derive(Clone, Debug, PartialEq)]
-struct Named {
+struct NamedContactTarget {
     objects: Vec<ObjectId>,
     structure: Vec<StructureId>,
     substance: Option<&'static str>,
 }
 
-impl Named {
+impl NamedContactTarget {
     fn of(house: &House, name: &str) -> Option<Self> {
         let objects = house.objects.iter_ids();
         let structure = house.structure.iter_ids();
@@ -99,15 +99,15 @@ impl Named {
         (!nothing).then_some(named)
     }
 
-    fn is_thing(&self, house: &House, toucher: Option<Toucher>) -> bool {
+    fn is_thing(&self, house: &House, toucher: Option<ContactEntity>) -> bool {
         match toucher {
-            Some(Toucher::Part(part)) => self.objects.contains(&house.parts[part].object),
-            Some(Toucher::Structure(id)) => self.structure.contains(&id),
+            Some(ContactEntity::Part(part)) => self.objects.contains(&house.parts[part].object),
+            Some(ContactEntity::Structure(id)) => self.structure.contains(&id),
             _ => false,
         }
     }
 
-    fn is(&self, house: &House, side: &Side<'_>) -> bool {
+    fn is(&self, house: &House, side: &ContactSide<'_>) -> bool {
         self.substance == Some(side.substance) || self.is_thing(house, side.toucher)
     }
 }
@@ -116,12 +116,12 @@ impl Named {
 /// two, in either order); a name is that of an object, of a piece of the structure or of a substance of the materials
 /// library. No target: all contacts.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Scope {
-    one: Option<Named>,
-    other: Option<Named>,
+pub(crate) struct ContactScope {
+    one: Option<NamedContactTarget>,
+    other: Option<NamedContactTarget>,
 }
 
-impl Scope {
+impl ContactScope {
     pub(super) fn of(
         spec: &LawSpec,
         info: &LawInfo,
@@ -135,7 +135,7 @@ impl Scope {
             });
         };
         let named = |name: &str| {
-            Named::of(house, name).ok_or_else(|| {
+            NamedContactTarget::of(house, name).ok_or_else(|| {
                 let objects = house.objects.iter().map(|object| object.name.as_str());
                 let structure = house.structure.iter().map(|piece| piece.name.as_str());
                 let kind = "object, structure or substance";
@@ -143,7 +143,7 @@ impl Scope {
             })
         };
         // An object's own name may hold the sign.
-        if let Some(whole) = Named::of(house, target) {
+        if let Some(whole) = NamedContactTarget::of(house, target) {
             return Ok(Self {
                 one: Some(whole),
                 other: None,
@@ -162,7 +162,7 @@ impl Scope {
     }
 
     /// Whether rapier must ask about the pairs of a collider.
-    pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &Entry) -> bool {
+    pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &ColliderEntry) -> bool {
         let Some(one) = &self.one else {
             return entry.body.is_some();
         };
@@ -171,8 +171,13 @@ impl Scope {
     }
 
     /// Whether a contact is within, and if so, whether `b` is the surface and not `a`.
-    pub(crate) fn turns(&self, house: &House, a: &Side<'_>, b: &Side<'_>) -> Option<bool> {
-        let is = |named: &Option<Named>, side: &Side<'_>| {
+    pub(crate) fn turns(
+        &self,
+        house: &House,
+        a: &ContactSide<'_>,
+        b: &ContactSide<'_>,
+    ) -> Option<bool> {
+        let is = |named: &Option<NamedContactTarget>, side: &ContactSide<'_>| {
             named.as_ref().is_none_or(|named| named.is(house, side))
         };
         let (forth, back) = (

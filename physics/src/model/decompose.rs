@@ -1,6 +1,6 @@
 //! Convex pieces of a mesh that came without any.
 
-use super::shapes::{self, Shaped};
+use super::shapes::{self, PlacedShape};
 use dwell_scene::Mesh;
 use glam::{Affine3A, Vec3};
 use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
@@ -22,7 +22,7 @@ const MOST_TRIANGLES: usize = 50_000;
 /// # Source
 /// K. Mamou and F. Ghorbel, A simple and efficient approach for 3D mesh approximate convex decomposition, ICIP 2009, in its
 /// voxel form, by parry.
-pub(super) fn pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Shaped> {
+pub(super) fn pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<PlacedShape> {
     let points: Vec<Vec3> = mesh
         .positions
         .iter()
@@ -49,7 +49,7 @@ pub(super) fn pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Shaped> {
     };
     let decomposed = VHACD::decompose(&parameters, &points, &mesh.triangles, true);
     let corners = decomposed.compute_primitive_intersections(&points, &mesh.triangles);
-    let pieces: Vec<Shaped> = corners
+    let pieces: Vec<PlacedShape> = corners
         .iter()
         .filter_map(|corners| shapes::hull(corners))
         .collect();
@@ -76,8 +76,8 @@ mod tests {
         mesh
     }
 
-    fn volume_m3(pieces: &[Shaped]) -> f32 {
-        let volume = |piece: &Shaped| piece.shape.mass_properties(1.0).mass();
+    fn volume_m3(pieces: &[PlacedShape]) -> f32 {
+        let volume = |piece: &PlacedShape| piece.shape.mass_properties(1.0).mass();
         pieces.iter().map(volume).sum()
     }
 
@@ -96,7 +96,7 @@ mod tests {
         let pieces = pieces(&mesh, &Affine3A::IDENTITY);
         assert!((2..=MOST_PIECES as usize).contains(&pieces.len()));
         let inside = |p: Vec3| {
-            let point = |piece: &Shaped| piece.shape.contains_point(&piece.part_from_shape, p);
+            let point = |piece: &PlacedShape| piece.shape.contains_point(&piece.part_from_shape, p);
             pieces.iter().any(point)
         };
         assert!(inside(Vec3::new(0.0, 0.72, 0.0)));

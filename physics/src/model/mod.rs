@@ -5,9 +5,9 @@ mod plan;
 pub(crate) mod shapes;
 mod substance;
 
-pub(crate) use plan::{BodyPlan, Cover, Owner, Piece};
+pub(crate) use plan::{BodyPlan, CollisionPiece, MaterialAssignment, PieceOwner};
 
-use crate::contact::rolling::Roller;
+use crate::contact::rolling::RollingCylinder;
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub struct PhysicsModel {
     pub(crate) house: Arc<House>,
     /// Pieces that never move, in world space: structure in order, then fixed parts in order.
-    pub(crate) statics: Vec<Piece>,
+    pub(crate) statics: Vec<CollisionPiece>,
     /// Rigid bodies, in the order of their first parts.
     pub(crate) bodies: Vec<BodyPlan>,
     /// The body of each part that moves.
@@ -24,7 +24,7 @@ pub struct PhysicsModel {
     /// Objects that move and came without collision pieces: they have convex pieces of what is seen.
     pub(crate) stand_ins: Vec<ObjectId>,
     /// Cylinders of bodies.
-    pub(crate) rollers: Vec<Roller>,
+    pub(crate) rollers: Vec<RollingCylinder>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
 }
@@ -64,7 +64,7 @@ impl fmt::Debug for PhysicsModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::inertia::Inertia;
+    use crate::inertia::BodyInertia;
     use dwell_scene::{
         Category, Collider, LevelId, Mesh, Mobility, Object, Part, Pose, ShoeboxMaterials, State,
     };
@@ -141,7 +141,7 @@ mod tests {
             half_extents: half,
         });
         let model = thing(Mesh::cuboid(Vec3::ZERO, Vec3::ONE), pieces.to_vec(), 640.0);
-        let found = Inertia::of(
+        let found = BodyInertia::of(
             &model.house,
             &model.bodies[0],
             &State::new(&model.house),
@@ -167,7 +167,7 @@ mod tests {
             half_extents: half,
         };
         let model = thing(Mesh::cuboid(Vec3::ZERO, Vec3::ONE), vec![piece], 500.0);
-        let found = Inertia::of(
+        let found = BodyInertia::of(
             &model.house,
             &model.bodies[0],
             &State::new(&model.house),
@@ -190,7 +190,7 @@ mod tests {
         let model = thing(mesh, Vec::new(), 640.0);
         assert_eq!(model.stand_ins, [ObjectId(0)]);
         assert!(model.bodies[0].pieces.len() >= 2);
-        let found = Inertia::of(
+        let found = BodyInertia::of(
             &model.house,
             &model.bodies[0],
             &State::new(&model.house),

@@ -2,7 +2,7 @@
 
 use super::PhysicsModel;
 use super::decompose;
-use super::shapes::{self, Shaped};
+use super::shapes::{self, PlacedShape};
 use super::substance;
 use crate::contact::rolling;
 use crate::convert::to_rapier;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 /// What a collision piece belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Owner {
+pub(crate) enum PieceOwner {
     /// A wall, floor or ceiling.
     Structure(StructureId),
     /// A part of an object.
@@ -31,23 +31,23 @@ pub(crate) enum Owner {
 
 /// What a piece is made of.
 #[derive(Clone, Debug)]
-pub(crate) enum Cover {
+pub(crate) enum MaterialAssignment {
     /// One material all over; `None` when the part names none.
-    One(Option<MaterialId>),
+    Uniform(Option<MaterialId>),
     /// A material for each triangle of the shape.
     PerTriangle(Arc<[MaterialId]>),
 }
 
 /// A collision piece.
 #[derive(Clone)]
-pub(crate) struct Piece {
-    pub(crate) owner: Owner,
+pub(crate) struct CollisionPiece {
+    pub(crate) owner: PieceOwner,
     pub(crate) shape: SharedShape,
     /// Where the shape stands on its body, or in the world for a static piece.
     pub(crate) place: RapierPose,
     /// kg/m³; 0 for a static piece.
     pub(crate) density_kg_m3: f32,
-    pub(crate) cover: Cover,
+    pub(crate) cover: MaterialAssignment,
 }
 
 /// A rigid body: one or more parts that move together.
@@ -56,7 +56,7 @@ pub(crate) struct BodyPlan {
     pub(crate) object: ObjectId,
     /// The parts with their places on the body; the body's own frame is that of the first.
     pub(crate) parts: Vec<(PartId, Pose)>,
-    pub(crate) pieces: Vec<Piece>,
+    pub(crate) pieces: Vec<CollisionPiece>,
     /// The joint that moves it, if it is not free.
     pub(crate) joint: Option<JointId>,
     /// Mass of each part without overrides, kg. Shape (part,).
@@ -70,7 +70,7 @@ type ExactShape = (SharedShape, Arc<[u32]>);
 
 /// Shapes of exact meshes, shared between instances of a model.
 #[derive(Default)]
-struct Meshes {
+struct ShapeCache {
     made: BTreeMap<MeshKey, Option<ExactShape>>,
     /// Convex pieces of meshes that came without any.
     convex: BTreeMap<MeshKey, Vec<(SharedShape, RapierPose)>>,
@@ -79,7 +79,7 @@ struct Meshes {
 /// A mesh and its place on the part, bit for bit.
 type MeshKey = (MeshId, [u32; 12]);
 
-impl Meshes {
+impl ShapeCache {
     fn exact(
         &mut self,
         house: &House,
@@ -117,7 +117,12 @@ fn mesh_key(mesh: MeshId, part_from_mesh: &Affine3A) -> MeshKey {
 }
 
 /// One material, or one for each triangle where substances differ.
-fn cover(house: &House, mesh: MeshId, materials: &[MaterialId], triangles: &[u32]) -> Cover {
+fn cover(
+    house: &House,
+    mesh: MeshId,
+    materials: &[MaterialId],
+    triangles: &[u32],
+) -> MaterialAssignment {
     let mesh = &house.meshes[mesh];
     let material_of = |triangle: u32| {
         materials
@@ -135,20 +140,25 @@ fn cover(house: &House, mesh: MeshId, materials: &[MaterialId], triangles: &[u32
         .all(|triangle| substance(material_of(*triangle)) == substance(first));
     let all: Option<Vec<MaterialId>> = triangles.iter().map(|t| material_of(*t)).collect();
     match all {
-        Some(all) if !alike => Cover::PerTriangle(all.into()),
-        _ => Cover::One(first),
+        Some(all) if !alike => MaterialAssignment::PerTriangle(all.into()),
+        _ => MaterialAssignment::Uniform(first),
     }
 }
 
 /// The pieces of a part in part space.
-fn part_pieces(house: &House, meshes: &mut Meshes, id: PartId, density: f32) -> Vec<Piece> {
+fn part_pieces(
+    house: &House,
+    meshes: &mut ShapeCache,
+    id: PartId,
+    density: f32,
+) -> Vec<CollisionPiece> {
     let part = &house.parts[id];
-    let owner = Owner::Part(id);
+    let owner = PieceOwner::Part(id);
     let mut pieces = Vec::with_capacity(part.colliders.len());
     for collider in &part.colliders {
         if matches!(collider, Collider::ExactMesh) {
             if let Some((shape, triangles)) = meshes.exact(house, part.mesh, &part.part_from_mesh) {
-                pieces.push(Piece {
+                pieces.push(CollisionPiece {
                     owner,
                     shape,
                     place: RapierPose::IDENTITY,
@@ -164,22 +174,22 @@ fn part_pieces(house: &House, meshes: &mut Meshes, id: PartId, density: f32) -> 
     pieces
 }
 
-fn solid(house: &House, id: PartId, shaped: Shaped, density: f32) -> Piece {
-    Piece {
-        owner: Owner::Part(id),
+fn solid(house: &House, id: PartId, shaped: PlacedShape, density: f32) -> CollisionPiece {
+    CollisionPiece {
+        owner: PieceOwner::Part(id),
         shape: shaped.shape,
         place: shaped.part_from_shape,
         density_kg_m3: density,
-        cover: Cover::One(house.parts[id].materials.first().copied()),
+        cover: MaterialAssignment::Uniform(house.parts[id].materials.first().copied()),
     }
 }
 
-fn moved(mut piece: Piece, by: &RapierPose) -> Piece {
+fn moved(mut piece: CollisionPiece, by: &RapierPose) -> CollisionPiece {
     piece.place = *by * piece.place;
     piece
 }
 
-fn volume_m3(pieces: &[Piece]) -> f32 {
+fn volume_m3(pieces: &[CollisionPiece]) -> f32 {
     pieces
         .iter()
         .map(|piece| piece.shape.mass_properties(1.0).mass())
@@ -187,16 +197,16 @@ fn volume_m3(pieces: &[Piece]) -> f32 {
 }
 
 /// The pieces of one moving part with densities that give its mass.
-fn moving_pieces(house: &House, meshes: &mut Meshes, id: PartId) -> Vec<Piece> {
+fn moving_pieces(house: &House, meshes: &mut ShapeCache, id: PartId) -> Vec<CollisionPiece> {
     let part = &house.parts[id];
     let mut pieces = part_pieces(house, meshes, id, part.density_kg_m3);
     pieces.retain(|piece| piece.shape.as_trimesh().is_none());
-    weigh_part(&mut pieces, part);
+    set_part_density(&mut pieces, part);
     pieces
 }
 
 /// Gives the pieces of a part densities that make up its mass; none where the part states its inertia itself.
-fn weigh_part(pieces: &mut [Piece], part: &Part) {
+fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
     if part.inertial.is_some() {
         for piece in pieces {
             piece.density_kg_m3 = 0.0;
@@ -224,7 +234,7 @@ fn given(
     ))
 }
 
-fn weigh(pieces: &mut [Piece], mass_kg: Option<f32>, density_kg_m3: f32) {
+fn weigh(pieces: &mut [CollisionPiece], mass_kg: Option<f32>, density_kg_m3: f32) {
     let volume = volume_m3(pieces);
     let density = match mass_kg {
         Some(mass) if volume > 0.0 => mass / volume,
@@ -236,7 +246,7 @@ fn weigh(pieces: &mut [Piece], mass_kg: Option<f32>, density_kg_m3: f32) {
 }
 
 pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
-    let mut meshes = Meshes::default();
+    let mut meshes = ShapeCache::default();
     let mut statics = structure_pieces(&house, &mut meshes);
     let mut joint_of_part = IdVec::filled(None, house.parts.len());
     for (id, joint) in house.joints.iter_ids() {
@@ -313,12 +323,12 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     }
     stand_ins.dedup();
     let bounds = bounds(&house, &statics, &bodies);
-    let sides = shapes::last_box(&bounds).map(|(shape, place)| Piece {
-        owner: Owner::LastBox,
+    let sides = shapes::last_box(&bounds).map(|(shape, place)| CollisionPiece {
+        owner: PieceOwner::LastBox,
         shape,
         place: to_rapier(&place),
         density_kg_m3: 0.0,
-        cover: Cover::One(None),
+        cover: MaterialAssignment::Uniform(None),
     });
     statics.extend(sides);
     PhysicsModel {
@@ -332,14 +342,14 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     }
 }
 
-fn structure_pieces(house: &House, meshes: &mut Meshes) -> Vec<Piece> {
+fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiece> {
     let mut pieces = Vec::new();
     for (id, structure) in house.structure.iter_ids() {
         interrupt::check();
         let exact = meshes.exact(house, structure.mesh, &Affine3A::IDENTITY);
         if let Some((shape, triangles)) = exact {
-            pieces.push(Piece {
-                owner: Owner::Structure(id),
+            pieces.push(CollisionPiece {
+                owner: PieceOwner::Structure(id),
                 shape,
                 place: RapierPose::IDENTITY,
                 density_kg_m3: 0.0,
@@ -351,15 +361,15 @@ fn structure_pieces(house: &House, meshes: &mut Meshes) -> Vec<Piece> {
 }
 
 /// Convex pieces of what a body's parts look like, for a body that came without collision pieces.
-fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<Piece> {
+fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> Vec<CollisionPiece> {
     let mut pieces = Vec::new();
     for (id, body_from_part) in &body.parts {
         let part = &house.parts[*id];
         let place = to_rapier(body_from_part);
         let convex = meshes.convex(house, *id).into_iter();
-        let mut own: Vec<Piece> = convex
+        let mut own: Vec<CollisionPiece> = convex
             .map(|(shape, part_from_shape)| {
-                let shaped = Shaped {
+                let shaped = PlacedShape {
                     shape,
                     part_from_shape,
                     triangles: Vec::new(),
@@ -367,13 +377,13 @@ fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<P
                 solid(house, *id, shaped, part.density_kg_m3)
             })
             .collect();
-        weigh_part(&mut own, part);
+        set_part_density(&mut own, part);
         substance::cover_pieces(house, *id, &mut own);
         pieces.extend(own.into_iter().map(|piece| moved(piece, &place)));
     }
     if pieces.is_empty() {
         // Nothing to see and nothing to touch: a crumb, so that it has a weight.
-        let crumb = Shaped {
+        let crumb = PlacedShape {
             shape: SharedShape::ball(0.005),
             part_from_shape: RapierPose::IDENTITY,
             triangles: Vec::new(),
@@ -389,7 +399,7 @@ fn stand_in_pieces(house: &House, meshes: &mut Meshes, body: &BodyPlan) -> Vec<P
     pieces
 }
 
-fn bounds(house: &House, statics: &[Piece], bodies: &[BodyPlan]) -> Aabb {
+fn bounds(house: &House, statics: &[CollisionPiece], bodies: &[BodyPlan]) -> Aabb {
     let mut all = Aabb::EMPTY;
     for piece in statics {
         all = all.union(&shapes::bounds(&piece.shape, &piece.place));
@@ -407,7 +417,7 @@ fn bounds(house: &House, statics: &[Piece], bodies: &[BodyPlan]) -> Aabb {
     }
 }
 
-impl Owner {
+impl PieceOwner {
     /// The part, if it is one.
     pub(crate) fn part(self) -> Option<PartId> {
         match self {
@@ -463,7 +473,7 @@ impl BodyPlan {
     }
 
     /// The factor of a piece: that of its part. Shape of `factors`: (part,).
-    pub(crate) fn factor_of(&self, piece: &Piece, factors: &[f32]) -> f32 {
+    pub(crate) fn factor_of(&self, piece: &CollisionPiece, factors: &[f32]) -> f32 {
         let owner = piece.owner.part();
         let place = self.parts.iter().position(|(id, _)| Some(*id) == owner);
         place

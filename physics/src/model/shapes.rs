@@ -14,14 +14,14 @@ const MOST_HULL_CORNERS: usize = 96;
 const FLAT_TRIANGLE: f32 = 1e-9;
 
 /// A shape and where it stands on its part; the triangles kept, for a mesh.
-pub(crate) struct Shaped {
+pub(crate) struct PlacedShape {
     pub(crate) shape: SharedShape,
     pub(crate) part_from_shape: RapierPose,
     /// For each triangle of the shape, the triangle of the mesh. Empty for a convex piece.
     pub(crate) triangles: Vec<u32>,
 }
 
-impl Shaped {
+impl PlacedShape {
     fn convex(shape: SharedShape, part_from_shape: RapierPose) -> Self {
         Self {
             shape,
@@ -32,7 +32,7 @@ impl Shaped {
 }
 
 /// The shape of a convex piece; `None` for [`Collider::ExactMesh`] and for pieces without extent.
-pub(crate) fn convex(piece: &Collider) -> Option<Shaped> {
+pub(crate) fn convex(piece: &Collider) -> Option<PlacedShape> {
     match piece {
         Collider::Cuboid {
             part_from_box,
@@ -41,12 +41,12 @@ pub(crate) fn convex(piece: &Collider) -> Option<Shaped> {
             let half = half_extents.abs().max(Vec3::splat(THINNEST_HALF_EDGE_M));
             let shape = SharedShape::cuboid(half.x, half.y, half.z);
             (half.is_finite() && part_from_box.is_valid())
-                .then(|| Shaped::convex(shape, to_rapier(part_from_box)))
+                .then(|| PlacedShape::convex(shape, to_rapier(part_from_box)))
         }
         Collider::Ball { center, radius } => {
             (center.is_finite() && radius.is_finite()).then(|| {
                 let radius = radius.max(THINNEST_HALF_EDGE_M);
-                Shaped::convex(
+                PlacedShape::convex(
                     SharedShape::ball(radius),
                     RapierPose::from_translation(*center),
                 )
@@ -64,7 +64,7 @@ pub(crate) fn convex(piece: &Collider) -> Option<Shaped> {
                     half_height.max(THINNEST_HALF_EDGE_M),
                     radius.max(THINNEST_HALF_EDGE_M),
                 );
-                Shaped::convex(shape, to_rapier(part_from_cylinder))
+                PlacedShape::convex(shape, to_rapier(part_from_cylinder))
             })
         }
         Collider::Hull { points } => hull(points),
@@ -73,7 +73,7 @@ pub(crate) fn convex(piece: &Collider) -> Option<Shaped> {
 }
 
 /// The convex hull of points, or their box where they span no volume; `None` without a finite point.
-pub(crate) fn hull(points: &[Vec3]) -> Option<Shaped> {
+pub(crate) fn hull(points: &[Vec3]) -> Option<PlacedShape> {
     let bounds = Aabb::from_points(points.iter().copied());
     if bounds.is_empty() {
         return None;
@@ -88,11 +88,11 @@ pub(crate) fn hull(points: &[Vec3]) -> Option<Shaped> {
         volume.is_finite() && volume > 1e-3 * bounds.volume()
     });
     Some(if let Some(shape) = hull {
-        Shaped::convex(shape, RapierPose::IDENTITY)
+        PlacedShape::convex(shape, RapierPose::IDENTITY)
     } else {
         let half = (bounds.size() * 0.5).max(Vec3::splat(THINNEST_HALF_EDGE_M));
         let shape = SharedShape::cuboid(half.x, half.y, half.z);
-        Shaped::convex(shape, RapierPose::from_translation(bounds.center()))
+        PlacedShape::convex(shape, RapierPose::from_translation(bounds.center()))
     })
 }
 
@@ -123,7 +123,7 @@ fn outermost(points: &[Vec3]) -> Vec<Vec3> {
 }
 
 /// The triangles of a mesh under `part_from_mesh`, touched from both sides; `None` when none has an area.
-pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<Shaped> {
+pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<PlacedShape> {
     let corners: Vec<Vec3> = mesh
         .positions
         .iter()
@@ -145,7 +145,7 @@ pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<Shaped> {
     }
     let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
     let shape = SharedShape::trimesh_with_flags(corners, indices, flags).ok()?;
-    Some(Shaped {
+    Some(PlacedShape {
         shape,
         part_from_shape: RapierPose::IDENTITY,
         triangles,

@@ -3,7 +3,7 @@
 //! A house says of which material each face of a part is, and which convex pieces collide, but not which belongs to which. A
 //! face belongs to the piece that it lies on; a piece is of the material of which most of the faces on it are.
 
-use super::plan::{Cover, Piece};
+use super::plan::{CollisionPiece, MaterialAssignment};
 use super::shapes;
 use dwell_scene::{House, MaterialId, PartId};
 use glam::Vec3;
@@ -15,7 +15,7 @@ const FEW_FACES: usize = 128;
 const ALIKE_M: f32 = 1e-4;
 
 /// A point of a face, with the area that it stands for.
-struct Spot {
+struct SurfaceSample {
     point: Vec3,
     area_m2: f64,
     /// Its place among the part's materials.
@@ -23,7 +23,7 @@ struct Spot {
 }
 
 /// Gives each convex piece, in part space, the material of the faces on it; pieces without any keep the one they have.
-pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [Piece]) {
+pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionPiece]) {
     let materials = &house.parts[part].materials;
     let alike = materials.windows(2).all(|two| two[0] == two[1]);
     if alike || !pieces.iter().any(is_convex) {
@@ -59,12 +59,12 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [Piece]) {
         if is_convex(piece)
             && let Some(material) = most(materials, areas)
         {
-            piece.cover = Cover::One(Some(material));
+            piece.cover = MaterialAssignment::Uniform(Some(material));
         }
     }
 }
 
-fn is_convex(piece: &Piece) -> bool {
+fn is_convex(piece: &CollisionPiece) -> bool {
     piece.shape.as_trimesh().is_none()
 }
 
@@ -87,7 +87,7 @@ fn most(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
 }
 
 /// Points all over the largest faces of a part, in part space.
-fn spots(house: &House, part: PartId) -> Vec<Spot> {
+fn spots(house: &House, part: PartId) -> Vec<SurfaceSample> {
     let part = &house.parts[part];
     let mesh = &house.meshes[part.mesh];
     let mut faces: Vec<(f64, usize, [Vec3; 3])> = (0..mesh.triangles.len())
@@ -112,7 +112,7 @@ fn spots(house: &House, part: PartId) -> Vec<Spot> {
             points.extend(corners.map(|corner| 0.5 * (corner + middle)));
         }
         let area_m2 = area_m2 / points.len() as f64;
-        spots.extend(points.into_iter().map(|point| Spot {
+        spots.extend(points.into_iter().map(|point| SurfaceSample {
             point,
             area_m2,
             slot,

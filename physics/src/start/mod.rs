@@ -1,19 +1,19 @@
 //! Overlaps at the start: found on the collision pieces, resolved by small moves, or frozen, and reported.
 
-mod free;
+mod collision_exclusions;
+mod depenetrate;
 mod overlap;
-mod passing;
-mod placed;
+mod placed_bodies;
 
-use crate::body::{Body, Hold};
-use crate::config::Settings;
-use crate::contact::Entry;
-use crate::engine::Engine;
+use crate::body::{BodyHandle, BodyStatus};
+use crate::config::ResolvedConfig;
+use crate::contact::ColliderEntry;
+use crate::engine::RapierWorld;
 use crate::model::{BodyPlan, PhysicsModel};
 use crate::report::{FrozenObject, MovedObject, StartReport};
 use dwell_scene::ObjectId;
-use overlap::Overlap;
-use placed::Standing;
+use overlap::Penetration;
+use placed_bodies::PlacedBodies;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 
@@ -24,22 +24,22 @@ const CLEARANCE_M: f32 = 5e-4;
 /// try asks all of them.
 const MOST_OVERLAPPED: usize = 32;
 
-pub(crate) struct Start<'a> {
-    pub(crate) engine: &'a Engine,
+pub(crate) struct StartResolver<'a> {
+    pub(crate) engine: &'a RapierWorld,
     pub(crate) model: &'a PhysicsModel,
-    pub(crate) entries: &'a [Entry],
-    pub(crate) bodies: &'a [Body],
-    pub(crate) settings: &'a Settings,
+    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) bodies: &'a [BodyHandle],
+    pub(crate) settings: &'a ResolvedConfig,
 }
 
 /// Where a body ends up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Resolved {
+pub(crate) struct ResolvedBody {
     pub(crate) place: RapierPose,
-    pub(crate) hold: Hold,
+    pub(crate) hold: BodyStatus,
 }
 
-impl Start<'_> {
+impl StartResolver<'_> {
     fn place(&self, body: usize) -> RapierPose {
         let handle = self.bodies[body].handle;
         self.engine
@@ -49,16 +49,16 @@ impl Start<'_> {
     }
 
     /// Frees every body from what it overlaps, from the lowest up.
-    pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<Resolved> {
-        let mut resolved: Vec<Resolved> = (0..self.bodies.len())
-            .map(|body| Resolved {
+    pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<ResolvedBody> {
+        let mut resolved: Vec<ResolvedBody> = (0..self.bodies.len())
+            .map(|body| ResolvedBody {
                 place: self.place(body),
-                hold: Hold::Free,
+                hold: BodyStatus::Free,
             })
             .collect();
         let bounds = |body: usize| self.model.bodies[body].bounds(&resolved[body].place);
         let mut order: Vec<(f32, usize)> = Vec::new();
-        let mut placed = Standing::default();
+        let mut placed = PlacedBodies::default();
         for (index, plan) in self.model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
                 placed.put(self.model, index, resolved[index].place);
@@ -74,7 +74,7 @@ impl Start<'_> {
             };
             a.0.total_cmp(&b.0).then_with(by_number)
         });
-        let mut deepest: BTreeMap<usize, Overlap> = BTreeMap::new();
+        let mut deepest: BTreeMap<usize, Penetration> = BTreeMap::new();
         for (_, index) in order {
             let plan = &self.model.bodies[index];
             let start = resolved[index].place;
@@ -83,10 +83,11 @@ impl Start<'_> {
                 report.overlaps += 1;
                 deepest.insert(index, overlap);
                 if self.is_crowded(plan, &start, &placed) {
-                    resolved[index].hold = Hold::Frozen;
+                    resolved[index].hold = BodyStatus::Frozen;
                 } else if let Some(place) = self.free(plan, start, &placed) {
                     resolved[index].place = place;
-                } else if let Some(others) = self.make_way(index, &mut resolved, &mut placed) {
+                } else if let Some(others) = self.move_neighbours(index, &mut resolved, &mut placed)
+                {
                     for (other, overlap) in others {
                         deepest.entry(other).or_insert(overlap);
                     }
@@ -96,7 +97,7 @@ impl Start<'_> {
                 {
                     resolved[index].place = place;
                 } else {
-                    resolved[index].hold = Hold::Frozen;
+                    resolved[index].hold = BodyStatus::Frozen;
                 }
             }
             placed.put(self.model, index, resolved[index].place);
@@ -106,7 +107,7 @@ impl Start<'_> {
     }
 
     /// Whether a body is in so many others that no way out of them is looked for.
-    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &Standing) -> bool {
+    fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
         let near = placed.near(&plan.bounds(place));
         let found = near
             .iter()
@@ -120,14 +121,14 @@ impl Start<'_> {
     /// What became of the bodies that overlapped something.
     fn tell(
         &self,
-        deepest: &BTreeMap<usize, Overlap>,
-        resolved: &[Resolved],
+        deepest: &BTreeMap<usize, Penetration>,
+        resolved: &[ResolvedBody],
         report: &mut StartReport,
     ) {
         let mut moved: BTreeMap<ObjectId, MovedObject> = BTreeMap::new();
         for (index, overlap) in deepest {
             let object = self.model.bodies[*index].object;
-            if resolved[*index].hold == Hold::Frozen {
+            if resolved[*index].hold == BodyStatus::Frozen {
                 report.frozen.push(FrozenObject {
                     object,
                     overlap_m: overlap.depth_m,
@@ -148,7 +149,7 @@ impl Start<'_> {
         report.frozen.sort_by_key(|frozen| frozen.object);
     }
 
-    fn counts(&self, overlap: &Overlap) -> bool {
+    fn counts(&self, overlap: &Penetration) -> bool {
         overlap.depth_m > self.settings.config.overlap_tolerance_m
     }
 }

@@ -1,9 +1,9 @@
 //! How deep a body is in others.
 
-use super::Start;
-use super::placed::{Placed, Standing};
-use crate::contact::{Toucher, entry_index};
-use crate::model::{BodyPlan, Owner, Piece, shapes};
+use super::StartResolver;
+use super::placed_bodies::{PlacedBodies, PlacedBody};
+use crate::contact::{ContactEntity, entry_index};
+use crate::model::{BodyPlan, CollisionPiece, PieceOwner, shapes};
 use dwell_scene::interrupt;
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
@@ -12,21 +12,21 @@ use rapier3d::pipeline::QueryFilter;
 
 /// The deepest overlap of a body somewhere.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Overlap {
+pub(super) struct Penetration {
     pub(super) depth_m: f32,
     /// Away from the other thing.
     pub(super) normal: Vec3,
-    pub(super) other: Owner,
+    pub(super) other: PieceOwner,
 }
 
-impl Start<'_> {
+impl StartResolver<'_> {
     /// The deepest overlap of a body under a pose with static pieces and with bodies that have their place.
     pub(super) fn overlap(
         &self,
         plan: &BodyPlan,
         place: &RapierPose,
-        placed: &Standing,
-    ) -> Option<Overlap> {
+        placed: &PlacedBodies,
+    ) -> Option<Penetration> {
         interrupt::check();
         let mut found = Vec::new();
         let is_static = |_, collider: &rapier3d::geometry::Collider| {
@@ -66,20 +66,20 @@ impl Start<'_> {
         &self,
         plan: &BodyPlan,
         place: &RapierPose,
-        other: &Placed,
-    ) -> Option<Overlap> {
+        other: &PlacedBody,
+    ) -> Option<Penetration> {
         let obstacles = &self.model.bodies[other.body as usize];
         // A lid may lie on its own pot, and a robot's trunk is not moved away from its own links.
         if obstacles.object == plan.object {
             return None;
         }
-        let of_piece = |piece: &Piece| {
+        let of_piece = |piece: &CollisionPiece| {
             let at = *place * piece.place;
             let bounds = shapes::bounds(&piece.shape, &at);
             if !other.bounds.intersects(&bounds) {
                 return None;
             }
-            let of_obstacle = |obstacle: &Piece| {
+            let of_obstacle = |obstacle: &CollisionPiece| {
                 let there = other.place * obstacle.place;
                 depth(&there, &*obstacle.shape, &at, &*piece.shape, obstacle.owner)
             };
@@ -88,17 +88,17 @@ impl Start<'_> {
         deepest(plan.pieces.iter().filter_map(of_piece))
     }
 
-    pub(super) fn owner(&self, entry: usize) -> Owner {
+    pub(super) fn owner(&self, entry: usize) -> PieceOwner {
         match self.entries[entry].toucher {
-            Some(Toucher::Structure(id)) => Owner::Structure(id),
-            Some(Toucher::Part(id)) => Owner::Part(id),
-            _ => Owner::LastBox,
+            Some(ContactEntity::Structure(id)) => PieceOwner::Structure(id),
+            Some(ContactEntity::Part(id)) => PieceOwner::Part(id),
+            _ => PieceOwner::LastBox,
         }
     }
 }
 
 /// The first of the deepest.
-fn deepest(overlaps: impl Iterator<Item = Overlap>) -> Option<Overlap> {
+fn deepest(overlaps: impl Iterator<Item = Penetration>) -> Option<Penetration> {
     overlaps.reduce(|worst, one| {
         if one.depth_m > worst.depth_m {
             one
@@ -114,12 +114,12 @@ pub(super) fn depth(
     obstacle: &dyn rapier3d::geometry::Shape,
     at: &RapierPose,
     piece: &dyn rapier3d::geometry::Shape,
-    other: Owner,
-) -> Option<Overlap> {
+    other: PieceOwner,
+) -> Option<Penetration> {
     let contact = query::contact(there, obstacle, at, piece, 0.0)
         .ok()
         .flatten()?;
-    (contact.dist < 0.0 && contact.normal1.is_finite()).then_some(Overlap {
+    (contact.dist < 0.0 && contact.normal1.is_finite()).then_some(Penetration {
         depth_m: -contact.dist,
         normal: contact.normal1,
         other,

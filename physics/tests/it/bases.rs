@@ -2,7 +2,7 @@
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::AgentControl;
-use dwell_physics::bases::{PlanarPose, Twist, Wheels};
+use dwell_physics::bases::{PlanarPose, PlanarTwist, WheelGeometry};
 use dwell_scene::{AgentBody, AgentId, DifferentialDrive, HolonomicBase, Locomotion};
 use glam::Vec3;
 use std::f64::consts::TAU;
@@ -51,7 +51,7 @@ fn constant_wheel_speeds_draw_the_circle_of_their_closed_form() {
     let (at, yaw) = (Vec3::new(10.0, 0.0, 10.0), 0.6);
     let (mut run, id) = differential(quick(), at, yaw);
     let (l, r) = (5.0, 7.0);
-    let twist = Wheels::from(&quick()).twist([5.0, 7.0]);
+    let twist = WheelGeometry::from(&quick()).twist([5.0, 7.0]);
     for step in 1..=1200 {
         run.walk(1, &[wheels(l, r)]);
         let t = f64::from(step) * 0.05;
@@ -222,7 +222,7 @@ fn a_holonomic_base_goes_sideways_and_turns_on_the_way() {
         yaw_rate_rad_s: 0.7,
         ..AgentControl::default()
     };
-    let twist = Twist {
+    let twist = PlanarTwist {
         forward_m_s: 0.3,
         left_m_s: -0.6,
         yaw_rate_rad_s: 0.7,

@@ -2,7 +2,7 @@
 
 use crate::common::Run;
 use crate::common::{Build, Piece, gravity, pair};
-use dwell_physics::{ContactEvent, ContactKind, ContactPhase, PhysicsConfig, Toucher};
+use dwell_physics::{ContactEntity, ContactEvent, ContactKind, ContactPhase, PhysicsConfig};
 use dwell_scene::{ObjectId, StructureId};
 use glam::{Quat, Vec3};
 
@@ -48,8 +48,8 @@ fn a_dropped_thing_reports_its_momentum() {
             "{}",
             event.relative_normal_speed_m_s
         );
-        assert_eq!(event.a, Toucher::Structure(StructureId(0)));
-        assert_eq!(event.b, Toucher::Part(run.root(ball)));
+        assert_eq!(event.a, ContactEntity::Structure(StructureId(0)));
+        assert_eq!(event.b, ContactEntity::Part(run.root(ball)));
         assert_eq!((event.substance_a, event.substance_b), (floor, thing));
         assert!(
             (event.position - Vec3::new(1.3, 0.0, 2.4)).length() < 0.03,

@@ -3,7 +3,7 @@
 //! What used to happen: all pieces of a part had the part's first material.
 
 use crate::common::{Build, Piece, Run, gravity, pair};
-use dwell_physics::{ContactKind, PhysicsConfig, Toucher};
+use dwell_physics::{ContactEntity, ContactKind, PhysicsConfig};
 use dwell_scene::{Collider, Mesh, Mobility, ObjectId, Pose};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
@@ -102,7 +102,7 @@ fn a_thing_of_steel_and_rubber_slides_or_stays_by_which_touches() {
             let named = [(told.a, told.substance_a), (told.b, told.substance_b)];
             let root = run.root(object);
             let own = named.iter().find(|(toucher, _)| match toucher {
-                Toucher::Part(part) => run.house.parts[*part].object == object,
+                ContactEntity::Part(part) => run.house.parts[*part].object == object,
                 _ => false,
             });
             assert_eq!(

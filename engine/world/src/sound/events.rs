@@ -6,7 +6,7 @@ use super::gait::{Stride, mass_kg};
 use dwell_acoustics::contact::{
     ContactSound, CreakSound, FootstepSound, ImpactSound, Partner, RubKind, RubSound,
 };
-use dwell_physics::{ContactEvent, ContactKind, ContactPhase, Toucher};
+use dwell_physics::{ContactEntity, ContactEvent, ContactKind, ContactPhase};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::random::RandomKey;
@@ -325,28 +325,28 @@ fn closed_within(kind: JointKind) -> f32 {
 }
 
 /// A number that tells touchers apart.
-fn number(toucher: Toucher) -> u64 {
+fn number(toucher: ContactEntity) -> u64 {
     match toucher {
-        Toucher::Structure(id) => id.index() as u64,
-        Toucher::Part(id) => (1 << 40) + id.index() as u64,
-        Toucher::Agent(id) => (2 << 40) + id.index() as u64,
+        ContactEntity::Structure(id) => id.index() as u64,
+        ContactEntity::Part(id) => (1 << 40) + id.index() as u64,
+        ContactEntity::Agent(id) => (2 << 40) + id.index() as u64,
     }
 }
 
 fn partners(step: &Step<'_>, event: &ContactEvent) -> [Partner; 2] {
     let partner = |toucher, substance: &str| match toucher {
-        Toucher::Structure(id) => {
+        ContactEntity::Structure(id) => {
             let floor = matches!(
                 step.house.structure[id].kind,
                 StructureKind::Floor | StructureKind::Ground
             );
             leaf(substance, floor)
         }
-        Toucher::Part(id) => {
+        ContactEntity::Part(id) => {
             let size = part_size_m(step.house, id);
             Partner::body(substance, part_mass_kg(step.house, step.state, id), size)
         }
-        Toucher::Agent(id) => agent(step.state, id, substance),
+        ContactEntity::Agent(id) => agent(step.state, id, substance),
     };
     [
         partner(event.a, event.substance_a),

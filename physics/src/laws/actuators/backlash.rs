@@ -1,14 +1,14 @@
 //! Backlash: the play of a servo's gear.
 
-use super::Motors;
+use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, MotorStep, value};
+use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "backlash",
         version: 1,
@@ -52,7 +52,7 @@ pub(in crate::laws) const LAW: Law = Law {
 
 /// What is remembered of a motor.
 #[derive(Clone, Copy, Debug, Default)]
-struct Play {
+struct BacklashState {
     /// Where the motor drives the joint when it is told a position, rad or m.
     output: f32,
     /// How far it is ahead of the joint, within the play, rad or m.
@@ -65,7 +65,7 @@ struct Play {
 struct Backlash {
     half_width: f32,
     motor_inertia: f32,
-    motors: BTreeMap<JointId, Play>,
+    motors: BTreeMap<JointId, BacklashState>,
 }
 
 fn install(
@@ -73,13 +73,13 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    let motors = Motors::of(spec, info, model)?.0.into_iter();
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    let motors = TargetMotors::of(spec, info, model)?.0.into_iter();
     Ok(Box::new(Backlash {
         half_width: value(spec, info, "half_width"),
         motor_inertia: value(spec, info, "motor_inertia"),
         motors: motors
-            .map(|id| (id, Play::at(state.joint_position[id])))
+            .map(|id| (id, BacklashState::at(state.joint_position[id])))
             .collect(),
     }))
 }
@@ -89,7 +89,7 @@ fn play(input: f32, half_width: f32, output: f32) -> f32 {
     output.min(input + half_width).max(input - half_width)
 }
 
-impl Play {
+impl BacklashState {
     fn at(position: f32) -> Self {
         Self {
             output: position,
@@ -124,7 +124,7 @@ impl Play {
     }
 }
 
-impl Acts for Backlash {
+impl LawHooks for Backlash {
     fn drives(&self) -> bool {
         true
     }
@@ -160,7 +160,7 @@ impl Acts for Backlash {
 
     fn placed(&mut self, joint: JointId, position: f32) {
         if let Some(play) = self.motors.get_mut(&joint) {
-            *play = Play::at(position);
+            *play = BacklashState::at(position);
         }
     }
 
@@ -171,9 +171,9 @@ impl Acts for Backlash {
             .collect()
     }
 
-    fn recall(&mut self, memory: &[f32]) {
+    fn restore_memory(&mut self, memory: &[f32]) {
         for (play, remembered) in self.motors.values_mut().zip(memory.chunks_exact(3)) {
-            *play = Play {
+            *play = BacklashState {
                 output: remembered[0],
                 gap: remembered[1],
                 velocity: remembered[2],
@@ -181,7 +181,7 @@ impl Acts for Backlash {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }
@@ -194,7 +194,7 @@ mod tests {
         Backlash {
             half_width,
             motor_inertia,
-            motors: BTreeMap::from([(JointId(0), Play::default())]),
+            motors: BTreeMap::from([(JointId(0), BacklashState::default())]),
         }
     }
 

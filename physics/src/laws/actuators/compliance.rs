@@ -1,14 +1,14 @@
 //! Compliance: gears and shafts that give between motor and joint.
 
-use super::Motors;
+use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{Gain, Pull};
-use crate::laws::{Acts, Law, value};
+use crate::joints::{ActuationGain, JointActuation};
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "joint_compliance",
         version: 1,
@@ -40,8 +40,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Compliance {
-    motors: Motors,
+struct JointCompliance {
+    motors: TargetMotors,
     /// rad/(N·m) or m/N.
     compliance: f32,
 }
@@ -51,23 +51,23 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Compliance {
-        motors: Motors::of(spec, info, model)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(JointCompliance {
+        motors: TargetMotors::of(spec, info, model)?,
         compliance: value(spec, info, "compliance"),
     }))
 }
 
-impl Acts for Compliance {
+impl LawHooks for JointCompliance {
     fn drives(&self) -> bool {
         true
     }
 
-    fn strengthen(&self, joint: JointId, pull: &mut Pull) {
+    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
         }
-        if let Gain::Servo { stiffness, damping } = &mut pull.gain {
+        if let ActuationGain::Servo { stiffness, damping } = &mut pull.gain {
             let part = 1.0 / (1.0 + *stiffness * self.compliance);
             *stiffness *= part;
             *damping *= part * part;
@@ -75,7 +75,7 @@ impl Acts for Compliance {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

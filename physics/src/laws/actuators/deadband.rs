@@ -1,13 +1,13 @@
 //! Deadband: a motor that does not answer to little.
 
-use super::Motors;
+use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, MotorStep, value};
+use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "deadband",
         version: 1,
@@ -45,7 +45,7 @@ pub(in crate::laws) const LAW: Law = Law {
 
 #[derive(Clone, Debug)]
 struct Deadband {
-    motors: Motors,
+    motors: TargetMotors,
     half_width: f32,
     min_effort: f32,
 }
@@ -55,15 +55,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     Ok(Box::new(Deadband {
-        motors: Motors::of(spec, info, model)?,
+        motors: TargetMotors::of(spec, info, model)?,
         half_width: value(spec, info, "half_width"),
         min_effort: value(spec, info, "min_effort"),
     }))
 }
 
-impl Acts for Deadband {
+impl LawHooks for Deadband {
     fn drives(&self) -> bool {
         true
     }
@@ -82,7 +82,7 @@ impl Acts for Deadband {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,13 +1,13 @@
 //! First-order lag: a motor takes up what it is told little by little.
 
-use super::Outputs;
+use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, MotorStep, value};
+use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State, math};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "first_order_lag",
         version: 1,
@@ -35,9 +35,9 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Lag {
+struct FirstOrderLag {
     tau_s: f32,
-    outputs: Outputs,
+    outputs: FilteredCommands,
 }
 
 fn install(
@@ -45,10 +45,10 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Lag {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(FirstOrderLag {
         tau_s: value(spec, info, "tau_s"),
-        outputs: Outputs::of(spec, info, model)?,
+        outputs: FilteredCommands::of(spec, info, model)?,
     }))
 }
 
@@ -59,7 +59,7 @@ fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
     (end, u + (y - u) * (1.0 - left) / steps)
 }
 
-impl Acts for Lag {
+impl LawHooks for FirstOrderLag {
     fn drives(&self) -> bool {
         true
     }
@@ -74,11 +74,11 @@ impl Acts for Lag {
         self.outputs.memory()
     }
 
-    fn recall(&mut self, memory: &[f32]) {
-        self.outputs.recall(memory);
+    fn restore_memory(&mut self, memory: &[f32]) {
+        self.outputs.restore_memory(memory);
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

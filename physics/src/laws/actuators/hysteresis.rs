@@ -1,14 +1,14 @@
 //! Hysteresis: a joint whose gears and cables yield, spring back a little, and slip.
 
-use super::Hinges;
+use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Elastic, JointLoad, Law, Resistance, value};
+use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, SlipSpring, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 use std::collections::BTreeMap;
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "joint_hysteresis",
         version: 1,
@@ -49,7 +49,7 @@ pub(in crate::laws) const LAW: Law = Law {
 
 /// How the spring of a joint stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Spring {
+struct HysteresisSpring {
     /// `-F` of the equation, N·m or N.
     effort: f32,
     /// Where the joint had this effort, rad or m.
@@ -60,7 +60,7 @@ struct Spring {
 struct Hysteresis {
     max_effort: f32,
     stiffness: f32,
-    springs: BTreeMap<JointId, Spring>,
+    springs: BTreeMap<JointId, HysteresisSpring>,
 }
 
 fn install(
@@ -68,12 +68,12 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    let spring = |joint: JointId| Spring {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    let spring = |joint: JointId| HysteresisSpring {
         effort: 0.0,
         position: state.joint_position[joint],
     };
-    let hinges = Hinges::of(spec, info, model)?.0.into_iter();
+    let hinges = TargetJoints::of(spec, info, model)?.0.into_iter();
     Ok(Box::new(Hysteresis {
         max_effort: value(spec, info, "max_effort"),
         stiffness: value(spec, info, "stiffness"),
@@ -83,13 +83,13 @@ fn install(
 
 impl Hysteresis {
     /// The effort once the joint has come to `position`.
-    fn effort(&self, spring: &Spring, position: f32) -> f32 {
+    fn effort(&self, spring: &HysteresisSpring, position: f32) -> f32 {
         let sprung = spring.effort - self.stiffness * (position - spring.position);
         sprung.clamp(-self.max_effort, self.max_effort)
     }
 }
 
-impl Acts for Hysteresis {
+impl LawHooks for Hysteresis {
     fn follows(&self) -> bool {
         true
     }
@@ -97,13 +97,14 @@ impl Acts for Hysteresis {
     fn follow(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get(&joint).copied() {
             let effort = self.effort(&spring, position);
-            self.springs.insert(joint, Spring { effort, position });
+            self.springs
+                .insert(joint, HysteresisSpring { effort, position });
         }
     }
 
     fn placed(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get_mut(&joint) {
-            *spring = Spring {
+            *spring = HysteresisSpring {
                 effort: 0.0,
                 position,
             };
@@ -114,9 +115,9 @@ impl Acts for Hysteresis {
         true
     }
 
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut Resistance) {
+    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
         if let Some(spring) = self.springs.get(&joint) {
-            resistance.elastic = Some(Elastic {
+            resistance.elastic = Some(SlipSpring {
                 effort: self.effort(spring, load.position),
                 stiffness: self.stiffness,
                 max_effort: self.max_effort,
@@ -131,13 +132,13 @@ impl Acts for Hysteresis {
             .collect()
     }
 
-    fn recall(&mut self, memory: &[f32]) {
+    fn restore_memory(&mut self, memory: &[f32]) {
         for (spring, remembered) in self.springs.values_mut().zip(memory.chunks_exact(2)) {
             (spring.effort, spring.position) = (remembered[0], remembered[1]);
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }
@@ -151,7 +152,7 @@ mod tests {
     #[test]
     fn a_slow_cycle_draws_the_parallelogram_of_the_model() {
         let joint = JointId(2);
-        let spring = Spring {
+        let spring = HysteresisSpring {
             effort: 0.0,
             position: 0.0,
         };

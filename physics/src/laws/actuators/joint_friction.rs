@@ -1,8 +1,8 @@
 //! Friction of joints and gears, from Coulomb's to one that depends on load and direction.
 
-use super::Hinges;
+use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, JointLoad, Law, Resistance, value};
+use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State, math};
@@ -18,7 +18,7 @@ const fn term(name: &'static str, unit: &'static str, high: f64, plausible: [f64
     }
 }
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "joint_friction",
         version: 1,
@@ -117,7 +117,7 @@ impl Friction {
 
 #[derive(Clone, Debug)]
 struct JointFriction {
-    hinges: Hinges,
+    hinges: TargetJoints,
     friction: Friction,
 }
 
@@ -126,10 +126,10 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let number = |name: &str| value(spec, info, name);
     Ok(Box::new(JointFriction {
-        hinges: Hinges::of(spec, info, model)?,
+        hinges: TargetJoints::of(spec, info, model)?,
         friction: Friction {
             coulomb: number("coulomb"),
             viscous: number("viscous"),
@@ -148,19 +148,19 @@ fn install(
     }))
 }
 
-impl Acts for JointFriction {
+impl LawHooks for JointFriction {
     fn resists(&self) -> bool {
         true
     }
 
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut Resistance) {
+    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
         if self.hinges.hold(joint) {
             resistance.friction += self.friction.bound(load);
             resistance.damping += self.friction.viscous;
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }
@@ -175,7 +175,7 @@ mod tests {
             velocity,
             motor_effort,
             external_effort,
-            powered: true,
+            is_driven: true,
         }
     }
 

@@ -1,15 +1,15 @@
 //! Latency: what a motor is told reaches it late.
 
-use super::{Motors, number, same_kind, with};
+use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, MotorStep, value};
+use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
-use crate::motors::told;
+use crate::motors::commanded;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::{BTreeMap, VecDeque};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "latency",
         version: 1,
@@ -39,12 +39,12 @@ pub(in crate::laws) const LAW: Law = Law {
 /// told when the law begins. When the delay grows
 /// at run time, the oldest command that is known stays until newer ones arrive; when it shrinks, those between are lost.
 #[derive(Clone, Debug, Default)]
-struct Past(VecDeque<JointCommand>);
+struct CommandDelayLine(VecDeque<JointCommand>);
 
 #[derive(Clone, Debug)]
 struct Latency {
     delay_s: f32,
-    past: BTreeMap<JointId, Past>,
+    past: BTreeMap<JointId, CommandDelayLine>,
 }
 
 fn install(
@@ -52,11 +52,11 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    let mut motors = Motors::of(spec, info, model)?.each(Past::default);
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    let mut motors = TargetMotors::of(spec, info, model)?.each(CommandDelayLine::default);
     // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
     for (joint, past) in &mut motors {
-        past.0.push_back(told(state, *joint));
+        past.0.push_back(commanded(state, *joint));
     }
     Ok(Box::new(Latency {
         delay_s: value(spec, info, "delay_s"),
@@ -64,16 +64,16 @@ fn install(
     }))
 }
 
-impl Past {
-    /// Remembers this step's command and gives the one that arrives: before the first that is known the same was told.
+impl CommandDelayLine {
+    /// Remembers this step's command and gives the one that arrives: before the first that is known the same was sent.
     fn shift(&mut self, command: JointCommand, delay_steps: f32) -> JointCommand {
         let whole = delay_steps as usize;
         let part = delay_steps - whole as f32;
         let oldest = self.0.back().copied().unwrap_or_default();
         self.0.push_front(command);
         self.0.resize(whole + 2, oldest);
-        let told = |steps: usize| self.0.get(steps).copied().unwrap_or_default();
-        let (late, early) = (told(whole), told(whole + 1));
+        let sent = |steps: usize| self.0.get(steps).copied().unwrap_or_default();
+        let (late, early) = (sent(whole), sent(whole + 1));
         match (number(early), number(late)) {
             // Both are of one kind: the mean of a step in which the command changes.
             (Some(before), Some(after)) if same_kind(late, early) => {
@@ -85,7 +85,7 @@ impl Past {
     }
 }
 
-impl Acts for Latency {
+impl LawHooks for Latency {
     fn drives(&self) -> bool {
         true
     }
@@ -105,7 +105,7 @@ impl Acts for Latency {
         memory
     }
 
-    fn recall(&mut self, memory: &[f32]) {
+    fn restore_memory(&mut self, memory: &[f32]) {
         let mut rest = memory.iter().copied();
         for past in self.past.values_mut() {
             let count = rest.next().unwrap_or(0.0) as usize;
@@ -118,7 +118,7 @@ impl Acts for Latency {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn a_ramp_is_shifted_and_not_deformed() {
         for delay in [0.0_f32, 1.0, 2.25, 7.5, 11.9] {
-            let mut past = Past::default();
+            let mut past = CommandDelayLine::default();
             for step in 0..60 {
                 let now = past.shift(JointCommand::Effort(step as f32), delay);
                 if step as f32 >= delay + 1.0 {
@@ -148,7 +148,7 @@ mod tests {
     /// A delay that grows holds the oldest command until newer ones come that late; one that shrinks skips some.
     #[test]
     fn a_delay_that_changes_leaves_no_gap() {
-        let mut past = Past::default();
+        let mut past = CommandDelayLine::default();
         let mut told = 0.0;
         let mut run = |delay: f32, steps: usize| {
             let arrived = (0..steps).map(|_| {
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn nothing_arrives_before_the_delay_is_over_and_kinds_are_not_mixed() {
-        let mut past = Past::default();
+        let mut past = CommandDelayLine::default();
         for step in 0..10 {
             let now = past.shift(JointCommand::Position(0.3), 4.0);
             assert_eq!(now == JointCommand::Off, step < 4, "{step}");

@@ -56,9 +56,9 @@ fn joints(
 
 /// Joints with a motor, in order.
 #[derive(Clone, Debug)]
-struct Motors(Vec<JointId>);
+struct TargetMotors(Vec<JointId>);
 
-impl Motors {
+impl TargetMotors {
     fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         let kind = "joint with a servo";
         joints(spec, info, model, kind, |joint| joint.servo.is_some()).map(Self)
@@ -76,9 +76,9 @@ impl Motors {
 
 /// Joints of any kind, in order.
 #[derive(Clone, Debug)]
-struct Hinges(Vec<JointId>);
+struct TargetJoints(Vec<JointId>);
 
-impl Hinges {
+impl TargetJoints {
     fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         joints(spec, info, model, "joint", |_| true).map(Self)
     }
@@ -90,12 +90,12 @@ impl Hinges {
 
 /// What motors follow instead of what they are told: one command for each, which comes after the told one.
 #[derive(Clone, Debug)]
-struct Outputs(BTreeMap<JointId, JointCommand>);
+struct FilteredCommands(BTreeMap<JointId, JointCommand>);
 
-impl Outputs {
+impl FilteredCommands {
     fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         Ok(Self(
-            Motors::of(spec, info, model)?.each(JointCommand::default),
+            TargetMotors::of(spec, info, model)?.each(JointCommand::default),
         ))
     }
 
@@ -126,7 +126,7 @@ impl Outputs {
         self.0.values().flat_map(|output| pack(*output)).collect()
     }
 
-    fn recall(&mut self, memory: &[f32]) {
+    fn restore_memory(&mut self, memory: &[f32]) {
         for (output, packed) in self.0.values_mut().zip(memory.chunks_exact(2)) {
             *output = unpack(packed[0], packed[1]);
         }

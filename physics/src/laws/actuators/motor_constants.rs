@@ -1,14 +1,14 @@
 //! Motor constants: torque constant, resistance, gear, rotor.
 
-use super::Motors;
+use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{Gain, Pull};
-use crate::laws::{Acts, JointLoad, Law, Resistance, value};
+use crate::joints::{ActuationGain, JointActuation};
+use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "motor_constants",
         version: 1,
@@ -80,8 +80,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Motor {
-    motors: Motors,
+struct MotorConstants {
+    motors: TargetMotors,
     torque_scale: f32,
     /// `n k_t V / R`, N·m; infinite without a supply.
     stall_effort: f32,
@@ -96,13 +96,13 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let number = |name: &str| value(spec, info, name);
     let geared = number("gear") * number("k_t");
     let resistance = number("resistance_ohm");
     let supply = number("supply_v");
-    Ok(Box::new(Motor {
-        motors: Motors::of(spec, info, model)?,
+    Ok(Box::new(MotorConstants {
+        motors: TargetMotors::of(spec, info, model)?,
         torque_scale: number("torque_scale"),
         stall_effort: if supply > 0.0 {
             geared * supply / resistance
@@ -114,24 +114,24 @@ fn install(
     }))
 }
 
-impl Acts for Motor {
+impl LawHooks for MotorConstants {
     fn drives(&self) -> bool {
         true
     }
 
-    fn strengthen(&self, joint: JointId, pull: &mut Pull) {
+    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
         }
         let scale = self.torque_scale;
         match &mut pull.gain {
-            Gain::Servo { stiffness, damping } => {
+            ActuationGain::Servo { stiffness, damping } => {
                 *stiffness *= scale;
                 *damping *= scale;
             }
-            Gain::Velocity(gain) => *gain *= scale,
-            Gain::Effort => pull.target *= scale,
-            Gain::Hand { .. } => {}
+            ActuationGain::Velocity(gain) => *gain *= scale,
+            ActuationGain::Effort => pull.target *= scale,
+            ActuationGain::Hand { .. } => {}
         }
         pull.max_effort = (pull.max_effort * scale).min(self.stall_effort);
     }
@@ -140,16 +140,16 @@ impl Acts for Motor {
         true
     }
 
-    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut Resistance) {
+    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
         if self.motors.hold(joint) {
             resistance.armature += self.armature;
-            if load.powered {
+            if load.is_driven {
                 resistance.damping += self.back_emf;
             }
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,13 +1,13 @@
 //! Rate limit: what a motor follows changes no faster than it can.
 
-use super::Outputs;
+use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, MotorStep, value};
+use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "rate_limit",
         version: 1,
@@ -36,7 +36,7 @@ pub(in crate::laws) const LAW: Law = Law {
 #[derive(Clone, Debug)]
 struct RateLimit {
     max_rate: f32,
-    outputs: Outputs,
+    outputs: FilteredCommands,
 }
 
 fn install(
@@ -44,10 +44,10 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     Ok(Box::new(RateLimit {
         max_rate: value(spec, info, "max_rate"),
-        outputs: Outputs::of(spec, info, model)?,
+        outputs: FilteredCommands::of(spec, info, model)?,
     }))
 }
 
@@ -62,7 +62,7 @@ fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
     }
 }
 
-impl Acts for RateLimit {
+impl LawHooks for RateLimit {
     fn drives(&self) -> bool {
         true
     }
@@ -77,11 +77,11 @@ impl Acts for RateLimit {
         self.outputs.memory()
     }
 
-    fn recall(&mut self, memory: &[f32]) {
-        self.outputs.recall(memory);
+    fn restore_memory(&mut self, memory: &[f32]) {
+        self.outputs.restore_memory(memory);
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,14 +1,14 @@
 //! Saturation: a motor that is weaker than it says.
 
-use super::Motors;
+use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::Pull;
-use crate::laws::{Acts, Law, value};
+use crate::joints::JointActuation;
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "saturation",
         version: 1,
@@ -35,7 +35,7 @@ pub(in crate::laws) const LAW: Law = Law {
 
 #[derive(Clone, Debug)]
 struct Saturation {
-    motors: Motors,
+    motors: TargetMotors,
     max_effort: f32,
 }
 
@@ -44,25 +44,25 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     Ok(Box::new(Saturation {
-        motors: Motors::of(spec, info, model)?,
+        motors: TargetMotors::of(spec, info, model)?,
         max_effort: value(spec, info, "max_effort"),
     }))
 }
 
-impl Acts for Saturation {
+impl LawHooks for Saturation {
     fn drives(&self) -> bool {
         true
     }
 
-    fn strengthen(&self, joint: JointId, pull: &mut Pull) {
+    fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if self.motors.hold(joint) {
             pull.max_effort = pull.max_effort.min(self.max_effort);
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

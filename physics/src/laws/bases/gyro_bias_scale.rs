@@ -1,13 +1,13 @@
 //! A gyro that reads something at rest, and too much or too little in a turn.
 
-use super::{Needs, Riders};
+use super::{RequiredBase, TargetAgents};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, value};
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "gyro_bias_scale",
         version: 1,
@@ -43,8 +43,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Gyro {
-    riders: Riders,
+struct GyroBiasScale {
+    riders: TargetAgents,
     bias_rad_s: f32,
     scale: f32,
 }
@@ -54,15 +54,15 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Gyro {
-        riders: Riders::of(spec, info, state, Needs::Wheels)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(GyroBiasScale {
+        riders: TargetAgents::of(spec, info, state, RequiredBase::Wheels)?,
         bias_rad_s: value(spec, info, "bias_rad_s"),
         scale: value(spec, info, "scale"),
     }))
 }
 
-impl Acts for Gyro {
+impl LawHooks for GyroBiasScale {
     fn gyro(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
         if self.riders.holds(agent) {
             self.scale * rate_rad_s + self.bias_rad_s
@@ -71,7 +71,7 @@ impl Acts for Gyro {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

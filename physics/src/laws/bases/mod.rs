@@ -11,14 +11,14 @@ use dwell_scene::{AgentId, Id, LawInfo, LawSpec, Locomotion, State};
 
 /// How an agent must get about so that a law can act on it.
 #[derive(Clone, Copy, Debug)]
-enum Needs {
+enum RequiredBase {
     /// A left and a right wheel.
     DrivenWheels,
     /// Wheels of any kind, with a gyro between them.
     Wheels,
 }
 
-impl Needs {
+impl RequiredBase {
     fn are_met_by(self, locomotion: &Locomotion) -> bool {
         match self {
             Self::DrivenWheels => matches!(locomotion, Locomotion::DifferentialDrive(_)),
@@ -37,14 +37,14 @@ impl Needs {
 /// The agents that a spec acts on; `None`: all that have what it needs, whenever they come. Agents without it are never
 /// asked about: only driven wheels roll, and only bases have a gyro.
 #[derive(Clone, Debug)]
-struct Riders(Option<AgentId>);
+struct TargetAgents(Option<AgentId>);
 
-impl Riders {
+impl TargetAgents {
     fn of(
         spec: &LawSpec,
         info: &LawInfo,
         state: &State,
-        needs: Needs,
+        needs: RequiredBase,
     ) -> Result<Self, PhysicsError> {
         let unfit = |what: String, agent: AgentId| PhysicsError::LawUnfit {
             law: info.id,

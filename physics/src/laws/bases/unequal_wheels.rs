@@ -1,9 +1,9 @@
 //! Wheels of unequal size, and a wheel base that is not as measured.
 
-use super::{Needs, Riders};
-use crate::bases::Rolling;
+use super::{RequiredBase, TargetAgents};
+use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law};
+use crate::laws::{LawHooks, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
@@ -19,7 +19,7 @@ const fn ratio(name: &'static str, plausible: [f64; 2]) -> ParamInfo {
     }
 }
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "unequal_wheels",
         version: 1,
@@ -45,8 +45,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Unequal {
-    riders: Riders,
+struct UnequalWheels {
+    riders: TargetAgents,
     radius_factors: [f64; 2],
     base_factor: f64,
 }
@@ -56,11 +56,11 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let value = |name: &str| spec.value(info, name).unwrap_or(1.0);
     let (ratio, scale) = (value("radius_ratio"), value("radius_scale"));
-    Ok(Box::new(Unequal {
-        riders: Riders::of(spec, info, state, Needs::DrivenWheels)?,
+    Ok(Box::new(UnequalWheels {
+        riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
         radius_factors: [
             scale * 2.0 / (1.0 + ratio),
             scale * 2.0 * ratio / (1.0 + ratio),
@@ -69,8 +69,8 @@ fn install(
     }))
 }
 
-impl Acts for Unequal {
-    fn roll(&self, agent: AgentId, rolling: &mut Rolling) {
+impl LawHooks for UnequalWheels {
+    fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if self.riders.holds(agent) {
             for (radius, factor) in rolling.wheels.radius_m.iter_mut().zip(self.radius_factors) {
                 *radius *= factor;
@@ -79,7 +79,7 @@ impl Acts for Unequal {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

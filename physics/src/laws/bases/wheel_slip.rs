@@ -1,14 +1,14 @@
 //! Wheels that slip while they push.
 
-use super::{Needs, Riders};
-use crate::bases::Rolling;
+use super::{RequiredBase, TargetAgents};
+use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law};
+use crate::laws::{LawHooks, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "wheel_slip",
         version: 1,
@@ -36,8 +36,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Slip {
-    riders: Riders,
+struct WheelSlip {
+    riders: TargetAgents,
     slip_per_m_s2: f64,
 }
 
@@ -46,15 +46,15 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Slip {
-        riders: Riders::of(spec, info, state, Needs::DrivenWheels)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(WheelSlip {
+        riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
         slip_per_m_s2: spec.value(info, "slip_per_m_s2").unwrap_or(0.0),
     }))
 }
 
-impl Acts for Slip {
-    fn roll(&self, agent: AgentId, rolling: &mut Rolling) {
+impl LawHooks for WheelSlip {
+    fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if !self.riders.holds(agent) {
             return;
         }
@@ -66,7 +66,7 @@ impl Acts for Slip {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

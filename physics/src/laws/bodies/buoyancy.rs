@@ -2,14 +2,14 @@
 
 use super::size::volume_m3;
 use crate::error::PhysicsError;
-use crate::inertia::Inertia;
+use crate::inertia::BodyInertia;
 use crate::laws::target::moving_bodies;
-use crate::laws::{Acts, Law, value};
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "buoyancy",
         version: 1,
@@ -66,7 +66,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let density = value(spec, info, "fluid_density_kg_m3");
     let volume = value(spec, info, "volume_m3");
     let bodies = moving_bodies(spec, info, model)?
@@ -86,8 +86,8 @@ fn install(
     }))
 }
 
-impl Acts for Buoyancy {
-    fn weigh(&self, body: u32, inertia: &mut Inertia) {
+impl LawHooks for Buoyancy {
+    fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         let Ok(place) = self.bodies.binary_search_by_key(&body, |(index, _)| *index) else {
             return;
         };
@@ -100,7 +100,7 @@ impl Acts for Buoyancy {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,9 +1,9 @@
 //! A centre of mass that is not where the shape says.
 
 use crate::error::PhysicsError;
-use crate::inertia::Inertia;
+use crate::inertia::BodyInertia;
 use crate::laws::target::moving_bodies;
-use crate::laws::{Acts, Law, value};
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -24,7 +24,7 @@ const fn offset(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "center_of_mass_offset",
         version: 1,
@@ -44,7 +44,7 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Offset {
+struct CenterOfMassOffset {
     bodies: Vec<u32>,
     offset: Vec3,
 }
@@ -54,7 +54,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let plans = moving_bodies(spec, info, model)?;
     let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name)));
     for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
@@ -70,20 +70,20 @@ fn install(
             });
         }
     }
-    Ok(Box::new(Offset {
+    Ok(Box::new(CenterOfMassOffset {
         bodies: plans.into_iter().map(|(index, _)| index).collect(),
         offset,
     }))
 }
 
-impl Acts for Offset {
-    fn weigh(&self, body: u32, inertia: &mut Inertia) {
+impl LawHooks for CenterOfMassOffset {
+    fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         if self.bodies.binary_search(&body).is_ok() {
             inertia.center += self.offset;
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

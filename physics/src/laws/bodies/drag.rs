@@ -2,12 +2,12 @@
 
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
+use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "drag",
         version: 1,
@@ -49,7 +49,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let c_d = value(spec, info, "c_d");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * c_d * area
@@ -57,8 +57,8 @@ fn install(
     Ok(Box::new(Drag { bodies }))
 }
 
-impl Acts for Drag {
-    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+impl LawHooks for Drag {
+    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
             let Some(rigid) = stage.free(*body) else {
                 continue;
@@ -74,17 +74,17 @@ impl Acts for Drag {
         true
     }
 
-    fn push(&self, link: &LinkStep) -> Push {
+    fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
-            return Push::default();
+            return ExternalWrench::default();
         };
-        Push {
+        ExternalWrench {
             force: against_air(link, gain, link.velocity),
-            ..Push::default()
+            ..ExternalWrench::default()
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,9 +1,9 @@
 //! An inertia that is not what shape and density say.
 
 use crate::error::PhysicsError;
-use crate::inertia::Inertia;
+use crate::inertia::BodyInertia;
 use crate::laws::target::moving_bodies;
-use crate::laws::{Acts, Law, value};
+use crate::laws::{LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -31,7 +31,7 @@ const fn product(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "inertia_error",
         version: 1,
@@ -73,7 +73,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
     let all = 1.0 + value(spec, info, "scale");
     let plans = moving_bodies(spec, info, model)?;
@@ -83,12 +83,12 @@ fn install(
         products: of(["xy", "yz", "zx"]),
     };
     for (index, plan) in plans {
-        let mut inertia = Inertia::of(&model.house, plan, state, &vec![1.0; plan.parts.len()]);
+        let mut inertia = BodyInertia::of(&model.house, plan, state, &vec![1.0; plan.parts.len()]);
         // A link without mass of its own has no inertia that could be wrong.
         if !inertia.is_positive() {
             continue;
         }
-        law.weigh(index, &mut inertia);
+        law.modify_mass_properties(index, &mut inertia);
         if !inertia.is_positive() {
             return Err(PhysicsError::Range {
                 at: format!(
@@ -104,8 +104,8 @@ fn install(
     Ok(Box::new(law))
 }
 
-impl Acts for InertiaError {
-    fn weigh(&self, body: u32, inertia: &mut Inertia) {
+impl LawHooks for InertiaError {
+    fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         if self.bodies.binary_search(&body).is_err() {
             return;
         }
@@ -122,7 +122,7 @@ impl Acts for InertiaError {
         inertia.tensor = scaled(self.scale, own + scaled(root, wrong));
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }
@@ -138,16 +138,16 @@ mod tests {
             scale: Vec3::new(1.5, 1.2, 0.9).map(f32::sqrt),
             products: Vec3::new(0.1, -0.2, 0.05),
         };
-        let own = Inertia {
+        let own = BodyInertia {
             mass_kg: 2.0,
             center: Vec3::X,
             tensor: Mat3::from_diagonal(Vec3::new(1.0, 4.0, 9.0)),
             gravity_scale: 1.0,
         };
         let mut found = own;
-        law.weigh(2, &mut found);
+        law.modify_mass_properties(2, &mut found);
         assert_eq!(found, own);
-        law.weigh(3, &mut found);
+        law.modify_mass_properties(3, &mut found);
         let (xy, yz) = (0.1 * 2.0 * 1.8_f32.sqrt(), -0.2 * 6.0 * 1.08_f32.sqrt());
         let zx = 0.05 * 3.0 * 1.35_f32.sqrt();
         let expected = Mat3::from_cols(

@@ -2,14 +2,14 @@
 
 use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
+use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 use glam::Quat;
 use std::f32::consts::PI;
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "magnus",
         version: 1,
@@ -52,7 +52,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let c_l = value(spec, info, "c_l");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * area * (area / PI).sqrt() * c_l
@@ -60,8 +60,8 @@ fn install(
     Ok(Box::new(Magnus { bodies }))
 }
 
-impl Acts for Magnus {
-    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+impl LawHooks for Magnus {
+    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
             let Some(rigid) = stage.free(*body) else {
                 continue;
@@ -84,17 +84,17 @@ impl Acts for Magnus {
         true
     }
 
-    fn push(&self, link: &LinkStep) -> Push {
+    fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
-            return Push::default();
+            return ExternalWrench::default();
         };
-        Push {
+        ExternalWrench {
             force: gain * link.spin.cross(link.velocity),
-            ..Push::default()
+            ..ExternalWrench::default()
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -2,12 +2,12 @@
 
 use crate::error::PhysicsError;
 use crate::laws::target::moving_bodies;
-use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
+use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "viscous_damping",
         version: 1,
@@ -45,7 +45,7 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Viscous {
+struct ViscousDamping {
     bodies: Vec<u32>,
     linear_per_s: f32,
     angular_per_s: f32,
@@ -56,17 +56,17 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let bodies = moving_bodies(spec, info, model)?;
-    Ok(Box::new(Viscous {
+    Ok(Box::new(ViscousDamping {
         bodies: bodies.into_iter().map(|(index, _)| index).collect(),
         linear_per_s: value(spec, info, "linear_per_s"),
         angular_per_s: value(spec, info, "angular_per_s"),
     }))
 }
 
-impl Acts for Viscous {
-    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+impl LawHooks for ViscousDamping {
+    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         let linear = math::exp(-self.linear_per_s * half_dt_s);
         let angular = math::exp(-self.angular_per_s * half_dt_s);
         for body in &self.bodies {
@@ -81,18 +81,18 @@ impl Acts for Viscous {
         true
     }
 
-    fn push(&self, link: &LinkStep) -> Push {
+    fn push(&self, link: &LinkStep) -> ExternalWrench {
         if self.bodies.binary_search(&link.body).is_err() {
-            return Push::default();
+            return ExternalWrench::default();
         }
         let linear = link.mass_kg * link.decay_per_s(self.linear_per_s.into());
-        Push {
+        ExternalWrench {
             force: -linear * link.velocity,
             moment: -link.decay_per_s(self.angular_per_s.into()) * (link.inertia * link.spin),
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -2,7 +2,7 @@
 
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Law, LinkStep, Push, Stage, value};
+use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -22,7 +22,7 @@ const fn speed(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "wind",
         version: 1,
@@ -87,7 +87,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let c_d = value(spec, info, "c_d");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * c_d * area
@@ -111,8 +111,8 @@ impl Wind {
     }
 }
 
-impl Acts for Wind {
-    fn half_step(&mut self, stage: &mut Stage<'_>, half_dt_s: f32) {
+impl LawHooks for Wind {
+    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         let air = self.air(stage.time_s());
         let gravity = stage.engine.gravity.length();
         for (body, gain) in &self.bodies {
@@ -136,18 +136,18 @@ impl Acts for Wind {
         true
     }
 
-    fn push(&self, link: &LinkStep) -> Push {
+    fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
-            return Push::default();
+            return ExternalWrench::default();
         };
         let air = self.air(link.time_s).as_dvec3();
-        Push {
+        ExternalWrench {
             force: against_air(link, gain, link.velocity - air),
-            ..Push::default()
+            ..ExternalWrench::default()
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

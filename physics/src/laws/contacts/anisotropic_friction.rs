@@ -1,8 +1,8 @@
 //! Friction that depends on the direction of sliding: wood grain, carpet pile.
 
 use crate::error::PhysicsError;
-use crate::laws::target::Scope;
-use crate::laws::{Acts, ContactValues, Law, Touch, value};
+use crate::laws::target::ContactScope;
+use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
@@ -11,7 +11,7 @@ use glam::Vec3;
 /// Slip below which a thing counts as held, m/s: the direction is then that in which friction holds it.
 const HELD_M_S: f32 = 1e-3;
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "anisotropic_friction",
         version: 1,
@@ -60,8 +60,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Anisotropic {
-    scope: Scope,
+struct AnisotropicFriction {
+    scope: ContactScope,
     grain: f32,
     pile: f32,
     /// In the frame of the surface.
@@ -73,22 +73,22 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     let (sin, cos) = math::sin_cos(value(spec, info, "axis_rad"));
-    Ok(Box::new(Anisotropic {
-        scope: Scope::of(spec, info, model)?,
+    Ok(Box::new(AnisotropicFriction {
+        scope: ContactScope::of(spec, info, model)?,
         grain: value(spec, info, "grain"),
         pile: value(spec, info, "pile"),
         axis: Vec3::new(cos, 0.0, -sin),
     }))
 }
 
-impl Acts for Anisotropic {
-    fn scope(&self) -> Option<&Scope> {
+impl LawHooks for AnisotropicFriction {
+    fn scope(&self) -> Option<&ContactScope> {
         Some(&self.scope)
     }
 
-    fn shape_contact(&self, touch: &Touch<'_>, values: &mut ContactValues) {
+    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let slip = touch.slip();
         // What is held slides, if at all, against the friction that holds it.
         let direction = if slip.length() > HELD_M_S {
@@ -106,7 +106,7 @@ impl Acts for Anisotropic {
         values.friction *= 1.0 + self.pile * cos + self.grain * (2.0 * cos * cos - 1.0);
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

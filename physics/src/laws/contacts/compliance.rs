@@ -1,12 +1,12 @@
 //! Contacts that give.
 
 use crate::error::PhysicsError;
-use crate::laws::{Acts, Compliance, Law, value};
+use crate::laws::{ContactCompliance, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "contact_compliance",
         version: 1,
@@ -57,14 +57,14 @@ pub(in crate::laws) const LAW: Law = Law {
 const LOWEST_HZ: f32 = 0.1;
 
 #[derive(Clone, Debug)]
-struct Soft(Compliance);
+struct SoftContacts(ContactCompliance);
 
 fn install(
     spec: &LawSpec,
     info: &LawInfo,
     _model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     if let Some(target) = &spec.target {
         return Err(crate::laws::target::no_target(
             info.id,
@@ -73,18 +73,18 @@ fn install(
             std::iter::empty(),
         ));
     }
-    Ok(Box::new(Soft(Compliance {
+    Ok(Box::new(SoftContacts(ContactCompliance {
         natural_frequency_hz: value(spec, info, "natural_frequency_hz"),
         damping_ratio: value(spec, info, "damping_ratio"),
     })))
 }
 
-impl Acts for Soft {
-    fn compliance(&self) -> Option<Compliance> {
+impl LawHooks for SoftContacts {
+    fn compliance(&self) -> Option<ContactCompliance> {
         (self.0.natural_frequency_hz >= LOWEST_HZ).then_some(self.0)
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,15 +1,15 @@
 //! What contacts carried in the last step, and torques between the two that touch.
 
-use crate::contact::{Entry, entry_index};
-use crate::laws::target::Scope;
-use crate::laws::{Side, Stage};
+use crate::contact::{ColliderEntry, entry_index};
+use crate::laws::target::ContactScope;
+use crate::laws::{ContactSide, LawContext};
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use rapier3d::geometry::Collider;
 
 /// One contact plane within a law's scope, with at least one side that moves and is awake.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Load {
+pub(super) struct ContactLoad {
     /// Colliders, for the order.
     entries: (usize, usize),
     bodies: (Option<RigidBodyHandle>, Option<RigidBodyHandle>),
@@ -23,7 +23,7 @@ pub(super) struct Load {
 }
 
 /// All loaded contact planes within a scope, in a fixed order.
-pub(super) fn loads(stage: &Stage<'_>, scope: &Scope) -> Vec<Load> {
+pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<ContactLoad> {
     let engine = &stage.engine;
     let run_s = engine.run_s();
     let mut loads = Vec::new();
@@ -68,7 +68,7 @@ pub(super) fn loads(stage: &Stage<'_>, scope: &Scope) -> Vec<Load> {
                 a.surface.class(plane.subshape1),
                 b.surface.class(plane.subshape2),
             );
-            let side = |entry: &Entry, class: u16| Side {
+            let side = |entry: &ColliderEntry, class: u16| ContactSide {
                 toucher: entry.toucher,
                 substance: stage.table.substance(class),
                 rotation: Quat::IDENTITY,
@@ -77,7 +77,7 @@ pub(super) fn loads(stage: &Stage<'_>, scope: &Scope) -> Vec<Load> {
             if scope.turns(stage.house, &sides.0, &sides.1).is_none() {
                 continue;
             }
-            loads.push(Load {
+            loads.push(ContactLoad {
                 entries: (index_a, index_b),
                 bodies: handles,
                 normal: plane.data.normal,
@@ -89,14 +89,14 @@ pub(super) fn loads(stage: &Stage<'_>, scope: &Scope) -> Vec<Load> {
     }
     // rapier's order of pairs is its own affair.
     loads.sort_by(|a, b| {
-        let key = |load: &Load| (load.entries, load.normal_force_n.to_bits());
+        let key = |load: &ContactLoad| (load.entries, load.normal_force_n.to_bits());
         key(a).cmp(&key(b))
     });
     loads
 }
 
-impl Load {
-    fn each<'a>(&self, stage: &'a Stage<'_>) -> impl Iterator<Item = (f32, &'a RigidBody)> {
+impl ContactLoad {
+    fn each<'a>(&self, stage: &'a LawContext<'_>) -> impl Iterator<Item = (f32, &'a RigidBody)> {
         [(1.0, self.bodies.0), (-1.0, self.bodies.1)]
             .into_iter()
             .filter_map(|(sign, handle)| {
@@ -106,14 +106,14 @@ impl Load {
     }
 
     /// The spin of the first thing against the second, rad/s.
-    pub(super) fn spin(&self, stage: &Stage<'_>) -> Vec3 {
+    pub(super) fn spin(&self, stage: &LawContext<'_>) -> Vec3 {
         self.each(stage)
             .map(|(sign, rigid)| rigid.angvel() * sign)
             .sum()
     }
 
     /// How fast gravity turns the first about the contact against the second, were nothing to slip, rad/s2.
-    pub(super) fn gravity_turn(&self, stage: &Stage<'_>) -> Vec3 {
+    pub(super) fn gravity_turn(&self, stage: &LawContext<'_>) -> Vec3 {
         let gravity = stage.engine.gravity;
         self.each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
@@ -127,7 +127,7 @@ impl Load {
     }
 
     /// The inertia against turning about an axis, kg·m²: about the centres of mass, or rolling about the contact.
-    pub(super) fn inertia(&self, stage: &Stage<'_>, axis: Vec3, rolling: bool) -> f32 {
+    pub(super) fn inertia(&self, stage: &LawContext<'_>, axis: Vec3, rolling: bool) -> f32 {
         let inverse: f32 = self
             .each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
@@ -140,7 +140,7 @@ impl Load {
     }
 
     /// The distance of the nearer centre of mass that moves from the contact plane, m.
-    pub(super) fn radius_m(&self, stage: &Stage<'_>) -> f32 {
+    pub(super) fn radius_m(&self, stage: &LawContext<'_>) -> f32 {
         self.each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(_, rigid)| (rigid.center_of_mass() - self.point).dot(self.normal).abs())
@@ -148,7 +148,7 @@ impl Load {
     }
 
     /// Turns the first thing by an angular impulse and the second by its opposite, kg·m²/s.
-    pub(super) fn turn(&self, stage: &mut Stage<'_>, impulse: Vec3) {
+    pub(super) fn turn(&self, stage: &mut LawContext<'_>, impulse: Vec3) {
         for (sign, handle) in [(1.0, self.bodies.0), (-1.0, self.bodies.1)] {
             let Some(handle) = handle else { continue };
             if let Some(rigid) = stage.engine.bodies.get_mut(handle)

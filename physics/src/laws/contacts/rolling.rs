@@ -2,13 +2,13 @@
 
 use super::load::loads;
 use crate::error::PhysicsError;
-use crate::laws::target::Scope;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::target::ContactScope;
+use crate::laws::{LawContext, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "rolling_resistance",
         version: 1,
@@ -38,8 +38,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Rolling {
-    scope: Scope,
+struct RollingResistance {
+    scope: ContactScope,
     c_rr: f32,
 }
 
@@ -48,15 +48,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Rolling {
-        scope: Scope::of(spec, info, model)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(RollingResistance {
+        scope: ContactScope::of(spec, info, model)?,
         c_rr: value(spec, info, "c_rr"),
     }))
 }
 
-impl Acts for Rolling {
-    fn before_step(&mut self, stage: &mut Stage<'_>) {
+impl LawHooks for RollingResistance {
+    fn before_step(&mut self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             // The spin at the end of the step, if nothing resisted.
             let spin = load.spin(stage) + load.gravity_turn(stage) * stage.dt_s;
@@ -72,7 +72,7 @@ impl Acts for Rolling {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

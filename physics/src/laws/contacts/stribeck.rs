@@ -1,13 +1,13 @@
 //! Friction that is higher at rest than in motion.
 
 use crate::error::PhysicsError;
-use crate::laws::target::Scope;
-use crate::laws::{Acts, ContactValues, Law, Touch, value};
+use crate::laws::target::ContactScope;
+use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "stribeck_friction",
         version: 1,
@@ -51,8 +51,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Stribeck {
-    scope: Scope,
+struct StribeckFriction {
+    scope: ContactScope,
     ratio: f32,
     speed_m_s: f32,
     shape: f32,
@@ -63,26 +63,26 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Stribeck {
-        scope: Scope::of(spec, info, model)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(StribeckFriction {
+        scope: ContactScope::of(spec, info, model)?,
         ratio: value(spec, info, "static_ratio"),
         speed_m_s: value(spec, info, "stribeck_m_s"),
         shape: value(spec, info, "shape"),
     }))
 }
 
-impl Acts for Stribeck {
-    fn scope(&self) -> Option<&Scope> {
+impl LawHooks for StribeckFriction {
+    fn scope(&self) -> Option<&ContactScope> {
         Some(&self.scope)
     }
 
-    fn shape_contact(&self, touch: &Touch<'_>, values: &mut ContactValues) {
+    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let share = touch.slip().length() / self.speed_m_s;
         values.friction *= 1.0 + (self.ratio - 1.0) * math::exp(-math::pow(share, self.shape));
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -2,13 +2,13 @@
 
 use super::load::loads;
 use crate::error::PhysicsError;
-use crate::laws::target::Scope;
-use crate::laws::{Acts, Law, Stage, value};
+use crate::laws::target::ContactScope;
+use crate::laws::{LawContext, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "torsional_friction",
         version: 1,
@@ -37,8 +37,8 @@ pub(in crate::laws) const LAW: Law = Law {
 };
 
 #[derive(Clone, Debug)]
-struct Torsional {
-    scope: Scope,
+struct TorsionalFriction {
+    scope: ContactScope,
     radius_m: f32,
 }
 
@@ -47,15 +47,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
-    Ok(Box::new(Torsional {
-        scope: Scope::of(spec, info, model)?,
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
+    Ok(Box::new(TorsionalFriction {
+        scope: ContactScope::of(spec, info, model)?,
         radius_m: value(spec, info, "radius_m"),
     }))
 }
 
-impl Acts for Torsional {
-    fn before_step(&mut self, stage: &mut Stage<'_>) {
+impl LawHooks for TorsionalFriction {
+    fn before_step(&mut self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             let spin = load.spin(stage).dot(load.normal);
             let most = load.friction * load.normal_force_n * self.radius_m * stage.dt_s;
@@ -65,7 +65,7 @@ impl Acts for Torsional {
         }
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

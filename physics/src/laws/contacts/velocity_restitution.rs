@@ -1,8 +1,8 @@
 //! Restitution that depends on how fast things hit.
 
 use crate::error::PhysicsError;
-use crate::laws::target::Scope;
-use crate::laws::{Acts, ContactValues, Law, Touch, value};
+use crate::laws::target::ContactScope;
+use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -10,7 +10,7 @@ use dwell_scene::{LawInfo, LawSpec, State};
 /// From 1 on, what lies would bounce.
 const LIVELIEST: f32 = 0.99;
 
-pub(in crate::laws) const LAW: Law = Law {
+pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
         id: "velocity_restitution",
         version: 1,
@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: Law = Law {
 
 #[derive(Clone, Debug)]
 struct VelocityRestitution {
-    scope: Scope,
+    scope: ContactScope,
     slope: f32,
     reference: f32,
 }
@@ -58,26 +58,26 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn Acts>, PhysicsError> {
+) -> Result<Box<dyn LawHooks>, PhysicsError> {
     Ok(Box::new(VelocityRestitution {
-        scope: Scope::of(spec, info, model)?,
+        scope: ContactScope::of(spec, info, model)?,
         slope: value(spec, info, "slope_s_m"),
         reference: value(spec, info, "reference_m_s"),
     }))
 }
 
-impl Acts for VelocityRestitution {
-    fn scope(&self) -> Option<&Scope> {
+impl LawHooks for VelocityRestitution {
+    fn scope(&self) -> Option<&ContactScope> {
         Some(&self.scope)
     }
 
-    fn shape_contact(&self, touch: &Touch<'_>, values: &mut ContactValues) {
-        let speed = touch.approach_m_s().max(0.0);
+    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
+        let speed = touch.approach_speed_m_s().max(0.0);
         let e = values.restitution - self.slope * (speed - self.reference);
         values.restitution = e.clamp(0.0, LIVELIEST);
     }
 
-    fn boxed(&self) -> Box<dyn Acts> {
+    fn clone_box(&self) -> Box<dyn LawHooks> {
         Box::new(self.clone())
     }
 }

@@ -1,0 +1,157 @@
+//! What is in a hand's way: between the eye and a place, and at the place itself.
+
+use crate::body::BodyStatus;
+use crate::contact::{ColliderEntry, ContactEntity, entry_index};
+use crate::model::shapes;
+use crate::world::PhysicsWorld;
+use dwell_scene::{ObjectId, SurfaceOwner};
+use glam::Vec3;
+use rapier3d::geometry::{Aabb, Collider, ColliderHandle, Ray};
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::parry::query;
+use rapier3d::pipeline::QueryFilter;
+
+/// Surfaces below each other that are looked at.
+const MOST_LEVELS: usize = 24;
+/// How far below a surface the next is looked for, m.
+const THROUGH_M: f32 = 1e-3;
+
+/// Whether what a body touches by its holder's body counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum HolderContacts {
+    Counts,
+    Passes,
+}
+
+/// What a hand can put things on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SupportFilter {
+    Object(ObjectId),
+    Structure,
+    Any,
+}
+
+impl PhysicsWorld {
+    pub(super) fn entry_of(&self, collider: &Collider) -> &ColliderEntry {
+        &self.entries[entry_index(collider)]
+    }
+
+    /// The first thing between an eye and a point that a hand cannot get past: building, furniture, leaves. Loose things
+    /// and people are reached around.
+    pub(crate) fn first_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderEntry> {
+        let barring = |_: ColliderHandle, collider: &Collider| {
+            let entry = self.entry_of(collider);
+            entry.agent().is_none()
+                && entry.body.is_none_or(|body| {
+                    let body = body as usize;
+                    self.holds[body] != BodyStatus::Free
+                        || self.model().bodies[body].joint.is_some()
+                })
+        };
+        let way = point - eye;
+        let ray = Ray::new(eye, way);
+        let queries = self
+            .engine
+            .queries(QueryFilter::default().predicate(&barring));
+        let (handle, _) = queries.cast_ray(&ray, 1.0, true)?;
+        Some(self.entry_of(self.engine.colliders.get(handle)?))
+    }
+
+    /// The first thing that a body would overlap under a pose.
+    pub(super) fn first_overlap(
+        &self,
+        body: usize,
+        place: &RapierPose,
+        holder: HolderContacts,
+    ) -> Option<&ColliderEntry> {
+        let queries = self.engine.queries(QueryFilter::default());
+        let passes = |collider: &Collider| {
+            let entry = self.entry_of(collider);
+            entry.body == Some(body as u32)
+                || (holder == HolderContacts::Passes
+                    && entry.agent().is_some_and(|agent| {
+                        let pair = (body as u32, agent);
+                        self.excluded.carriers.binary_search(&pair).is_ok()
+                    }))
+        };
+        self.model().bodies[body].pieces.iter().find_map(|piece| {
+            let at = *place * piece.place;
+            let bounds = shapes::bounds(&piece.shape, &at);
+            let aabb = Aabb::new(bounds.min, bounds.max);
+            queries
+                .intersect_aabb_conservative(aabb)
+                .filter(|(_, collider)| !passes(collider))
+                .find_map(|(_, collider)| {
+                    let overlap = query::intersection_test(
+                        collider.position(),
+                        collider.shape(),
+                        &at,
+                        &*piece.shape,
+                    );
+                    overlap
+                        .is_ok_and(|overlap| overlap.intersecting)
+                        .then(|| self.entry_of(collider))
+                })
+        })
+    }
+
+    /// Whether a body would overlap nothing under a pose, besides agents that hold it.
+    pub(crate) fn is_clear(&self, body: usize, place: &RapierPose) -> bool {
+        self.first_overlap(body, place, HolderContacts::Passes)
+            .is_none()
+    }
+
+    /// The heights of all level surfaces of `ground` under a point, at most `down_m` below it, from the highest, m.
+    /// `body` and people are looked through.
+    pub(super) fn support_heights(
+        &self,
+        body: usize,
+        ground: SupportFilter,
+        from: Vec3,
+        down_m: f32,
+    ) -> Vec<f32> {
+        let seen = |_: ColliderHandle, collider: &Collider| {
+            let entry = self.entry_of(collider);
+            entry.agent().is_none() && entry.body != Some(body as u32)
+        };
+        let queries = self.engine.queries(QueryFilter::default().predicate(&seen));
+        let mut levels = Vec::new();
+        let mut at = from;
+        for _ in 0..MOST_LEVELS {
+            let left_m = down_m - (from.y - at.y);
+            let ray = Ray::new(at, Vec3::NEG_Y);
+            let Some((handle, hit)) = queries.cast_ray_and_get_normal(&ray, left_m, false) else {
+                break;
+            };
+            let height = at.y - hit.time_of_impact;
+            at.y = height - THROUGH_M;
+            let owner = self
+                .engine
+                .colliders
+                .get(handle)
+                .and_then(|collider| self.entry_of(collider).toucher);
+            let owner = match owner {
+                Some(ContactEntity::Part(part)) => {
+                    SupportFilter::Object(self.model().house.parts[part].object)
+                }
+                Some(ContactEntity::Structure(_)) => SupportFilter::Structure,
+                _ => continue,
+            };
+            let wanted = ground == SupportFilter::Any || owner == ground;
+            if wanted && hit.normal.y > 0.9 && hit.time_of_impact > 0.0 {
+                levels.push(height);
+            }
+        }
+        levels
+    }
+
+    /// What a person calls something that touches.
+    pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
+        match entry.toucher {
+            Some(ContactEntity::Structure(id)) => self.surface_name(SurfaceOwner::Structure(id)),
+            Some(ContactEntity::Part(part)) => self.call(self.model().house.parts[part].object),
+            Some(ContactEntity::Agent(agent)) => format!("body of agent {}", agent.0),
+            None => "ground outside".to_owned(),
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! A trial: does a thing that is put somewhere stay there?
+
+use crate::contact::{ContactHooks, ContactProperties};
+use crate::engine::RapierWorld;
+use crate::world::PhysicsWorld;
+use dwell_scene::math;
+use rapier3d::dynamics::RigidBodyBuilder;
+use rapier3d::geometry::Aabb;
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::pipeline::QueryFilter;
+
+/// How long a trial lasts, and how long a thing must be at rest at its end, s.
+const TRIAL_S: f32 = 1.0;
+const REST_S: f32 = 0.25;
+/// How far it may move and turn in that time, m and rad.
+const RESTS_M: f32 = 5e-4;
+const RESTS_RAD: f32 = 5e-3;
+/// How far it may have moved and turned since it was put down, m and rad.
+const SHIFTS_M: f32 = 0.01;
+const TURNS_RAD: f32 = 0.1;
+/// How near other things must be to take part, m.
+const NEAR_M: f32 = 0.05;
+
+fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
+    let turn = 2.0 * math::acos((a.rotation.inverse() * b.rotation).w.abs());
+    (a.translation - b.translation).length() > most_m || turn > most_rad
+}
+
+impl PhysicsWorld {
+    /// Where a body comes to rest that is put under a pose, found by the same solver among what is near, which stands
+    /// still meanwhile; `None` when it slides, topples or rolls away.
+    pub(super) fn trial_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
+        let plan = &self.model().bodies[body];
+        let near = plan.bounds(pose).grown(NEAR_M);
+        let mut trial = RapierWorld::new(&self.settings, self.engine.gravity.length());
+        let ground = trial.bodies.insert(RigidBodyBuilder::fixed());
+        let queries = self.engine.queries(QueryFilter::default());
+        let mut around: Vec<_> = queries
+            .intersect_aabb_conservative(Aabb::new(near.min, near.max))
+            .map(|(_, collider)| collider)
+            .filter(|collider| {
+                let entry = self.entry_of(collider);
+                entry.agent().is_none() && entry.body != Some(body as u32)
+            })
+            .filter(|collider| {
+                let bounds = collider.compute_aabb();
+                near.intersects(&dwell_scene::Aabb::new(bounds.mins, bounds.maxs))
+            })
+            .collect();
+        around.sort_by_key(|collider| collider.user_data);
+        for collider in around {
+            let mut copy = collider.clone();
+            copy.set_position_wrt_parent(*collider.position());
+            trial
+                .colliders
+                .insert_with_parent(copy, ground, &mut trial.bodies);
+        }
+        let builder = RigidBodyBuilder::dynamic().pose(*pose).can_sleep(false);
+        let handle = trial.bodies.insert(builder);
+        for own in crate::body::colliders(&self.engine, &self.bodies[body]) {
+            let collider = self.engine.colliders.get(*own)?;
+            let mut copy = collider.clone();
+            if let Some(place) = collider.position_wrt_parent() {
+                copy.set_position_wrt_parent(*place);
+            }
+            trial
+                .colliders
+                .insert_with_parent(copy, handle, &mut trial.bodies);
+        }
+        let hooks = ContactHooks {
+            entries: &self.entries,
+            properties: ContactProperties {
+                house: &self.model.house,
+                table: &self.table,
+                laws: &self.laws,
+            },
+            excluded: &self.excluded,
+            kept: self.engine.friction_kept(),
+            dt_s: self.settings.dt_s,
+        };
+        let steps = (TRIAL_S / self.settings.dt_s).ceil() as u32;
+        let last = (REST_S / self.settings.dt_s).ceil() as u32;
+        let mut resting = *pose;
+        for step in 0..steps {
+            if step + last == steps {
+                resting = *trial.bodies.get(handle)?.position();
+                if moved(pose, &resting, SHIFTS_M, TURNS_RAD) {
+                    return None;
+                }
+            }
+            let flying = trial.in_free_flight();
+            trial.step(flying, &hooks, &());
+        }
+        let end = *trial.bodies.get(handle)?.position();
+        let rests = !moved(&resting, &end, RESTS_M, RESTS_RAD)
+            && !moved(pose, &end, SHIFTS_M, TURNS_RAD)
+            && crate::convert::from_rapier(&end).is_valid();
+        rests.then_some(end)
+    }
+}

@@ -1,0 +1,184 @@
+//! Ways in which a thing can stand, and whether it would stay so.
+
+use super::clearance::{HolderContacts, SupportFilter};
+use crate::model::BodyPlan;
+use crate::world::PhysicsWorld;
+use glam::{Quat, Vec3};
+use rapier3d::math::Pose as RapierPose;
+use std::f32::consts::{FRAC_PI_2, TAU};
+
+/// Directions around in which a thing must not tip.
+const DIRECTIONS: usize = 16;
+/// The tilt under which the outermost low point of a thing is its edge, rad: what is lower by less than this slope is
+/// part of the sole.
+const TILT_RAD: f32 = 0.02;
+/// How far the centre of mass must lie within the sole, m; for things that stand on a line or a point, how far it may
+/// lie outside.
+const STEADY_M: f32 = 0.002;
+const ROUND_M: f32 = -5e-4;
+/// Gap under what was put down, m.
+const GAP_M: f32 = 5e-4;
+/// How uneven the ground under a sole may be, m.
+const UNEVEN_M: f32 = 0.002;
+/// How far above and below a sole's point the ground is looked for, m.
+const FEEL_M: f32 = 0.02;
+
+/// A thing turned to stand. All points are relative to the body's origin, in world axes, m.
+#[derive(Clone, Debug)]
+pub(super) struct StablePose {
+    pub(super) rotation: Quat,
+    /// The box around it.
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
+    center_of_mass: Vec3,
+    /// The outermost low point in each direction around.
+    sole: [Vec3; DIRECTIONS],
+}
+
+fn around(k: usize) -> Vec3 {
+    let (s, c) = dwell_scene::math::sin_cos(TAU * k as f32 / DIRECTIONS as f32);
+    Vec3::new(c, 0.0, s)
+}
+
+/// The point of a body that is furthest along a direction, relative to its origin.
+fn outermost(plan: &BodyPlan, rotation: Quat, direction: Vec3) -> Option<Vec3> {
+    let place = RapierPose::from_rotation(rotation);
+    plan.pieces
+        .iter()
+        .filter_map(|piece| {
+            let at = place * piece.place;
+            let map = piece.shape.as_support_map()?;
+            let local = map.local_support_point(at.rotation.inverse() * direction);
+            Some(at * local)
+        })
+        .max_by(|a, b| a.dot(direction).total_cmp(&b.dot(direction)))
+}
+
+impl StablePose {
+    fn new(plan: &BodyPlan, rotation: Quat, center_of_mass_in_body: Vec3) -> Option<Self> {
+        let bounds = plan.bounds(&RapierPose::from_rotation(rotation));
+        let mut sole = [Vec3::ZERO; DIRECTIONS];
+        for (k, point) in sole.iter_mut().enumerate() {
+            let direction = Vec3::NEG_Y + around(k) * TILT_RAD;
+            *point = outermost(plan, rotation, direction)?;
+        }
+        Some(Self {
+            rotation,
+            low: bounds.min,
+            high: bounds.max,
+            center_of_mass: rotation * center_of_mass_in_body,
+            sole,
+        })
+    }
+
+    pub(super) fn size(&self) -> Vec3 {
+        self.high - self.low
+    }
+
+    /// Where the body's origin is when the middle of its foot stands on a point.
+    pub(super) fn pose_on(&self, foot: Vec3) -> RapierPose {
+        let middle = 0.5 * (self.low + self.high);
+        let base = Vec3::new(middle.x, self.low.y - GAP_M, middle.z);
+        let mut pose = RapierPose::from_rotation(self.rotation);
+        pose.translation = foot - base;
+        pose
+    }
+
+    /// How far the centre of mass lies within the part of the sole that is carried, in the worst direction, m.
+    fn stability_margin_m(&self, carried: &[bool; DIRECTIONS]) -> f32 {
+        let points = || {
+            self.sole
+                .iter()
+                .zip(carried)
+                .filter(|(_, c)| **c)
+                .map(|(p, _)| *p)
+        };
+        (0..DIRECTIONS)
+            .map(|k| {
+                let out = around(k);
+                points()
+                    .map(|point| (point - self.center_of_mass).dot(out))
+                    .fold(f32::NEG_INFINITY, f32::max)
+            })
+            .fold(f32::INFINITY, f32::min)
+    }
+
+    /// Whether a thing that stands so on level ground stays, or at least stays when nobody touches it.
+    fn stands(&self, carried: &[bool; DIRECTIONS]) -> bool {
+        let whole = self.stability_margin_m(&[true; DIRECTIONS]);
+        let least = if whole >= STEADY_M { STEADY_M } else { ROUND_M };
+        self.stability_margin_m(carried) >= least
+    }
+}
+
+impl PhysicsWorld {
+    /// The ways in which a body may be put down: upright as the house has it and as the hand turned it, a quarter turned,
+    /// then lying on each side. Each once, those that topple by themselves left out.
+    pub(super) fn stable_poses(&self, body: usize) -> Vec<StablePose> {
+        let plan = &self.model().bodies[body];
+        let Some(rigid) = self.engine.bodies.get(self.bodies[body].handle) else {
+            return Vec::new();
+        };
+        let now = rigid.position().rotation;
+        let com = rigid.mass_properties().local_mprops.local_com;
+        let up_in_body = self.model().house.parts[plan.root()]
+            .world_from_part
+            .rotation
+            .inverse()
+            * Vec3::Y;
+        let mut stances: Vec<StablePose> = Vec::new();
+        let sides = [
+            up_in_body,
+            Vec3::Y,
+            Vec3::Z,
+            Vec3::X,
+            -up_in_body,
+            Vec3::NEG_Y,
+            Vec3::NEG_Z,
+            Vec3::NEG_X,
+        ];
+        for up in sides {
+            let upright = (Quat::from_rotation_arc((now * up).normalize_or(Vec3::Y), Vec3::Y)
+                * now)
+                .normalize();
+            for turn in [0.0, FRAC_PI_2] {
+                let rotation =
+                    (dwell_scene::space::rotation_from_yaw_pitch(turn, 0.0) * upright).normalize();
+                if stances
+                    .iter()
+                    .any(|s| s.rotation.dot(rotation).abs() > 0.9999)
+                {
+                    continue;
+                }
+                let stance = StablePose::new(plan, rotation, com);
+                stances.extend(stance.filter(|stance| stance.stands(&[true; DIRECTIONS])));
+            }
+        }
+        stances
+    }
+
+    /// Where a body comes to rest with its foot's middle on a point: free of everything, on ground that carries it. What is
+    /// in the way otherwise; `None` when it would not stay.
+    pub(super) fn stand_at(
+        &self,
+        body: usize,
+        stance: &StablePose,
+        foot: Vec3,
+    ) -> Result<RapierPose, Option<String>> {
+        let pose = stance.pose_on(foot);
+        if let Some(blocker) = self.first_overlap(body, &pose, HolderContacts::Counts) {
+            return Err(Some(self.name_of_entry(blocker)));
+        }
+        let carried = stance.sole.map(|point| {
+            let above = pose.translation + point + Vec3::Y * FEEL_M;
+            let bottom = foot.y + (point.y - stance.low.y);
+            self.support_heights(body, SupportFilter::Any, above, 2.0 * FEEL_M)
+                .iter()
+                .any(|height| (height - bottom).abs() <= UNEVEN_M)
+        });
+        if !stance.stands(&carried) {
+            return Err(None);
+        }
+        self.trial_rest_pose(body, &pose).ok_or(None)
+    }
+}

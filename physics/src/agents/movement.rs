@@ -1,0 +1,275 @@
+//! All agents' movements in one physics step.
+
+use super::{AgentControl, AgentCylinder, AgentQueries, CharacterController, CharacterPush};
+use crate::actions::{ActionCode, ActionOutcome, DelayedOutcome};
+use crate::bases::{self, WheelMotion};
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
+use glam::Vec3;
+
+/// What an agent wanted to do and did in a control step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MovementRecord {
+    start: Vec3,
+    /// How it gets about in this world.
+    locomotion: Locomotion,
+    wanted_m: f32,
+    made_m: f32,
+    turned_rad: f32,
+}
+
+impl MovementRecord {
+    /// The ways of all agents at the beginning of a control step.
+    pub(crate) fn all(state: &State) -> Vec<Self> {
+        let way = |(id, agent): (AgentId, &AgentState)| Self {
+            start: agent.position,
+            locomotion: state.locomotion(id),
+            wanted_m: 0.0,
+            made_m: 0.0,
+            turned_rad: 0.0,
+        };
+        state.agents.iter_ids().map(way).collect()
+    }
+}
+
+impl PhysicsWorld {
+    /// Moves all agents for one physics step; `first`: the control step's first.
+    pub(crate) fn move_agents(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        ways: &mut [MovementRecord],
+        first: bool,
+    ) {
+        let dt_s = self.settings.dt_s;
+        for (index, way) in ways.iter_mut().enumerate() {
+            let id = AgentId::from_index(index);
+            let control = controls.get(index).copied().unwrap_or_default();
+            let mut agent = state.agents[id];
+            control.look(&mut agent, dt_s);
+            let laws = |rolling: &mut WheelMotion| {
+                for installed in &self.laws {
+                    installed.law.roll(id, rolling);
+                }
+            };
+            let driven = bases::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
+            let motion = match (&driven, way.locomotion) {
+                (Some(motion), _) => {
+                    motion.turn(&mut agent);
+                    way.turned_rad += motion.turn_rad;
+                    motion.displacement
+                }
+                (None, Locomotion::Walking(gait)) => {
+                    way.turned_rad += control.turn(&mut agent, dt_s);
+                    if first {
+                        self.set_stance(state, id, &mut agent, &gait, control.crouch);
+                    }
+                    stride(&agent, &gait, &control, dt_s)
+                }
+                (None, _) => Vec3::ZERO,
+            };
+            let passive_velocities = self.passive_velocities[index];
+            let idle = motion == Vec3::ZERO
+                && agent.grounded
+                && passive_velocities == super::PassiveVelocity::default();
+            if idle && !first {
+                state.agents[id] = agent;
+                continue;
+            }
+            let (before, flew) = (agent.position, !agent.grounded);
+            let pushes = self.walk(state, id, &mut agent, motion);
+            let length = motion.length();
+            if length > 0.0 {
+                let made = (agent.position - before).dot(motion / length);
+                way.wanted_m += length;
+                way.made_m += made.clamp(0.0, length);
+            }
+            if let Some(motion) = &driven {
+                motion.settle(&mut agent, before);
+                let passive_velocities = &mut self.passive_velocities[index];
+                if !agent.grounded {
+                    // In the air its velocity is one whole.
+                    passive_velocities.slide_m_s = Vec3::ZERO;
+                } else if flew {
+                    // Where it lands its wheels slip, and friction brakes it until they roll.
+                    passive_velocities.slide_m_s = motion.slips_m_s;
+                }
+            }
+            state.agents[id] = agent;
+            if agent.position != before
+                && let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle)
+            {
+                rigid.set_next_kinematic_translation(agent.position);
+            }
+            for push in pushes {
+                self.push(&push, agent.body.push_force_n);
+            }
+        }
+    }
+
+    /// What surrounds an agent, which has the height it has now.
+    fn probe<'a>(
+        &'a self,
+        agent: &AgentState,
+        id: AgentId,
+        others: &'a [AgentCylinder],
+    ) -> AgentQueries<'a> {
+        self.probe_with(super::current_body(agent), id, others)
+    }
+
+    /// What surrounds an agent with a body as high as it is now.
+    pub(super) fn probe_with<'a>(
+        &'a self,
+        body: AgentBody,
+        id: AgentId,
+        others: &'a [AgentCylinder],
+    ) -> AgentQueries<'a> {
+        AgentQueries {
+            engine: &self.engine,
+            model: &self.model,
+            entries: &self.entries,
+            bodies: &self.bodies,
+            holds: &self.holds,
+            excluded: &self.excluded,
+            others,
+            agent: id,
+            body,
+        }
+    }
+
+    fn walk(
+        &mut self,
+        state: &State,
+        id: AgentId,
+        agent: &mut AgentState,
+        motion: Vec3,
+    ) -> Vec<CharacterPush> {
+        let mut passive_velocities = self.passive_velocities[id.index()];
+        let others = shells(state, id);
+        let mut walk = CharacterController {
+            probe: self.probe(agent, id, &others),
+            pushes: Vec::new(),
+            dt_s: self.settings.dt_s,
+            gravity_m_s2: self.engine.gravity.length(),
+        };
+        walk.step(agent, &mut passive_velocities, motion);
+        let pushes = walk.pushes;
+        self.passive_velocities[id.index()] = passive_velocities;
+        pushes
+    }
+
+    /// Crouches, or stands up where there is room.
+    fn set_stance(
+        &mut self,
+        state: &State,
+        id: AgentId,
+        agent: &mut AgentState,
+        gait: &LeggedLocomotion,
+        crouch: bool,
+    ) {
+        let body = &agent.body;
+        let lowest = gait.crouched_height_m.max(2.0 * body.radius_m);
+        let wanted = if crouch {
+            (body.height_m - lowest).max(0.0)
+        } else {
+            0.0
+        };
+        if wanted == agent.crouched_by_m {
+            return;
+        }
+        let up = agent.crouched_by_m - wanted;
+        let others = shells(state, id);
+        if up > 0.0
+            && !self
+                .probe(agent, id, &others)
+                .room_above(agent.position, up)
+        {
+            self.notices.push(DelayedOutcome {
+                agent: Some(id),
+                outcome: ActionOutcome::failed(
+                    ActionCode::Blocked,
+                    "Something is overhead: you cannot stand up here. Move out from under it first.",
+                    None,
+                ),
+            });
+            return;
+        }
+        agent.crouched_by_m = wanted;
+        super::reshape(&mut self.engine, &mut self.agents[id.index()], agent);
+    }
+
+    /// Pushes a light body, with no more than the agent's force.
+    fn push(&mut self, push: &CharacterPush, force_n: f32) {
+        let body = push.body as usize;
+        let handle = self.bodies[body].handle;
+        let dt_s = self.settings.dt_s;
+        let most = force_n * dt_s;
+        let jointed = self.model.bodies[body].joint.is_some();
+        let Some(rigid) = self.engine.bodies.get(handle) else {
+            return;
+        };
+        // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
+        let mut point = push.point;
+        if !jointed {
+            point.y = rigid.center_of_mass().y;
+        }
+        let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
+        // A leaf on a hinge resists at its edge like a third of its mass.
+        let mass = if jointed {
+            rigid.mass() / 3.0
+        } else {
+            rigid.mass()
+        };
+        let impulse = (speed * mass).min(most);
+        if impulse <= 0.0 {
+            return;
+        }
+        self.engine.wake(handle);
+        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            rigid.apply_impulse_at_point(push.direction * impulse, point, false);
+        }
+    }
+
+    /// Ends a control step: what each agent's movement came to.
+    pub(crate) fn finish_movement(&self, state: &mut State, ways: &[MovementRecord]) {
+        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
+        for (index, (agent, way)) in state.agents.iter_mut().zip(ways).enumerate() {
+            agent.velocity = (agent.position - way.start) / step_s;
+            agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
+            let id = AgentId::from_index(index);
+            let rate = way.turned_rad / step_s;
+            // Only bases have gyros that err.
+            agent.gyro_rad_s = match way.locomotion {
+                Locomotion::Walking(_) => rate,
+                _ => self
+                    .laws
+                    .iter()
+                    .fold(rate, |rate, installed| installed.law.gyro(id, rate)),
+            };
+        }
+    }
+}
+
+/// Where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
+fn stride(agent: &AgentState, gait: &LeggedLocomotion, control: &AgentControl, dt_s: f32) -> Vec3 {
+    let fastest = if agent.crouched_by_m > 0.0 {
+        gait.max_crouched_speed_m_s.min(gait.max_speed_m_s)
+    } else {
+        gait.max_speed_m_s
+    };
+    let motion = control.displacement(agent.yaw_rad, dt_s);
+    motion.clamp_length_max(fastest * dt_s)
+}
+
+pub(super) fn shells(state: &State, except: AgentId) -> Vec<AgentCylinder> {
+    state
+        .agents
+        .iter_ids()
+        .filter(|(id, _)| *id != except)
+        .map(|(_, agent)| AgentCylinder {
+            feet: agent.position,
+            radius_m: agent.body.radius_m,
+            height_m: agent.height_m(),
+        })
+        .collect()
+}

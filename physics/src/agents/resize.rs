@@ -1,0 +1,57 @@
+//! Agents whose bodies change while the world runs.
+
+use super::movement::shells;
+use super::{Agent, current_body, reshape};
+use crate::error::PhysicsError;
+use crate::world::PhysicsWorld;
+use dwell_scene::{AgentBody, AgentState, Id, State};
+
+/// Whether two bodies take the same room.
+fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
+    let room = |body: &AgentBody| (body.radius_m, body.height_m, body.step_height_m);
+    room(a) == room(b)
+}
+
+impl PhysicsWorld {
+    /// Refuses bodies that would stand in something where they did not before. What is light gives way. A body that stood in
+    /// something already may change as long as its core stays out of it.
+    pub(crate) fn check_room(&self, state: &State) -> Result<(), PhysicsError> {
+        for ((id, agent), known) in state.agents.iter_ids().zip(&self.agents) {
+            let (now, was) = (current_body(agent), known.stands);
+            agent.body.check()?;
+            if same_room(&now, &was) {
+                continue;
+            }
+            let others = shells(state, id);
+            let [now, was] = [now, was].map(|body| self.probe_with(body, id, &others));
+            let feet = agent.position;
+            let cramped = now.is_cylinder_blocked(feet) && !was.is_cylinder_blocked(feet);
+            let inside = now.is_inside_something(feet) && !was.is_inside_something(feet);
+            if cramped || inside {
+                let body = &agent.body;
+                return Err(PhysicsError::Range {
+                    at: format!("agent {}", id.index()),
+                    field: "body",
+                    found: format!(
+                        "radius {} m, height {} m, steps of {} m: it would stand in what is beside, above or under it",
+                        body.radius_m, body.height_m, body.step_height_m
+                    ),
+                    allowed: "a body that has room where the agent stands; move the agent first",
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives an agent's capsule the body of the state. Returns whether it was another before.
+    pub(crate) fn take_body(&mut self, index: usize, state: &AgentState) -> bool {
+        let agent: &mut Agent = &mut self.agents[index];
+        let now = current_body(state);
+        let same = same_room(&now, &agent.stands);
+        agent.stands = now;
+        if !same {
+            reshape(&mut self.engine, agent, state);
+        }
+        !same
+    }
+}

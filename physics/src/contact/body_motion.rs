@@ -1,0 +1,123 @@
+//! Where bodies are and how they move before a step.
+
+use super::contact_tracker::ContactTracker;
+use crate::engine::RapierWorld;
+use glam::{Quat, Vec3};
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+
+/// Where a body is and how it moves before the step, at its centre of mass.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BodyMotion {
+    /// Whether it is known: of what is awake, and of what sleeps where something that flies may wake it.
+    pub(super) known: bool,
+    pub(super) linear: Vec3,
+    pub(super) angular: Vec3,
+    pub(super) center: Vec3,
+    pub(super) rotation: Quat,
+    /// What gravity adds to its velocity, m/s².
+    pub(super) gravity: Vec3,
+    /// How far it would stand ahead if the last step had not stopped it at a surface, m.
+    pub(super) ahead: Vec3,
+    /// A bound on the speed of all its points, m/s.
+    pub(super) fastest: f32,
+    /// What the step adds to its momentum when nothing touches it, over its mass, m/s; `None` for what joints or hands of
+    /// others move.
+    pub(super) free_change: Option<Vec3>,
+    /// J; 0 for what does not fly freely.
+    pub(super) kinetic_energy_j: f32,
+}
+
+impl BodyMotion {
+    /// How far the body would have gone on in the step since then, when it was stopped on its way and kept its speed.
+    pub(super) fn held_back(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
+        let fell = self.linear + self.gravity * dt_s;
+        let free = (self.linear + fell) * (0.5 * dt_s);
+        let rest = free - (body.center_of_mass() - self.center);
+        let kept_speed = (body.linvel() - fell).length_squared() < 1e-4 * fell.length_squared();
+        let stopped = rest.length_squared() > 1e-3 * free.length_squared();
+        (self.known && kept_speed && stopped).then_some(rest)
+    }
+
+    /// The energy of a body in free flight, J, of a mass in kg: kinetic, and potential over the origin. It is that where
+    /// it would stand had the last step not stopped it.
+    pub(super) fn energy_j(&self, mass_kg: f32) -> f32 {
+        self.kinetic_energy_j - mass_kg * self.gravity.dot(self.center + self.ahead)
+    }
+
+    /// Where the centre of mass of a body in free flight stands after a time, or stood before.
+    pub(super) fn center_after(&self, time_s: f32) -> Vec3 {
+        self.center + self.ahead + (self.linear + self.gravity * (0.5 * time_s)) * time_s
+    }
+
+    /// The velocity of a point, m/s.
+    pub(super) fn at(&self, point: Vec3) -> Vec3 {
+        self.linear + self.angular.cross(point - self.center)
+    }
+}
+
+/// The motion of a body before the step; at rest for what does not move.
+pub(super) fn before(motions: &[BodyMotion], body: Option<RigidBodyHandle>) -> BodyMotion {
+    body.and_then(|body| motions.get(body.into_raw_parts().0 as usize))
+        .copied()
+        .unwrap_or_default()
+}
+
+/// Where the motion of a body is kept.
+fn at(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
+    let index = body.into_raw_parts().0 as usize;
+    if motions.len() <= index {
+        motions.resize(index + 1, BodyMotion::default());
+    }
+    &mut motions[index]
+}
+
+/// Notes the motion of all bodies that are awake before a step, and where those stand that sleep. `flying`: those in free flight.
+pub(crate) fn record_motion(
+    engine: &RapierWorld,
+    contact_tracker: &ContactTracker,
+    flying: &[RigidBodyHandle],
+    out: &mut Vec<BodyMotion>,
+) {
+    out.clear();
+    if !flying.is_empty() {
+        for (handle, body) in engine.bodies.iter() {
+            if body.is_dynamic() && body.is_sleeping() {
+                *at(out, handle) = BodyMotion {
+                    known: true,
+                    center: body.center_of_mass(),
+                    rotation: *body.rotation(),
+                    ..BodyMotion::default()
+                };
+            }
+        }
+    }
+    let mut flying = flying.iter().peekable();
+    for handle in engine.islands.active_bodies() {
+        let Some(body) = engine.bodies.get(handle) else {
+            continue;
+        };
+        let flies = flying.next_if_eq(&&handle).is_some();
+        let index = handle.into_raw_parts().0 as usize;
+        let ahead = contact_tracker.held_back.get(&(index as u32)).copied();
+        let (linear, angular) = (body.linvel(), body.angvel());
+        let falls = if body.is_dynamic() {
+            body.gravity_scale()
+        } else {
+            0.0
+        };
+        let gravity = engine.gravity * falls;
+        let free = body.is_dynamic() && engine.joints.attached_joints(handle).next().is_none();
+        *at(out, handle) = BodyMotion {
+            known: true,
+            linear,
+            angular,
+            center: body.center_of_mass(),
+            rotation: *body.rotation(),
+            gravity,
+            ahead: ahead.unwrap_or(Vec3::ZERO),
+            fastest: linear.length() + angular.length() * body.mass_properties().max_extent(),
+            kinetic_energy_j: if flies { body.kinetic_energy() } else { 0.0 },
+            free_change: free.then(|| gravity * engine.free_fall_time_s(flies)),
+        };
+    }
+}

@@ -1,0 +1,85 @@
+//! What a collider stands for. A collider's user data is its number in the list of entries.
+
+use crate::model::PieceOwner;
+use dwell_scene::{AgentId, PartId, StructureId};
+use rapier3d::geometry::Collider;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A thing that touches another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactEntity {
+    /// A wall, floor or ceiling.
+    Structure(StructureId),
+    /// A part of an object.
+    Part(PartId),
+    /// An agent's body.
+    Agent(AgentId),
+}
+
+/// The contact class of a piece, or of each of its triangles.
+#[derive(Clone, Debug)]
+pub(crate) enum ContactClasses {
+    Uniform(u16),
+    PerTriangle(Arc<[u16]>),
+}
+
+impl ContactClasses {
+    /// The class at a triangle of the shape; `subshape` is ignored where there is one class.
+    pub(crate) fn class(&self, subshape: u32) -> u16 {
+        match self {
+            Self::Uniform(class) => *class,
+            Self::PerTriangle(classes) => classes
+                .get(subshape as usize)
+                .or(classes.first())
+                .copied()
+                .unwrap_or(0),
+        }
+    }
+
+    /// Whether some class of the surface is such.
+    pub(crate) fn any_class(&self, is: impl Fn(u16) -> bool) -> bool {
+        match self {
+            Self::Uniform(class) => is(*class),
+            Self::PerTriangle(classes) => classes.iter().any(|class| is(*class)),
+        }
+    }
+}
+
+/// What a collider stands for.
+#[derive(Clone, Debug)]
+pub(crate) struct ColliderEntry {
+    /// What it is; `None` for the box of last resort.
+    pub(crate) toucher: Option<ContactEntity>,
+    /// The rigid body it moves with, unless it is static or an agent's.
+    pub(crate) body: Option<u32>,
+    pub(crate) surface: ContactClasses,
+}
+
+impl ColliderEntry {
+    pub(crate) fn new(owner: PieceOwner, body: Option<u32>, surface: ContactClasses) -> Self {
+        let toucher = match owner {
+            PieceOwner::Structure(id) => Some(ContactEntity::Structure(id)),
+            PieceOwner::Part(id) => Some(ContactEntity::Part(id)),
+            PieceOwner::LastBox => None,
+        };
+        Self {
+            toucher,
+            body,
+            surface,
+        }
+    }
+
+    pub(crate) fn agent(&self) -> Option<AgentId> {
+        match self.toucher {
+            Some(ContactEntity::Agent(agent)) => Some(agent),
+            _ => None,
+        }
+    }
+}
+
+/// The number of the entry that a collider stands for.
+pub(crate) fn entry_index(collider: &Collider) -> usize {
+    collider.user_data as usize
+}

@@ -1,0 +1,80 @@
+//! Who touches whom.
+
+use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
+use dwell_scene::{Contact, SupportRelation};
+use rapier3d::dynamics::RigidBodyHandle;
+use rapier3d::geometry::{ColliderSet, NarrowPhase};
+
+/// How much a normal must face up to carry: the cosine of 60 degrees.
+const CARRIES: f32 = 0.5;
+
+/// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart, with their bodies; for each pair
+/// of pieces that touch.
+pub(crate) fn touching(
+    narrow_phase: &NarrowPhase,
+    colliders: &ColliderSet,
+    entries: &[ColliderEntry],
+    distance_m: f32,
+) -> Vec<([RigidBodyHandle; 2], Contact)> {
+    let mut out = Vec::new();
+    for pair in narrow_phase.contact_pairs() {
+        let (mut near, mut rest) = (false, SupportRelation::Beside);
+        for manifold in pair.solver_manifolds() {
+            let touches = manifold
+                .points
+                .iter()
+                .any(|point| point.data.impulse > 0.0 || point.dist <= distance_m);
+            near |= touches;
+            // The normal points from the first collider to the second.
+            let up = manifold.data.normal.y;
+            if touches && up.abs() >= CARRIES {
+                rest = if up > 0.0 {
+                    SupportRelation::BOnA
+                } else {
+                    SupportRelation::AOnB
+                };
+            }
+        }
+        if !near || !pair.has_any_active_contact() {
+            continue;
+        }
+        let entry = |handle| {
+            let entry = entries.get(entry_index(&colliders[handle]))?;
+            entry.toucher
+        };
+        let (Some(a), Some(b)) = (entry(pair.collider1), entry(pair.collider2)) else {
+            continue;
+        };
+        let (first, second) = match (a, b) {
+            (ContactEntity::Part(a), ContactEntity::Part(b)) => (a, Some(b)),
+            (ContactEntity::Part(part), ContactEntity::Structure(_)) => (part, None),
+            (ContactEntity::Structure(_), ContactEntity::Part(part)) => {
+                rest = turned(rest);
+                (part, None)
+            }
+            _ => continue,
+        };
+        let contact = match second {
+            Some(second) if second < first => Contact {
+                a: second,
+                b: Some(first),
+                rest: turned(rest),
+            },
+            b => Contact { a: first, b, rest },
+        };
+        let bodies = [pair.collider1, pair.collider2].map(|handle| colliders[handle].parent());
+        if let [Some(one), Some(two)] = bodies {
+            out.push(([one, two], contact));
+        }
+    }
+    out
+}
+
+/// The same seen from the other side.
+fn turned(rest: SupportRelation) -> SupportRelation {
+    match rest {
+        SupportRelation::Beside => SupportRelation::Beside,
+        SupportRelation::AOnB => SupportRelation::BOnA,
+        SupportRelation::BOnA => SupportRelation::AOnB,
+    }
+}

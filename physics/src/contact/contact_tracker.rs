@@ -1,0 +1,355 @@
+//! Contacts that go on: blows that take a few steps, and pairs that slide or roll.
+
+use super::body_motion::BodyMotion;
+use super::collector::{ContactCollector, ContactReport};
+use super::collider_entry::ContactEntity;
+use super::events::{ContactEvent, ContactKind, ContactPhase};
+use super::substances::ContactTable;
+use crate::config::PhysicsConfig;
+use crate::engine::RapierWorld;
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Physics steps over which one impact may last: the solver stops a body at the surface in one step and bounces it in
+/// the next.
+const LONGEST_IMPACT_STEPS: u8 = 3;
+/// What rolls slips by less than this share of its speed.
+const ROLLING_SLIP: f32 = 0.2;
+
+type ContactPair = (ContactEntity, ContactEntity);
+
+/// An impact that may still go on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct ImpactAccumulator {
+    time_s: f64,
+    steps: u8,
+    impulse_n_s: f32,
+    tangential_n_s: f32,
+    /// Sum of position times impulse.
+    moment: Vec3,
+    speed_m_s: f32,
+    slip_m_s: f32,
+    classes: (u16, u16),
+}
+
+/// What a pair did in the present control step, apart from impacts.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct ContactAccumulator {
+    first_tick: u64,
+    last_tick: u64,
+    steps: u32,
+    impulse_n_s: f32,
+    tangential_n_s: f32,
+    moment: Vec3,
+    /// Sum of slip speed times impulse.
+    slip: f32,
+    /// Sum over the steps of how fast the place of contact moved.
+    travel: f32,
+    /// The place of contact in the last step.
+    place: Vec3,
+    classes: (u16, u16),
+}
+
+/// A pair that slid or rolled at the end of the last control step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct SlidingPair {
+    kind: ContactKind,
+    place: Vec3,
+    classes: (u16, u16),
+}
+
+/// All contacts that may still go on, by pair.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ContactTracker {
+    impacts: BTreeMap<ContactPair, ImpactAccumulator>,
+    touching: BTreeMap<ContactPair, ContactAccumulator>,
+    moving: BTreeMap<ContactPair, SlidingPair>,
+    /// How far bodies that were stopped at a surface in the last step would have gone on, by their arena index, m.
+    pub(super) held_back: BTreeMap<u32, Vec3>,
+}
+
+impl ContactTracker {
+    /// Nothing has begun that would still be told.
+    pub(crate) fn forget_events(&mut self) {
+        self.impacts.clear();
+        self.touching.clear();
+        self.moving.clear();
+    }
+
+    /// Notes which bodies the last step stopped on their way: rapier moves what is fast no further than a little into a
+    /// surface, and the rest of its step is lost.
+    pub(crate) fn note_held_back(
+        &mut self,
+        engine: &RapierWorld,
+        before: &[BodyMotion],
+        dt_s: f32,
+    ) {
+        self.held_back.clear();
+        for handle in engine.islands.active_bodies() {
+            let index = handle.into_raw_parts().0;
+            let moved = before
+                .get(index as usize)
+                .zip(engine.bodies.get(handle))
+                .and_then(|(motion, body)| motion.held_back(body, dt_s));
+            if let Some(rest) = moved {
+                self.held_back.insert(index, rest);
+            }
+        }
+    }
+
+    /// Adds a physics step's reports; impacts that are over go to `out`. `rebounds`: what was added to the pairs' normal
+    /// impulses, N·s.
+    pub(crate) fn settle(
+        &mut self,
+        (collector, rebounds): (ContactCollector<'_>, &BTreeMap<ContactPair, f32>),
+        tick: u64,
+        config: &PhysicsConfig,
+        table: &ContactTable,
+        out: &mut Vec<ContactEvent>,
+    ) {
+        let mut reports = collector.reports();
+        for group in reports.chunk_by_mut(|a, b| a.pair == b.pair) {
+            if let Some(added) = rebounds.get(&group[0].pair) {
+                let impulse: f32 = group.iter().map(|report| report.impulse).sum();
+                for report in group {
+                    report.scale(1.0 + added / impulse);
+                }
+            }
+        }
+        reports.retain(|report| report.impulse > 0.0);
+        let mut hit: Vec<ContactPair> = Vec::new();
+        let dt_s = 1.0 / f64::from(config.physics_rate_hz);
+        for group in reports.chunk_by(|a, b| a.pair == b.pair) {
+            let pair = group[0].pair;
+            let speed = group.iter().map(|report| report.speed).fold(0.0, f32::max);
+            if speed >= config.event_min_speed_m_s {
+                self.hit(pair, group, tick as f64 * dt_s, dt_s as f32);
+                hit.push(pair);
+            } else {
+                self.touch(pair, group, tick, dt_s as f32);
+            }
+        }
+        self.impacts.retain(|pair, impact| {
+            let goes_on = impact.steps < LONGEST_IMPACT_STEPS && hit.binary_search(pair).is_ok();
+            if !goes_on && impact.impulse_n_s >= config.event_min_impulse_n_s {
+                out.push(impact.event(*pair, table));
+            }
+            goes_on
+        });
+    }
+
+    fn hit(&mut self, pair: ContactPair, group: &[ContactReport], begin_s: f64, dt_s: f32) {
+        // The solver may stop a thing shortly before it touches, or after a step in which it passed a little.
+        let fastest = group.iter().max_by(|a, b| a.speed.total_cmp(&b.speed));
+        let meets_s = fastest.map_or(0.0, |report| report.meets_s.clamp(-dt_s, 2.0 * dt_s));
+        let impulse: f32 = group.iter().map(|report| report.impulse).sum();
+        let slip: f32 = group.iter().map(|report| report.slip).sum();
+        let impact = self.impacts.entry(pair).or_insert(ImpactAccumulator {
+            time_s: (begin_s + f64::from(meets_s)).max(0.0),
+            steps: 0,
+            impulse_n_s: 0.0,
+            tangential_n_s: 0.0,
+            moment: Vec3::ZERO,
+            speed_m_s: 0.0,
+            slip_m_s: slip / impulse,
+            classes: group[0].classes,
+        });
+        impact.steps += 1;
+        for report in group {
+            impact.impulse_n_s += report.impulse;
+            impact.tangential_n_s += report.tangential;
+            impact.moment += report.moment;
+            impact.speed_m_s = impact.speed_m_s.max(report.meeting);
+        }
+    }
+
+    fn touch(&mut self, pair: ContactPair, group: &[ContactReport], tick: u64, dt_s: f32) {
+        let impulse: f32 = group.iter().map(|report| report.impulse).sum();
+        let moment: Vec3 = group.iter().map(|report| report.moment).sum();
+        let passing = group
+            .iter()
+            .map(|report| report.passing)
+            .fold(0.0, f32::max);
+        let place = moment / impulse;
+        let before = self.touching.get(&pair).map(|touching| touching.place);
+        let before = before.or(self.moving.get(&pair).map(|moving| moving.place));
+        let touching = self.touching.entry(pair).or_insert(ContactAccumulator {
+            first_tick: tick,
+            classes: group[0].classes,
+            ..ContactAccumulator::default()
+        });
+        touching.last_tick = tick;
+        touching.steps += 1;
+        touching.impulse_n_s += impulse;
+        touching.moment += moment;
+        for report in group {
+            touching.tangential_n_s += report.tangential;
+            touching.slip += report.slip;
+        }
+        // The place of contact moves when a thing rolls, and jumps when pressure shifts under one that stands; what stands
+        // does not pass by.
+        let moved = before.map_or(passing, |before| (place - before).length() / dt_s);
+        touching.travel += moved.min(passing);
+        touching.place = place;
+    }
+
+    /// Tells what slid and rolled in a control step that ends at `tick`.
+    pub(crate) fn emit_events(
+        &mut self,
+        tick: u64,
+        config: &PhysicsConfig,
+        table: &ContactTable,
+        out: &mut Vec<ContactEvent>,
+    ) {
+        let dt_s = 1.0 / f64::from(config.physics_rate_hz);
+        let mut still = BTreeMap::new();
+        for (pair, touching) in std::mem::take(&mut self.touching) {
+            let Some(kind) = touching.kind(config) else {
+                continue;
+            };
+            let goes_on = self
+                .moving
+                .get(&pair)
+                .is_some_and(|moving| moving.kind == kind);
+            if goes_on {
+                self.moving.remove(&pair);
+            }
+            let phase = if goes_on {
+                ContactPhase::Continue
+            } else {
+                ContactPhase::Begin
+            };
+            out.push(touching.event(pair, (kind, phase), dt_s, table));
+            let (place, classes) = (touching.place, touching.classes);
+            still.insert(
+                pair,
+                SlidingPair {
+                    kind,
+                    place,
+                    classes,
+                },
+            );
+        }
+        for (pair, moving) in std::mem::replace(&mut self.moving, still) {
+            out.push(ContactEvent {
+                time_s: tick as f64 * dt_s,
+                ..empty_event(
+                    pair,
+                    (moving.kind, ContactPhase::End),
+                    moving.place,
+                    moving.classes,
+                    table,
+                )
+            });
+        }
+    }
+}
+
+impl ContactReport {
+    /// Makes its normal impulse `times` as strong.
+    fn scale(&mut self, times: f32) {
+        let times = times.max(0.0);
+        self.impulse *= times;
+        self.moment *= times;
+        self.slip *= times;
+    }
+}
+
+impl ImpactAccumulator {
+    fn event(&self, pair: ContactPair, table: &ContactTable) -> ContactEvent {
+        let what = (ContactKind::Impact, ContactPhase::Once);
+        ContactEvent {
+            time_s: self.time_s,
+            impulse_n_s: self.impulse_n_s,
+            tangential_impulse_n_s: self.tangential_n_s,
+            relative_normal_speed_m_s: self.speed_m_s,
+            relative_tangential_speed_m_s: self.slip_m_s,
+            ..empty_event(
+                pair,
+                what,
+                self.moment / self.impulse_n_s,
+                self.classes,
+                table,
+            )
+        }
+    }
+}
+
+impl ContactAccumulator {
+    fn slip_m_s(&self) -> f32 {
+        self.slip / self.impulse_n_s
+    }
+
+    fn travel_m_s(&self) -> f32 {
+        self.travel / self.steps as f32
+    }
+
+    /// What it was; nothing when the two stood, rocked or hardly touched.
+    fn kind(&self, config: &PhysicsConfig) -> Option<ContactKind> {
+        if self.impulse_n_s < config.event_min_impulse_n_s {
+            return None;
+        }
+        let (slip, travel) = (self.slip_m_s(), self.travel_m_s());
+        let slowest = config.slide_min_speed_m_s;
+        if slip >= slowest && slip >= ROLLING_SLIP * travel {
+            Some(ContactKind::Scrape)
+        } else {
+            (travel >= slowest).then_some(ContactKind::Roll)
+        }
+    }
+
+    fn event(
+        &self,
+        pair: ContactPair,
+        what: (ContactKind, ContactPhase),
+        dt_s: f64,
+        table: &ContactTable,
+    ) -> ContactEvent {
+        let rolls = what.0 == ContactKind::Roll;
+        ContactEvent {
+            time_s: self.first_tick as f64 * dt_s,
+            duration_s: self.steps as f32 * dt_s as f32,
+            impulse_n_s: self.impulse_n_s,
+            tangential_impulse_n_s: self.tangential_n_s,
+            relative_tangential_speed_m_s: self.slip_m_s(),
+            rolling_speed_m_s: if rolls { self.travel_m_s() } else { 0.0 },
+            ..empty_event(
+                pair,
+                what,
+                self.moment / self.impulse_n_s,
+                self.classes,
+                table,
+            )
+        }
+    }
+}
+
+/// An event of a pair at a place, without time, force or speed.
+fn empty_event(
+    (a, b): ContactPair,
+    (kind, phase): (ContactKind, ContactPhase),
+    position: Vec3,
+    classes: (u16, u16),
+    table: &ContactTable,
+) -> ContactEvent {
+    let values = table.pair(classes.0, classes.1);
+    ContactEvent {
+        kind,
+        phase,
+        time_s: 0.0,
+        duration_s: 0.0,
+        position,
+        a,
+        b,
+        substance_a: table.substance(classes.0),
+        substance_b: table.substance(classes.1),
+        friction: values.friction,
+        restitution: values.restitution,
+        impulse_n_s: 0.0,
+        tangential_impulse_n_s: 0.0,
+        relative_normal_speed_m_s: 0.0,
+        relative_tangential_speed_m_s: 0.0,
+        rolling_speed_m_s: 0.0,
+    }
+}

@@ -1,0 +1,247 @@
+//! Changes from outside: agents that come, states that are taken over.
+
+use crate::agents::{self, PassiveVelocity};
+use crate::body::{self, BodyStatus};
+use crate::contact::ContactProperties;
+use crate::convert::to_rapier;
+use crate::error::PhysicsError;
+use crate::joints::{self, JointPlacement};
+use crate::world::{PhysicsWorld, joint_from_state};
+use dwell_scene::{AgentId, AgentState, Id, JointId, State, Velocity};
+use glam::Vec3;
+use std::collections::BTreeSet;
+
+impl PhysicsWorld {
+    /// Adds an agent to the state and the world. It may be placed inside things; it then works its way out.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Scene`] for a body out of range, [`PhysicsError::Range`] for a place that is not finite,
+    /// [`PhysicsError::ForeignState`] for a state with other agents.
+    pub fn add_agent(
+        &mut self,
+        state: &mut State,
+        agent: AgentState,
+    ) -> Result<AgentId, PhysicsError> {
+        agent.body.check()?;
+        finite_place(agent.position, agent.yaw_rad)?;
+        let lowest = 2.0 * agent.body.radius_m;
+        if !(0.0..=agent.body.height_m - lowest).contains(&agent.crouched_by_m) {
+            return Err(PhysicsError::Range {
+                at: "agent".to_owned(),
+                field: "crouched_by_m",
+                found: agent.crouched_by_m.to_string(),
+                allowed: "0 to the height above twice the radius",
+            });
+        }
+        self.check_state(state)?;
+        let id = state.agents.push(AgentState {
+            holding: None,
+            ..agent
+        });
+        self.insert_agent(&agent);
+        self.flush();
+        Ok(id)
+    }
+
+    pub(crate) fn insert_agent(&mut self, agent: &AgentState) {
+        let id = AgentId::from_index(self.agents.len());
+        let force = self.settings.event_force_n();
+        let values = ContactProperties {
+            house: &self.model.house,
+            table: &self.table,
+            laws: &self.laws,
+        };
+        let inserted = agents::insert(
+            &mut self.engine,
+            values,
+            &mut self.entries,
+            id,
+            agent,
+            force,
+        );
+        self.agents.push(inserted);
+        self.passive_velocities.push(PassiveVelocity::default());
+    }
+
+    /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
+    /// physics has it is moved there and woken. Frozen and shut things that are moved, or given a velocity, become free.
+    ///
+    /// # Errors
+    /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
+    pub fn adopt(&mut self, state: &mut State) -> Result<(), PhysicsError> {
+        self.check_state(state)?;
+        let model = self.model.clone();
+        let mut joints = state.joint_position.iter().zip(&state.joint_velocity);
+        if let Some(k) = joints.position(|(q, v)| !q.is_finite() || !v.is_finite()) {
+            let id = JointId::from_index(k);
+            let (q, v) = (state.joint_position[id], state.joint_velocity[id]);
+            return Err(PhysicsError::Range {
+                at: format!("joint {k}"),
+                field: "position or velocity",
+                found: format!("{q}, {v}"),
+                allowed: "finite numbers",
+            });
+        }
+        for plan in &model.bodies {
+            let pose = state.part_pose[plan.root()];
+            let velocity = state.part_velocity[plan.root()];
+            if !pose.is_valid() || !velocity.linear.is_finite() || !velocity.angular.is_finite() {
+                return Err(PhysicsError::Range {
+                    at: format!("part {}", plan.root().0),
+                    field: "pose or velocity",
+                    found: format!("{:?}", pose.position),
+                    allowed: "finite numbers and a unit quaternion",
+                });
+            }
+        }
+        let (mut disturbed_roots, mut set) = (BTreeSet::new(), Vec::new());
+        // What is not moved by a joint comes first: joints hang on it.
+        for (index, plan) in model.bodies.iter().enumerate() {
+            if plan.joint.is_some() {
+                continue;
+            }
+            let pose = to_rapier(&state.part_pose[plan.root()]);
+            let velocity = state.part_velocity[plan.root()];
+            let handle = self.bodies[index].handle;
+            let Some(rigid) = self.engine.bodies.get(handle) else {
+                continue;
+            };
+            let moved = *rigid.position() != pose;
+            let moving = velocity != Velocity::default();
+            if moved || moving && self.engine.sleeping_cache.has(handle) {
+                self.engine.wake_around(handle);
+            }
+            let Some(rigid) = self.engine.bodies.get_mut(handle) else {
+                continue;
+            };
+            let mut disturbed = moved;
+            if moved {
+                self.holds[index] = BodyStatus::Free;
+                rigid.set_body_type(body::body_type(BodyStatus::Free), true);
+                rigid.set_position(pose, true);
+            }
+            let origin = rigid.position().translation;
+            let arm = rigid.center_of_mass() - origin;
+            let there = Velocity {
+                linear: rigid.velocity_at_point(origin),
+                angular: rigid.angvel(),
+            };
+            if !same_velocity(&there, &velocity, arm) {
+                if self.holds[index] != BodyStatus::Free {
+                    // What stands would go through everything with its velocity.
+                    self.holds[index] = BodyStatus::Free;
+                    rigid.set_body_type(body::body_type(BodyStatus::Free), true);
+                }
+                rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
+                rigid.set_angvel(velocity.angular, true);
+                disturbed = true;
+            }
+            if disturbed {
+                disturbed_roots.insert(index as u32);
+                set.push((plan.root(), velocity));
+            }
+        }
+        let mut stands = Vec::with_capacity(self.joints.len());
+        for joint in &self.joints {
+            let articulation = &model.house.joints[joint.id];
+            let position = joint.values.clamp(state.joint_position[joint.id]);
+            let child = joint.child as usize;
+            let shut = joints::stands_shut(joint, articulation, position);
+            let body = self.bodies[child];
+            if self.holds[child] == BodyStatus::Latched && !shut {
+                joints::release(&mut self.engine, &body, &mut self.holds[child]);
+            }
+            let stand = JointPlacement {
+                position,
+                velocity: state.joint_velocity[joint.id],
+                anew: false,
+                shut: self.holds[child] == BodyStatus::Latched,
+            };
+            let there = joints::read(&self.engine, joint, position.into());
+            let put = !stand.shut && !joints::matches_bodies(&self.engine, joint, &stand, there);
+            if put {
+                self.engine.wake_around(body.handle);
+                for installed in &mut self.laws {
+                    installed.law.placed(joint.id, position);
+                }
+            }
+            if self.holds[child] == BodyStatus::Frozen && put {
+                self.holds[child] = BodyStatus::Free;
+                if let Some(rigid) = self.engine.bodies.get_mut(body.handle) {
+                    rigid.set_body_type(body::body_type(BodyStatus::Free), true);
+                }
+            }
+            stands.push(stand);
+        }
+        for tree in &self.trees {
+            if tree
+                .root_body()
+                .is_some_and(|root| disturbed_roots.contains(&root))
+            {
+                for joint in &tree.joints {
+                    stands[*joint].anew = true;
+                }
+            }
+            joints::place(&mut self.engine, &self.joints, tree, &stands);
+        }
+        self.flush();
+        self.write_bodies(state);
+        for (root, velocity) in set {
+            let found = state.part_velocity[root];
+            let body = self.model.body_of_part[root].map(|body| self.bodies[body as usize]);
+            let rigid = body.and_then(|body| self.engine.bodies.get(body.handle));
+            let arm = rigid.map_or(Vec3::ZERO, |rigid| {
+                rigid.center_of_mass() - rigid.position().translation
+            });
+            if same_velocity(&found, &velocity, arm) {
+                state.part_velocity[root] = velocity;
+            }
+        }
+        // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
+        for (joint, stand) in self.joints.iter().zip(&stands) {
+            let read = (
+                state.joint_position[joint.id].into(),
+                state.joint_velocity[joint.id].into(),
+            );
+            if !stand.shut && joints::matches_bodies(&self.engine, joint, stand, read) {
+                state.joint_position[joint.id] = stand.position;
+                state.joint_velocity[joint.id] = stand.velocity;
+            }
+        }
+        self.write_contacts(state);
+        Ok(())
+    }
+
+    /// Where a joint stands and how fast it moves, rad or m and per second, as the next step begins; `None` for a joint that
+    /// moves nothing.
+    ///
+    /// Physics moves joints by their own numbers. It goes on from those of the state where bodies say the same up to the
+    /// rounding of their places and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s at 20 m/s,
+    /// a few times over), and from what bodies say where they do not.
+    pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
+        let place = self.joints.binary_search_by_key(&joint, |other| other.id);
+        let found = &self.joints[place.ok()?];
+        let now = joints::stands(&self.engine, found, joint_from_state(state, joint));
+        Some((now.position as f32, now.velocity as f32))
+    }
+}
+
+/// Whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass, `arm`
+/// away, m.
+fn same_velocity(a: &Velocity, b: &Velocity, arm: Vec3) -> bool {
+    let most = |v: Vec3| v.abs().max_element();
+    let rounding = 4.0 * f32::EPSILON * (most(b.linear) + most(b.angular.cross(arm)));
+    a.angular == b.angular && most(a.linear - b.linear) <= rounding
+}
+
+fn finite_place(position: Vec3, yaw_rad: f32) -> Result<(), PhysicsError> {
+    if position.is_finite() && position.abs().max_element() <= 32_768.0 && yaw_rad.is_finite() {
+        return Ok(());
+    }
+    Err(PhysicsError::Range {
+        at: "agent".to_owned(),
+        field: "position or yaw",
+        found: format!("{position:?}, {yaw_rad}"),
+        allowed: "finite numbers within 32768 m of the origin",
+    })
+}

@@ -1,0 +1,277 @@
+//! A tree over a free root in one step: what it stands on holds it, as far as it presses and does not slip.
+//!
+//! A point that stands brakes its own motion so strongly that next to nothing is left of it. With these brakes the root's
+//! six freedoms are eliminated, so that each joint resists with what it really has to move: a knee under load a whole
+//! trunk, not a shank. What carries is found in a few rounds, in which points that would pull are let go and points that
+//! would need more friction than there is slip.
+
+use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
+use super::floating_base::{FloatingBase, dot};
+use super::tree_dynamics::{TreeDynamics, TreeLoads, Wrench};
+use glam::DVec3;
+
+/// How much heavier than the tree a point that stands seems to be.
+const FIRM: f64 = 1e4;
+
+/// How a point stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum SupportState {
+    Sticks,
+    /// It presses, and friction brakes it with this force, N.
+    Slips(DVec3),
+    /// It does not press.
+    Separated,
+}
+
+impl SupportState {
+    /// Which directions it holds.
+    fn holds(self) -> [bool; 3] {
+        match self {
+            Self::Sticks => [true; 3],
+            Self::Slips(_) => [false, true, false],
+            Self::Separated => [false; 3],
+        }
+    }
+
+    /// The force that is there whatever its motion.
+    fn force(self) -> DVec3 {
+        match self {
+            Self::Slips(force) => force,
+            Self::Sticks | Self::Separated => DVec3::ZERO,
+        }
+    }
+}
+
+/// The velocity of a point by the root's freedoms and by the joints', one direction.
+struct PointJacobian {
+    root: [f64; 6],
+    /// Shape (freedom,).
+    joints: Vec<f64>,
+}
+
+/// The root's part of a step.
+pub(super) struct BaseContactSolver {
+    factor: CholeskyFactor,
+    /// What root and joints share of inertia. Shape (freedom, 6).
+    shared: Vec<[f64; 6]>,
+    momentum: [f64; 6],
+    before: [f64; 6],
+    /// Shape (support, 3).
+    rows: Vec<[PointJacobian; 3]>,
+    /// Force for each unit of velocity of a point that stands, N·s/m.
+    brake: f64,
+    dt_s: f64,
+}
+
+/// What the root does in a step, and what carries it.
+#[derive(Clone, Debug)]
+pub(super) struct BaseResponse {
+    /// The change of its six velocities, per second.
+    pub(super) gained: [f64; 6],
+    /// On each support, N.
+    pub(super) forces: Vec<DVec3>,
+}
+
+/// What the joints alone see of a step: `inertia * velocity = momentum` at its end, without efforts.
+pub(super) struct ReducedProblem {
+    pub(super) inertia: SymmetricMatrix,
+    /// Shape (freedom,).
+    pub(super) momentum: Vec<f64>,
+    pub(super) footing: Option<BaseContactSolver>,
+}
+
+impl ReducedProblem {
+    /// `holds`: how each support stands.
+    pub(super) fn of(
+        motion: &TreeDynamics<'_>,
+        loads: &TreeLoads,
+        now: &[f64],
+        holds: &[SupportState],
+        dt_s: f64,
+    ) -> Self {
+        let mut inertia = motion.held_inertia();
+        let bias = motion.along(loads, 0);
+        let mut momentum = inertia.times(now);
+        for (momentum, bias) in momentum.iter_mut().zip(&bias) {
+            *momentum -= dt_s * bias;
+        }
+        let floating = motion.floating();
+        let (efforts, root_efforts) = motion.touched(floating.as_ref());
+        for (momentum, effort) in momentum.iter_mut().zip(efforts) {
+            *momentum += dt_s * effort;
+        }
+        let Some(floating) = floating else {
+            return Self {
+                inertia,
+                momentum,
+                footing: None,
+            };
+        };
+        let before = floating.before(&motion.root, motion.root_velocity);
+        let mut own = floating.inertia();
+        let mut root_momentum: [f64; 6] = std::array::from_fn(|k| {
+            let shared = floating.columns.iter().zip(now);
+            let joints: f64 = shared.map(|(column, now)| column[k] * now).sum();
+            let root: f64 = (0..6).map(|j| own.get(k, j) * before[j]).sum();
+            root + joints
+        });
+        for (momentum, felt) in root_momentum
+            .iter_mut()
+            .zip(floating.generalized_force(&loads.root[0]))
+        {
+            *momentum -= dt_s * felt;
+        }
+        for (momentum, column) in momentum.iter_mut().zip(&floating.columns) {
+            *momentum += dot(column, &before);
+        }
+        let brake = FIRM * floating.whole.mass / dt_s;
+        let mut shared = floating.columns.clone();
+        for (momentum, effort) in root_momentum.iter_mut().zip(root_efforts) {
+            *momentum += dt_s * effort;
+        }
+        let rows: Vec<[PointJacobian; 3]> = motion
+            .supports
+            .iter()
+            .map(|support| rows(motion, &floating, support.link, support.at))
+            .collect();
+        let strength = brake * dt_s;
+        for (rows, hold) in rows.iter().zip(holds) {
+            for (row, force) in rows.iter().zip(hold.force().to_array()) {
+                for (root, way) in root_momentum.iter_mut().zip(row.root) {
+                    *root += dt_s * force * way;
+                }
+                for (joint, way) in momentum.iter_mut().zip(&row.joints) {
+                    *joint += dt_s * force * way;
+                }
+            }
+            for (row, _) in rows.iter().zip(hold.holds()).filter(|(_, holds)| *holds) {
+                for k in 0..6 {
+                    for j in 0..=k {
+                        own.add(k, j, strength * row.root[k] * row.root[j]);
+                    }
+                }
+                for (k, a) in row.joints.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+                    for (shared, root) in shared[k].iter_mut().zip(row.root) {
+                        *shared += strength * a * root;
+                    }
+                    for (j, b) in row.joints.iter().enumerate().take(k + 1) {
+                        inertia.add(k, j, strength * a * b);
+                    }
+                }
+            }
+        }
+        let factor = own.factor();
+        let answer = factor.solve(&root_momentum);
+        for (k, column) in shared.iter().enumerate() {
+            momentum[k] -= dot(column, &answer);
+            let own = factor.solve(column);
+            for (j, other) in shared.iter().enumerate().take(k + 1) {
+                inertia.add(k, j, -dot(&own, other));
+            }
+        }
+        Self {
+            inertia,
+            momentum,
+            footing: Some(BaseContactSolver {
+                factor,
+                shared,
+                momentum: root_momentum,
+                before,
+                rows,
+                brake,
+                dt_s,
+            }),
+        }
+    }
+}
+
+/// How a point of a joint's body (or the root) moves, in three directions.
+fn rows(
+    motion: &TreeDynamics<'_>,
+    floating: &FloatingBase,
+    link: Option<usize>,
+    at: DVec3,
+) -> [PointJacobian; 3] {
+    let mut joints = vec![DVec3::ZERO; motion.axes.len()];
+    let mut link = link;
+    while let Some(k) = link {
+        joints[k] = motion.axes[k].moves(at).0;
+        link = motion.axes[k].parent;
+    }
+    let arm = at - floating.whole.center;
+    let row = |way: DVec3| {
+        let turn = arm.cross(way);
+        PointJacobian {
+            root: [way.x, way.y, way.z, turn.x, turn.y, turn.z],
+            joints: joints.iter().map(|moves| moves.dot(way)).collect(),
+        }
+    };
+    [row(DVec3::X), row(DVec3::Y), row(DVec3::Z)]
+}
+
+impl BaseContactSolver {
+    /// What the root does when the joints have these velocities at the end of the step.
+    pub(super) fn answer(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
+        let mut left = self.momentum;
+        for (column, velocity) in self.shared.iter().zip(velocities) {
+            for (left, shared) in left.iter_mut().zip(column) {
+                *left -= shared * velocity;
+            }
+        }
+        let root = self.factor.solve(&left);
+        let force = |(rows, hold): (&[PointJacobian; 3], &SupportState)| {
+            let along = |k: usize| {
+                let moves = dot(&rows[k].root, &root) + dot(&rows[k].joints, velocities);
+                if hold.holds()[k] {
+                    -self.brake * moves
+                } else {
+                    0.0
+                }
+            };
+            hold.force() + DVec3::new(along(0), along(1), along(2))
+        };
+        BaseResponse {
+            gained: std::array::from_fn(|k| (root[k] - self.before[k]) / self.dt_s),
+            forces: self.rows.iter().zip(holds).map(force).collect(),
+        }
+    }
+}
+
+/// Lets go of what pulls, and lets slip what friction under the weight there does not hold. Returns whether anything
+/// changed.
+pub(super) fn update_support_states(
+    motion: &TreeDynamics<'_>,
+    loads: &TreeLoads,
+    answer: &BaseResponse,
+    holds: &mut [SupportState],
+) -> bool {
+    let mut changed = false;
+    let weighed = motion.supports.iter().zip(&loads.carried);
+    for (((support, weight), force), hold) in weighed.zip(&answer.forces).zip(holds) {
+        let aside = libm::hypot(force.x, force.z);
+        let most = support.friction * weight;
+        let next = match *hold {
+            SupportState::Separated => SupportState::Separated,
+            _ if force.y < 0.0 => SupportState::Separated,
+            SupportState::Sticks if aside > most => {
+                let share = most / aside;
+                SupportState::Slips(DVec3::new(force.x * share, 0.0, force.z * share))
+            }
+            same => same,
+        };
+        changed |= next != *hold;
+        *hold = next;
+    }
+    changed
+}
+
+impl BaseResponse {
+    /// The force of a support as a load on its body about the body's centre.
+    pub(super) fn wrench(&self, support: usize, at: DVec3, center: DVec3) -> Wrench {
+        let force = self.forces[support];
+        Wrench {
+            force,
+            moment: (at - center).cross(force),
+        }
+    }
+}

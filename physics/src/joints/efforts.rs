@@ -1,0 +1,242 @@
+//! The efforts that act along joints: motors and hands, damping, friction, stops and linkages.
+//!
+//! rapier's own motors are solved in turn with the rows that hold joints together, and creep under load. Here the efforts
+//! of a whole tree are computed once a physics step, implicitly and together, so that stiff gains stay stable and a robot
+//! at rest is held, and are given to rapier as forces. A tree that nothing touches is then put where its joints go: rapier
+//! holds joints together after the fact, which costs energy.
+
+use super::PhysicsJoint;
+use super::effort_term::JointActuation;
+use super::forward_kinematics;
+use super::integration::{AT_REST, TreeIntegration, TreeSolver};
+use super::joint_state::{JointCoordinate, JointReading, is_untouched};
+use super::tree::KinematicTree;
+use super::tree_step::TreeStep;
+use crate::engine::RapierWorld;
+use crate::laws::{ExternalWrench, JointLoad, JointResistance, LinkStep};
+use dwell_scene::JointId;
+use glam::Vec3;
+
+/// How far from its course something else may have taken a joint before it is left there: rad or m, and as a share of
+/// the way.
+const OFF_COURSE: (f64, f64) = (2e-3, 0.1);
+
+/// What joints do in a step, beside the bodies.
+pub(crate) struct JointDrivers<'a> {
+    pub(crate) joints: &'a [PhysicsJoint],
+    /// What pulls at each. Shape (joint,).
+    pub(crate) pulls: &'a [Option<JointActuation>],
+    /// The numbers of each, as the last step left them. Shape (joint,).
+    pub(crate) joint_coordinates: &'a [JointCoordinate],
+    /// How laws change what a joint resists with; `None`: no law does.
+    pub(crate) resist: Option<&'a ResistanceFn<'a>>,
+    /// How laws push at the bodies that joints move; `None`: no law does.
+    pub(crate) push: Option<&'a LinkWrenchFn<'a>>,
+    pub(crate) dt_s: f32,
+}
+
+/// How laws push at a body.
+pub(crate) type LinkWrenchFn<'a> = dyn Fn(LinkStep) -> ExternalWrench + 'a;
+
+/// Changes what a joint resists with under a load.
+pub(crate) type ResistanceFn<'a> = dyn Fn(JointId, &JointLoad, &mut JointResistance) + 'a;
+
+/// Where one joint goes in a step.
+#[derive(Clone, Copy, Debug)]
+struct PredictedJoint {
+    /// Its place in the world's joints.
+    joint: usize,
+    /// Before and after the step, rad or m.
+    positions: [f64; 2],
+    /// After the step, rad/s or m/s.
+    velocity: f64,
+}
+
+/// What is expected of a tree in a step.
+#[derive(Clone, Debug)]
+pub(crate) struct TreePrediction {
+    standing: TreeStep,
+    /// Where its joints go if nothing touches them, parents first. Shape (freedom,).
+    course: Vec<PredictedJoint>,
+    /// Whether they go anywhere, over a root that stands.
+    moves: bool,
+    /// Whether something pressed on the tree, or its root is free.
+    loose: bool,
+}
+
+/// Gives rapier the efforts of a tree for the next step. `None` for a tree that is asleep or shut.
+pub(crate) fn apply_efforts(
+    engine: &mut RapierWorld,
+    tree: &KinematicTree,
+    drivers: &JointDrivers<'_>,
+) -> Option<TreePrediction> {
+    let standing = TreeStep::of(engine, tree, drivers.joints, drivers.joint_coordinates)?;
+    let (positions, velocities) = (standing.positions(), standing.velocities());
+    let joints = standing.joints(tree, drivers.joints);
+    let freedoms = TreeSolver {
+        tree,
+        free: &standing.free,
+        joints: &joints,
+        drivers,
+    };
+    let course = freedoms.integrate(&standing.chain, &positions, &velocities);
+    carry(engine, tree, &joints, &course);
+    let loose = course.answer.is_some() || !course.middle.touches.is_empty();
+    let going = |(k, place): (usize, &usize)| PredictedJoint {
+        joint: tree.joints[*place],
+        positions: [positions[k], course.positions[k]],
+        velocity: course.velocities[k],
+    };
+    let moves = course.moves;
+    let course = standing.free.iter().enumerate().map(going).collect();
+    Some(TreePrediction {
+        standing,
+        course,
+        moves,
+        loose,
+    })
+}
+
+/// Gives every body all that acts on it, the reactions of its joints included: rapier's rows, which are solved in turn and
+/// would give way under a long chain, then find nothing left to do.
+fn carry(
+    engine: &mut RapierWorld,
+    tree: &KinematicTree,
+    joints: &[&PhysicsJoint],
+    course: &TreeIntegration<'_>,
+) {
+    let (wrenches, root) = course
+        .middle
+        .wrenches(&course.gained, course.answer.as_ref());
+    let handles = joints.iter().map(|joint| joint.child_handle);
+    let all = handles
+        .zip(wrenches)
+        .chain(root.map(|root| (tree.root, root)));
+    for (handle, wrench) in all {
+        if let Some(body) = engine.bodies.get_mut(handle) {
+            body.add_force(wrench.force.as_vec3(), false);
+            body.add_torque(wrench.moment.as_vec3(), false);
+        }
+    }
+}
+
+impl PredictedJoint {
+    /// Whether a joint that was as `before` came to `now` as it was expected to. rapier takes a whole step for the blow of a
+    /// stop, and may leave the joint short of it.
+    fn as_predicted(
+        &self,
+        engine: &RapierWorld,
+        before: &JointReading,
+        now: &JointReading,
+    ) -> bool {
+        let [from, to] = self.positions;
+        let way = before.way(engine, self.velocity);
+        let misses = |expected: f64, way: f64| {
+            (now.position - expected).abs() > OFF_COURSE.0 + OFF_COURSE.1 * way.abs()
+        };
+        !misses(to, to - from) || !misses(from + way, way)
+    }
+}
+
+/// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did; `joint_coordinates` then
+/// has its joints' numbers. Returns whether it was moved.
+///
+/// What nothing touched goes its course however far rapier had it elsewhere: its rows brake a bar that turns fast about its
+/// end. Only where rapier runs several times in a step may something have touched it in between and left no trace.
+pub(crate) fn settle(
+    engine: &mut RapierWorld,
+    tree: &KinematicTree,
+    joints: &[PhysicsJoint],
+    outlook: TreePrediction,
+    joint_coordinates: &mut [JointCoordinate],
+) -> bool {
+    let TreePrediction {
+        mut standing,
+        course,
+        moves,
+        loose,
+    } = outlook;
+    let before = standing.again(engine, tree, joints);
+    for (going, now) in course.iter().zip(&standing.readings) {
+        joint_coordinates[going.joint] = now.coordinate();
+    }
+    let free = |going: &PredictedJoint| is_untouched(engine, &joints[going.joint]);
+    let untouched = || course.iter().all(free);
+    let pairs = before.iter().zip(&standing.readings);
+    let struck = || {
+        let mut ways = pairs.clone().map(|(b, now)| b.way(engine, now.velocity));
+        ways.any(|way| way.abs() > AT_REST) && !untouched()
+    };
+    if !moves && !loose && !struck() {
+        return false;
+    }
+    if !loose && !engine.has_multiple_runs() && untouched() {
+        follow(engine, joints, &course, joint_coordinates);
+        return true;
+    }
+    let came_true: Vec<bool> = course
+        .iter()
+        .zip(pairs)
+        .map(|(going, (before, now))| going.as_predicted(engine, before, now))
+        .collect();
+    if !loose && came_true.iter().all(|came| *came) && untouched() {
+        follow(engine, joints, &course, joint_coordinates);
+        return true;
+    }
+    if standing.rests(engine, tree, joints) {
+        return false;
+    }
+    let ends = course.iter().zip(&came_true);
+    let ends: Vec<Option<f64>> = ends
+        .map(|(going, came)| {
+            let [from, to] = going.positions;
+            (*came && (to - from).abs() > OFF_COURSE.0).then_some(to)
+        })
+        .collect();
+    standing.project(engine, tree, joints, &ends, joint_coordinates);
+    true
+}
+
+/// Puts the bodies of a tree where its joints go.
+fn follow(
+    engine: &mut RapierWorld,
+    joints: &[PhysicsJoint],
+    course: &[PredictedJoint],
+    joint_coordinates: &mut [JointCoordinate],
+) {
+    for going in course {
+        let ([_, position], velocity) = (going.positions, going.velocity);
+        joint_coordinates[going.joint] = JointCoordinate { position, velocity };
+        forward_kinematics::put(engine, &joints[going.joint], (position, velocity), false);
+    }
+}
+
+/// Holds a tree together that slept when the step began and was woken in it. Returns whether it was moved.
+pub(crate) fn project_woken(
+    engine: &mut RapierWorld,
+    tree: &KinematicTree,
+    joints: &[PhysicsJoint],
+    joint_coordinates: &mut [JointCoordinate],
+) -> bool {
+    let Some(standing) = TreeStep::of(engine, tree, joints, joint_coordinates) else {
+        return false;
+    };
+    let ends = vec![None; standing.free.len()];
+    standing.project(engine, tree, joints, &ends, joint_coordinates);
+    true
+}
+
+/// Takes the efforts of the last step back, before new ones are given.
+pub(crate) fn clear_efforts(engine: &mut RapierWorld, joint: &PhysicsJoint) {
+    for handle in [joint.child_handle, joint.parent_handle] {
+        let awake = engine.bodies.get(handle).is_some_and(|body| {
+            body.is_dynamic()
+                && !body.is_sleeping()
+                && (body.user_force() != Vec3::ZERO || body.user_torque() != Vec3::ZERO)
+        });
+        if awake && let Some(body) = engine.bodies.get_mut(handle) {
+            body.reset_forces(false);
+            body.reset_torques(false);
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! What presses on the bodies of a tree, besides what a free root stands on.
+//!
+//! Joints' efforts answer to the velocity at the end of a step. A finger that presses on a thing does not get the velocity
+//! that it would get alone, and a motor that reckoned with that would hardly press. So the problem of a tree holds the forces
+//! that touched it in the last step; from step to step they come to be those that its motors give.
+
+use super::support;
+use super::tree_dynamics::Wrench;
+use crate::engine::RapierWorld;
+use glam::DVec3;
+use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
+use rapier3d::geometry::{Collider, ContactManifold, ContactPair};
+
+/// How fast surfaces may part that press on each other in the next step too, m/s.
+const PARTING_M_S: f64 = 0.02;
+
+/// A surface that presses on a body of a tree.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ExternalContact {
+    /// Which joint's body is touched; `None`: the root.
+    pub(super) link: Option<usize>,
+    /// Where the force acts, m.
+    pub(super) at: DVec3,
+    /// Push and friction, and torsional friction about `at`.
+    wrench: Wrench,
+}
+
+impl ExternalContact {
+    /// Force and moment about a point.
+    pub(super) fn about(&self, point: DVec3) -> Wrench {
+        let Wrench { force, moment } = self.wrench;
+        Wrench {
+            force,
+            moment: moment + (self.at - point).cross(force),
+        }
+    }
+
+    /// The same about the world's origin.
+    pub(super) fn about_origin(&self) -> Wrench {
+        self.about(DVec3::ZERO)
+    }
+}
+
+/// What touches the bodies of a tree, in a fixed order. `stands`: whether what carries it from below is left out; what it
+/// carries of itself never is, or it would press on itself one way only.
+pub(super) fn of_tree(
+    engine: &RapierWorld,
+    bodies: &[(RigidBodyHandle, Option<usize>)],
+    stands: bool,
+) -> Vec<ExternalContact> {
+    let mut found: Vec<ExternalContact> = Vec::new();
+    for (handle, link) in bodies {
+        let Some(body) = engine.bodies.get(*handle) else {
+            continue;
+        };
+        let mut own: Vec<ExternalContact> = Vec::new();
+        for collider in body.colliders() {
+            for pair in engine.narrow_phase.contact_pairs_with(*collider) {
+                let first = pair.collider1 == *collider;
+                let other = if first {
+                    pair.collider2
+                } else {
+                    pair.collider1
+                };
+                let Some(parent) = engine.colliders.get(other).and_then(Collider::parent) else {
+                    continue;
+                };
+                for plane in pair.solver_manifolds() {
+                    let itself = bodies.iter().any(|(handle, _)| *handle == parent);
+                    if stands && !itself && support::carries(engine, *collider, plane, first) {
+                        continue;
+                    }
+                    let touch = of_plane(engine, (body, *link), parent, (pair, plane), first);
+                    own.extend(touch);
+                }
+            }
+        }
+        own.sort_by(|a, b| {
+            a.at.x
+                .total_cmp(&b.at.x)
+                .then(a.at.y.total_cmp(&b.at.y))
+                .then(a.at.z.total_cmp(&b.at.z))
+        });
+        found.extend(own);
+    }
+    found
+}
+
+fn of_plane(
+    engine: &RapierWorld,
+    (body, link): (&RigidBody, Option<usize>),
+    other: RigidBodyHandle,
+    (pair, plane): (&ContactPair, &ContactManifold),
+    first: bool,
+) -> Option<ExternalContact> {
+    let side = if first { -1.0 } else { 1.0 };
+    let normal = plane.data.normal * side;
+    let per_s = f64::from(engine.substep_s()).recip();
+    let (mut press, mut moment) = (0.0, DVec3::ZERO);
+    let (mut friction, mut twist, mut count) = (DVec3::ZERO, 0.0, 0.0);
+    for contact in &plane.data.solver_contacts {
+        let Some(point) = plane.points.get(contact.contact_indices()[0] as usize) else {
+            continue;
+        };
+        // The last substep's: what an impact gave before it is over.
+        let push = f64::from(point.data.warmstart_impulse) * per_s;
+        press += push;
+        moment += support::place(engine, pair, plane, contact) * push;
+        friction += point.data.warmstart_tangent_world.as_dvec3() * per_s;
+        twist += f64::from(point.data.warmstart_twist_impulse) * per_s;
+        count += 1.0;
+    }
+    if press <= 0.0 {
+        return None;
+    }
+    if engine.friction_kept().by_patch {
+        // Each point holds the friction of the whole patch.
+        friction /= count;
+        twist /= count;
+    }
+    let (at, normal) = (moment / press, normal.as_dvec3());
+    let other = engine.bodies.get(other)?;
+    let velocity = |body: &RigidBody| {
+        let arm = at - body.center_of_mass().as_dvec3();
+        body.linvel().as_dvec3() + body.angvel().as_dvec3().cross(arm)
+    };
+    if (velocity(body) - velocity(other)).dot(normal) > PARTING_M_S {
+        return None;
+    }
+    // rapier keeps what acts on the first body, and turns it about the normal that points into it.
+    Some(ExternalContact {
+        link,
+        at,
+        wrench: Wrench {
+            force: normal * press - friction * f64::from(side),
+            moment: normal * twist,
+        },
+    })
+}

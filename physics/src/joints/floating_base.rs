@@ -1,0 +1,124 @@
+//! A root that is free to answer what its joints do.
+
+use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
+use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, Wrench};
+use glam::DVec3;
+
+/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
+///
+/// # Source
+/// R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: floating bases, here with the root's freedoms eliminated
+/// (Schur's complement).
+pub(super) struct FloatingBase {
+    /// The tree as one body.
+    pub(super) whole: LumpedBody,
+    factor: CholeskyFactor,
+    /// Linear and angular momentum about the centre of mass of all for each unit of a joint's velocity. Shape (freedom, 6).
+    pub(super) columns: Vec<[f64; 6]>,
+}
+
+fn six(linear: DVec3, angular: DVec3) -> [f64; 6] {
+    [
+        linear.x, linear.y, linear.z, angular.x, angular.y, angular.z,
+    ]
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl FloatingBase {
+    pub(super) fn of(
+        root: &LumpedBody,
+        axes: &[JointAxisState],
+        carried: &[LumpedBody],
+        momenta: &[(DVec3, DVec3)],
+    ) -> Self {
+        let children = axes
+            .iter()
+            .zip(carried)
+            .filter(|(axis, _)| axis.parent.is_none());
+        let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
+        // About the centre of mass of all, linear and angular momentum are apart.
+        let columns = momenta
+            .iter()
+            .zip(carried)
+            .map(|((linear, angular), mass)| {
+                six(
+                    *linear,
+                    *angular + (mass.center - whole.center).cross(*linear),
+                )
+            })
+            .collect();
+        Self {
+            whole,
+            factor: six_by_six(&whole).factor(),
+            columns,
+        }
+    }
+
+    /// Takes off what the joints' inertia loses because the root gives way.
+    pub(super) fn subtract_base_inertia(&self, inertia: &mut SymmetricMatrix) {
+        for (k, column) in self.columns.iter().enumerate() {
+            let answer = self.factor.solve(column);
+            for (j, other) in self.columns.iter().enumerate().take(k + 1) {
+                inertia.set(k, j, inertia.get(k, j) - dot(&answer, other));
+            }
+        }
+    }
+
+    /// What the six freedoms resist with.
+    pub(super) fn inertia(&self) -> SymmetricMatrix {
+        six_by_six(&self.whole)
+    }
+
+    /// The six velocities of a root whose centre of mass moves like this.
+    pub(super) fn before(&self, root: &BodyAcceleration, velocity: DVec3) -> [f64; 6] {
+        let there = velocity + root.angular.cross(self.whole.center - root.center);
+        six(there, root.angular)
+    }
+
+    /// A load about the origin as what the six freedoms feel.
+    pub(super) fn generalized_force(&self, load: &Wrench) -> [f64; 6] {
+        six(
+            load.force,
+            load.moment - self.whole.center.cross(load.force),
+        )
+    }
+
+    /// Takes off what the joints' efforts lose because the root gives way under a load.
+    pub(super) fn subtract_base_load(&self, load: &Wrench, efforts: &mut [f64]) {
+        let answer = self.factor.solve(&self.generalized_force(load));
+        for (effort, column) in efforts.iter_mut().zip(&self.columns) {
+            *effort -= dot(&answer, column);
+        }
+    }
+
+    /// The root when its six velocities change like this, per second.
+    pub(super) fn accelerated(
+        &self,
+        root: &BodyAcceleration,
+        gained: &[f64; 6],
+    ) -> BodyAcceleration {
+        let linear = DVec3::new(gained[0], gained[1], gained[2]);
+        let angular = DVec3::new(gained[3], gained[4], gained[5]);
+        BodyAcceleration {
+            acceleration: root.acceleration
+                + linear
+                + angular.cross(root.center - self.whole.center),
+            angular_acceleration: root.angular_acceleration + angular,
+            ..*root
+        }
+    }
+}
+
+fn six_by_six(whole: &LumpedBody) -> SymmetricMatrix {
+    let mut own = SymmetricMatrix::zero(6);
+    for k in 0..3 {
+        own.set(k, k, whole.mass);
+        for j in 0..3 {
+            own.set(3 + k, 3 + j, whole.inertia.col(j)[k]);
+        }
+    }
+    own
+}

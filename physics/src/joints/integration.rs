@@ -1,0 +1,366 @@
+//! The course of a tree through one physics step.
+//!
+//! Efforts are implicit and found together for all joints; inertia and what motion and weight ask for are taken at the
+//! middle of the step, which is found by iteration: the implicit midpoint rule, symmetric in time, so that what swings
+//! freely neither gains nor loses energy for long. What turns fast takes shorter steps.
+//!
+//! # Source
+//! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
+//! energy of symmetric methods.
+
+use super::base_contacts::{self, BaseResponse, ReducedProblem, SupportState};
+use super::chain::{Chain, LawWrenchQuery};
+use super::convex_solver::{EffortProblem, EffortTerm, SymmetricMatrix};
+use super::effort_term::JointDof;
+use super::tree::KinematicTree;
+use super::tree_dynamics::TreeDynamics;
+use super::{JointDrivers, PhysicsJoint};
+use crate::laws::{JointLoad, JointResistance};
+
+/// A way within a step, rad or m, below which a tree counts as standing.
+pub(super) const AT_REST: f64 = 1e-5;
+/// The longest way of a joint in one part of a step, rad or m.
+const STRIDE: f64 = 0.05;
+/// The most parts of a step: as many as the fastest that may be set, 1000 rad/s, takes at 120 Hz.
+const MOST_PARTS: f64 = 168.0;
+/// How often the middle of a part is looked for.
+const SWEEPS: usize = 3;
+/// How often friction is found anew, at most, from the load that it answers to.
+const FRICTION_SWEEPS: usize = 8;
+/// Loads that differ by less count as found: N·m or N, and as a share.
+const FOUND: f64 = 1e-6;
+/// How steeply a load may seem to fall, and to rise, with what is taken for it.
+const FALLS: [f64; 2] = [-20.0, 0.5];
+/// How often what carries a tree is looked at anew.
+const GROUND_ROUNDS: usize = 6;
+
+/// The free joints of a tree in a step.
+pub(super) struct TreeSolver<'a> {
+    pub(super) tree: &'a KinematicTree,
+    /// Their places in the tree.
+    pub(super) free: &'a [usize],
+    pub(super) joints: &'a [&'a PhysicsJoint],
+    pub(super) drivers: &'a JointDrivers<'a>,
+}
+
+/// What becomes of a tree in a step that nothing else touches. Shape (freedom,) each.
+pub(super) struct TreeIntegration<'a> {
+    /// Whether it moves so that rounding alone does not say where to.
+    pub(super) moves: bool,
+    pub(super) positions: Vec<f64>,
+    pub(super) velocities: Vec<f64>,
+    /// Mean accelerations.
+    pub(super) gained: Vec<f64>,
+    /// What a free root does.
+    pub(super) answer: Option<BaseResponse>,
+    /// The tree at the middle of the step.
+    pub(super) middle: TreeDynamics<'a>,
+}
+
+/// Accelerations of the joints and of a free root.
+struct SubstepResult {
+    gained: Vec<f64>,
+    answer: Option<BaseResponse>,
+}
+
+/// What the joints start a part of a step with. Shape (freedom,).
+#[derive(Clone, Copy)]
+struct SubstepStart<'a> {
+    from: &'a [f64],
+    now: &'a [f64],
+    weights: &'a [f64],
+    /// What the joints resist with where nothing carries the tree. Shape (freedom, freedom).
+    bare: &'a SymmetricMatrix,
+    part_s: f64,
+}
+
+fn plus(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a + share * b).collect()
+}
+
+/// What changes in a time, per second.
+fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
+    let pairs = before.iter().zip(after);
+    pairs
+        .map(|(before, after)| (after - before) / time_s)
+        .collect()
+}
+
+/// What to take for the loads next, where `taken` led to `seen`: the latter or, where a load answers to what was taken for it,
+/// where the line through both pairs meets itself (Steffensen). Shape (freedom,).
+fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> Vec<f64> {
+    let Some([taken_before, seen_before]) = before else {
+        return seen.to_vec();
+    };
+    let next = |k: usize| {
+        let way = taken[k] - taken_before[k];
+        if way.abs() < 1e-9 {
+            return seen[k];
+        }
+        let fall = ((seen[k] - seen_before[k]) / way).clamp(FALLS[0], FALLS[1]);
+        taken[k] + (seen[k] - taken[k]) / (1.0 - fall)
+    };
+    (0..taken.len()).map(next).collect()
+}
+
+impl TreeSolver<'_> {
+    /// Where the tree goes from here.
+    pub(super) fn integrate<'c>(
+        &self,
+        chain: &'c Chain,
+        positions: &[f64],
+        velocities: &[f64],
+    ) -> TreeIntegration<'c> {
+        let dt_s = f64::from(self.drivers.dt_s);
+        let fastest = velocities
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        let moves = fastest * dt_s > AT_REST && chain.stands();
+        let parts = if moves {
+            (fastest * dt_s / STRIDE).ceil().clamp(1.0, MOST_PARTS)
+        } else {
+            1.0
+        };
+        let part_s = dt_s / parts;
+        let at = |middle: bool| {
+            self.drivers.push.map(|push| LawWrenchQuery {
+                push,
+                dt_s: part_s,
+                middle,
+            })
+        };
+        let (mut q, mut v) = (positions.to_vec(), velocities.to_vec());
+        let mut answer = None;
+        let mut left = parts;
+        while left > 0.0 {
+            let SubstepResult {
+                mut gained,
+                answer: of_root,
+            } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
+            answer = of_root;
+            for _ in 0..if moves { SWEEPS } else { 0 } {
+                let between = plus(&v, &gained, 0.5 * part_s);
+                let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
+                gained = self.part(&middle, &q, &v, part_s).gained;
+            }
+            let next = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
+            q = self.within_stops(&q, next);
+            v = plus(&v, &gained, part_s);
+            left -= 1.0;
+        }
+        // What is faster than numbers can follow stops where it is.
+        if !q.iter().chain(&v).all(|number| number.is_finite()) {
+            (q, v, answer) = (positions.to_vec(), vec![0.0; velocities.len()], None);
+        }
+        let middle = if moves {
+            let half = |a: &[f64], b: &[f64]| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| 0.5 * (a + b))
+                    .collect::<Vec<_>>()
+            };
+            chain.at(&half(positions, &q), &half(velocities, &v), at(true))
+        } else {
+            chain.at(positions, velocities, at(false))
+        };
+        TreeIntegration {
+            moves,
+            gained: rate(velocities, &v, dt_s),
+            positions: q,
+            velocities: v,
+            answer,
+            middle,
+        }
+    }
+
+    /// Where joints are after a part of a step that would end at `next`. Stops act on the velocity at its end, and the mean
+    /// velocity may pass them.
+    fn within_stops(&self, from: &[f64], mut next: Vec<f64>) -> Vec<f64> {
+        for ((joint, from), next) in self.joints.iter().zip(from).zip(&mut next) {
+            if let Some([low, high]) = joint.values.limits.map(|limits| limits.map(f64::from)) {
+                *next = next.clamp(low.min(*from), high.max(*from));
+            }
+        }
+        next
+    }
+
+    /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads
+    /// as in `motion`.
+    fn part(
+        &self,
+        motion: &TreeDynamics<'_>,
+        from: &[f64],
+        now: &[f64],
+        part_s: f64,
+    ) -> SubstepResult {
+        let loads = motion.loads();
+        let weights = motion.weights(&loads);
+        let bare = motion.inertia();
+        let mut holds = vec![SupportState::Sticks; motion.supports.len()];
+        let mut round = 0;
+        loop {
+            let reduced = ReducedProblem::of(motion, &loads, now, &holds, part_s);
+            let seen = SubstepStart {
+                from,
+                now,
+                weights: &weights,
+                bare: &bare,
+                part_s,
+            };
+            let velocity = self.solve(&reduced, &seen);
+            let gained = rate(now, &velocity, part_s);
+            let footing = reduced.footing.as_ref();
+            let answer = footing.map(|footing| footing.answer(&velocity, &holds));
+            round += 1;
+            match answer {
+                Some(answer)
+                    if round < GROUND_ROUNDS
+                        && base_contacts::update_support_states(
+                            motion, &loads, &answer, &mut holds,
+                        ) => {}
+                answer => return SubstepResult { gained, answer },
+            }
+        }
+    }
+
+    /// The velocities at the end of a part of a step.
+    fn solve(&self, reduced: &ReducedProblem, seen: &SubstepStart<'_>) -> Vec<f64> {
+        let SubstepStart {
+            from,
+            now,
+            weights,
+            bare,
+            part_s,
+        } = *seen;
+        let freedom = |k: usize| JointDof {
+            index: k,
+            position: from[k],
+            velocity: now[k],
+            inertia: bare.get(k, k).max(1e-9),
+            weight: weights[k],
+            dt_s: part_s,
+        };
+        let freedoms: Vec<JointDof> = (0..from.len()).map(freedom).collect();
+        let pulls: Vec<Option<EffortTerm>> = freedoms
+            .iter()
+            .map(|freedom| {
+                let place = self.tree.joints[self.free[freedom.index]];
+                let pull = self.drivers.pulls[place].as_ref();
+                pull.map(|pull| freedom.pull(pull))
+            })
+            .collect();
+        let gives =
+            |k: usize, velocity: f64| pulls[k].as_ref().map_or(0.0, |pull| pull.at(velocity).0);
+        // What each joint resists with depends on what loads it and on its speed, and these on what it resists with.
+        let mut ends = now.to_vec();
+        let mut external: Vec<f64> = weights.iter().map(|weight| -weight).collect();
+        let mut before: Option<[Vec<f64>; 2]> = None;
+        let mut sweep = 0;
+        loop {
+            let resistances: Vec<JointResistance> = (0..from.len())
+                .map(|k| {
+                    let load = JointLoad {
+                        position: from[k] as f32,
+                        velocity: (0.5 * (now[k] + ends[k])) as f32,
+                        motor_effort: gives(k, ends[k]) as f32,
+                        external_effort: external[k] as f32,
+                        is_driven: pulls[k].is_some(),
+                    };
+                    self.resistance(k, &load)
+                })
+                .collect();
+            let mut inertia = reduced.inertia.clone();
+            let mut momentum = reduced.momentum.clone();
+            let mut freedoms = freedoms.clone();
+            for (k, resistance) in resistances.iter().enumerate() {
+                let armature = f64::from(resistance.armature).max(1e-9);
+                inertia.add(k, k, armature);
+                momentum[k] += armature * now[k];
+                freedoms[k].inertia += armature;
+            }
+            let velocity = EffortProblem {
+                free: inertia.factor().solve(&momentum),
+                inertia,
+                elements: self.elements(&freedoms, &resistances),
+                dt_s: part_s,
+            }
+            .solve();
+            sweep += 1;
+            if self.drivers.resist.is_none() || sweep == FRICTION_SWEEPS {
+                return velocity;
+            }
+            let seen: Vec<f64> = freedoms
+                .iter()
+                .zip(&resistances)
+                .map(|(freedom, resistance)| {
+                    let velocity = velocity[freedom.index];
+                    let own = self.own_elements(freedom, resistance);
+                    let own: f64 = own.map(|element| element.at(velocity).0).sum();
+                    freedom.inertia * (velocity - freedom.velocity) / part_s - own
+                })
+                .collect();
+            let same = |a: f64, b: f64| (a - b).abs() <= FOUND * b.abs().max(1.0);
+            let pairs = external.iter().zip(&seen);
+            let speeds = ends.iter().zip(&velocity);
+            if pairs.chain(speeds).all(|(a, b)| same(*a, *b)) {
+                return velocity;
+            }
+            let next = relaxed_load(&external, &seen, before.as_ref());
+            before = Some([std::mem::replace(&mut external, next), seen]);
+            ends = velocity;
+        }
+    }
+
+    /// What a joint resists with under a load.
+    fn resistance(&self, k: usize, load: &JointLoad) -> JointResistance {
+        let joint = self.joints[k];
+        let mut resistance = JointResistance {
+            friction: joint.values.friction,
+            damping: joint.values.damping,
+            armature: joint.values.armature,
+            elastic: None,
+        };
+        if let Some(resist) = self.drivers.resist {
+            resist(joint.id, load, &mut resistance);
+        }
+        resistance
+    }
+
+    /// What acts along a joint by its motor and by what it resists with.
+    fn own_elements<'a>(
+        &'a self,
+        freedom: &'a JointDof,
+        resistance: &'a JointResistance,
+    ) -> impl Iterator<Item = EffortTerm> + 'a {
+        let damps = (resistance.damping > 0.0).then(|| freedom.damping(resistance.damping.into()));
+        let rubs = resistance.friction > 0.0;
+        let rubs = rubs.then(|| freedom.friction(resistance.friction.into()));
+        let springs = resistance.elastic.as_ref().map(|e| freedom.elastic(e));
+        let place = self.tree.joints[self.free[freedom.index]];
+        let pulls = self.drivers.pulls[place].as_ref();
+        let pulls = pulls.map(|pull| freedom.pull(pull));
+        [damps, rubs, springs, pulls].into_iter().flatten()
+    }
+
+    /// All that acts along the joints.
+    fn elements(&self, freedoms: &[JointDof], resistances: &[JointResistance]) -> Vec<EffortTerm> {
+        let mut elements = Vec::with_capacity(3 * freedoms.len());
+        for ((joint, freedom), place) in self.joints.iter().zip(freedoms).zip(self.free) {
+            let resistance = &resistances[freedom.index];
+            elements.extend(self.own_elements(freedom, resistance));
+            if let Some([low, high]) = joint.values.limits {
+                elements.push(freedom.stop(low.into(), 1.0));
+                elements.push(freedom.stop(high.into(), -1.0));
+            }
+            if let Some(leader) = self.tree.follows[*place]
+                && let Some(mimic) = &joint.values.mimic
+                && let Some(leader) = self.free.iter().position(|other| *other == leader)
+            {
+                let leader = &freedoms[leader];
+                let law = [mimic.multiplier.into(), mimic.offset.into()];
+                elements.push(freedom.follow(leader, law, joint.stops()));
+            }
+        }
+        elements
+    }
+}

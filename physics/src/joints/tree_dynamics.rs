@@ -1,0 +1,412 @@
+//! How the bodies of a tree move: inertia along its joints, and what gravity and rotation ask of them.
+//!
+//! # Source
+//! R. Featherstone, Rigid Body Dynamics Algorithms (2008): the composite-rigid-body method (6.2) and the recursive
+//! Newton-Euler method (5.3), written here in world coordinates about centres of mass.
+
+use super::base_contacts::BaseResponse;
+use super::convex_solver::SymmetricMatrix;
+use super::external_contact::ExternalContact;
+use super::floating_base::FloatingBase;
+use super::support::{self, SupportPoint};
+use crate::laws::ExternalWrench;
+use dwell_scene::JointKind;
+use glam::{DMat3, DVec3};
+use rapier3d::dynamics::RigidBody;
+
+/// A body as the dynamics see it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LumpedBody {
+    /// kg.
+    pub(super) mass: f64,
+    /// kg that gravity pulls at: less under water.
+    pub(super) weight_mass: f64,
+    /// Centre of mass, m.
+    pub(super) center: DVec3,
+    /// About the centre of mass, world axes, kg·m².
+    pub(super) inertia: DMat3,
+}
+
+impl LumpedBody {
+    pub(super) fn of(body: &RigidBody) -> Self {
+        let own = Self::own(body);
+        let turn = DMat3::from_quat(body.position().rotation.as_dquat().normalize());
+        Self {
+            center: body.center_of_mass().as_dvec3(),
+            inertia: turn * own.inertia * turn.transpose(),
+            ..own
+        }
+    }
+
+    /// The same in the body's own frame.
+    pub(super) fn own(body: &RigidBody) -> Self {
+        let local = &body.mass_properties().local_mprops;
+        let principal = local.principal_inertia().as_dvec3();
+        let turn = local.principal_inertia_local_frame.as_dquat();
+        let turn = DMat3::from_quat(turn.normalize());
+        Self {
+            mass: body.mass().into(),
+            weight_mass: f64::from(body.mass() * body.gravity_scale()),
+            center: local.local_com.as_dvec3(),
+            inertia: turn * DMat3::from_diagonal(principal) * turn.transpose(),
+        }
+    }
+
+    /// Two bodies as one.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let mass = self.mass + other.mass;
+        if mass <= 0.0 {
+            return *self;
+        }
+        let center = (self.center * self.mass + other.center * other.mass) / mass;
+        Self {
+            mass,
+            weight_mass: self.weight_mass + other.weight_mass,
+            center,
+            inertia: self.about(center) + other.about(center),
+        }
+    }
+
+    /// The inertia about another point (Steiner).
+    fn about(&self, point: DVec3) -> DMat3 {
+        let d = self.center - point;
+        let outer = DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        self.inertia + (DMat3::from_diagonal(DVec3::splat(d.length_squared())) - outer) * self.mass
+    }
+}
+
+/// One degree of freedom in the world.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct JointAxisState {
+    pub(super) kind: JointKind,
+    pub(super) direction: DVec3,
+    /// A point on it, m.
+    pub(super) at: DVec3,
+    /// Which of the tree's free joints moves its parent.
+    pub(super) parent: Option<usize>,
+    pub(super) velocity: f64,
+}
+
+impl JointAxisState {
+    /// Velocity of a point, and rotation, for each unit of this joint's velocity.
+    pub(super) fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
+        match self.kind {
+            JointKind::Hinge => (self.direction.cross(point - self.at), self.direction),
+            JointKind::Slide => (self.direction, DVec3::ZERO),
+        }
+    }
+
+    /// What it feels of a force and moment about the origin: what acts along it.
+    pub(super) fn generalized_force_of(&self, wrench: &Wrench) -> f64 {
+        let Wrench { force, moment } = *wrench;
+        match self.kind {
+            JointKind::Hinge => self.direction.dot(moment - self.at.cross(force)),
+            JointKind::Slide => self.direction.dot(force),
+        }
+    }
+}
+
+/// How a body moves, with accelerations as if no joint accelerated.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct BodyAcceleration {
+    pub(super) center: DVec3,
+    pub(super) angular: DVec3,
+    pub(super) acceleration: DVec3,
+    pub(super) angular_acceleration: DVec3,
+}
+
+impl BodyAcceleration {
+    /// A body that stands or moves evenly.
+    pub(super) fn at_constant_velocity(center: DVec3, angular: DVec3) -> Self {
+        Self {
+            center,
+            angular,
+            ..Self::default()
+        }
+    }
+
+    fn acceleration_at(&self, point: DVec3) -> DVec3 {
+        let arm = point - self.center;
+        self.acceleration
+            + self.angular_acceleration.cross(arm)
+            + self.angular.cross(self.angular.cross(arm))
+    }
+}
+
+/// A tree at one moment. Shape (freedom,) each.
+pub(super) struct TreeDynamics<'a> {
+    /// How laws push at the joints' bodies; empty where none does.
+    pub(super) pushes: Vec<ExternalWrench>,
+    /// How laws push at a free root.
+    pub(super) root_push: ExternalWrench,
+    pub(super) axes: Vec<JointAxisState>,
+    pub(super) masses: Vec<LumpedBody>,
+    pub(super) angular: Vec<DVec3>,
+    /// How the root moves.
+    pub(super) root: BodyAcceleration,
+    /// The root's own mass if it is free to answer, its joints' efforts pushing back on it.
+    pub(super) free_root: Option<LumpedBody>,
+    /// The velocity of the root's centre of mass, m/s.
+    pub(super) root_velocity: DVec3,
+    /// What carries a tree whose root is free.
+    pub(super) supports: &'a [SupportPoint],
+    /// What else presses on the tree.
+    pub(super) touches: &'a [ExternalContact],
+    pub(super) gravity: DVec3,
+}
+
+impl TreeDynamics<'_> {
+    /// The mass that each joint moves, and the momentum of it for each unit of its velocity. Shape (freedom,) each.
+    fn carried(&self) -> (Vec<LumpedBody>, Vec<(DVec3, DVec3)>) {
+        let mut carried = self.masses.clone();
+        for k in (0..carried.len()).rev() {
+            if let Some(parent) = self.axes[k].parent {
+                carried[parent] = carried[parent].with(&carried[k]);
+            }
+        }
+        let momentum = |(axis, lump): (&JointAxisState, &LumpedBody)| {
+            let (linear, angular) = axis.moves(lump.center);
+            (linear * lump.mass, lump.inertia * angular)
+        };
+        let momenta = self.axes.iter().zip(&carried).map(momentum).collect();
+        (carried, momenta)
+    }
+
+    /// What the joints resist with. Shape (freedom, freedom).
+    pub(super) fn inertia(&self) -> SymmetricMatrix {
+        let mut inertia = self.held_inertia();
+        if let Some(floating) = self.floating() {
+            floating.subtract_base_inertia(&mut inertia);
+        }
+        inertia
+    }
+
+    /// The same while the root is held. Shape (freedom, freedom).
+    pub(super) fn held_inertia(&self) -> SymmetricMatrix {
+        let n = self.axes.len();
+        let (carried, momenta) = self.carried();
+        let mut inertia = SymmetricMatrix::zero(n);
+        for (k, momentum) in momenta.iter().enumerate() {
+            let mut other = Some(k);
+            while let Some(j) = other {
+                let (linear, angular) = self.axes[j].moves(carried[k].center);
+                inertia.set(k, j, momentum.0.dot(linear) + momentum.1.dot(angular));
+                other = self.axes[j].parent;
+            }
+        }
+        inertia
+    }
+
+    /// How the root answers; `None` for one that does not.
+    pub(super) fn floating(&self) -> Option<FloatingBase> {
+        let root = self.free_root.as_ref()?;
+        let (carried, momenta) = self.carried();
+        Some(FloatingBase::of(root, &self.axes, &carried, &momenta))
+    }
+
+    /// How every body moves when the joints accelerate like this. Shape (freedom,).
+    fn moving(&self, accelerations: &[f64]) -> Vec<BodyAcceleration> {
+        self.moving_over(self.root, accelerations)
+    }
+
+    fn moving_over(&self, root: BodyAcceleration, accelerations: &[f64]) -> Vec<BodyAcceleration> {
+        let mut moving: Vec<BodyAcceleration> = Vec::with_capacity(self.axes.len());
+        for (k, axis) in self.axes.iter().enumerate() {
+            let parent = axis.parent.map_or(root, |parent| moving[parent]);
+            let turn = axis.direction * axis.velocity;
+            let gain = axis.direction * accelerations[k];
+            let center = self.masses[k].center;
+            let mut body = BodyAcceleration::at_constant_velocity(center, self.angular[k]);
+            match axis.kind {
+                JointKind::Hinge => {
+                    body.angular_acceleration =
+                        parent.angular_acceleration + parent.angular.cross(turn) + gain;
+                    let arm = center - axis.at;
+                    body.acceleration = parent.acceleration_at(axis.at)
+                        + body.angular_acceleration.cross(arm)
+                        + body.angular.cross(body.angular.cross(arm));
+                }
+                JointKind::Slide => {
+                    body.angular_acceleration = parent.angular_acceleration;
+                    body.acceleration =
+                        parent.acceleration_at(center) + 2.0 * parent.angular.cross(turn) + gain;
+                }
+            }
+            moving.push(body);
+        }
+        moving
+    }
+
+    /// What the touches of the last step do: to the joints, shape (freedom,), and to a free root's six.
+    pub(super) fn touched(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
+        let mut efforts = vec![0.0; self.axes.len()];
+        let mut whole = Wrench::default();
+        for touch in self.touches {
+            let wrench = touch.about_origin();
+            whole = whole.plus(&wrench, 1.0);
+            let mut link = touch.link;
+            while let Some(k) = link {
+                efforts[k] += self.axes[k].generalized_force_of(&wrench);
+                link = self.axes[k].parent;
+            }
+        }
+        let root = floating.map_or([0.0; 6], |floating| floating.generalized_force(&whole));
+        (efforts, root)
+    }
+
+    /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
+    /// gyroscopic one, with which joints and root accelerate like this: those of the joints' bodies, shape (freedom,), and
+    /// that of a free root. Within a tree over a free root they add up to what laws push with.
+    pub(super) fn wrenches(
+        &self,
+        accelerations: &[f64],
+        answer: Option<&BaseResponse>,
+    ) -> (Vec<Wrench>, Option<Wrench>) {
+        let root = match (self.floating(), answer) {
+            (Some(floating), Some(answer)) => floating.accelerated(&self.root, &answer.gained),
+            _ => self.root,
+        };
+        let moving = self.moving_over(root, accelerations);
+        let wrench = |body: &BodyAcceleration, lump: &LumpedBody| Wrench {
+            force: body.acceleration * lump.mass - self.gravity * lump.weight_mass,
+            moment: lump.inertia * body.angular_acceleration,
+        };
+        let mut wrenches: Vec<Wrench> = moving
+            .iter()
+            .zip(&self.masses)
+            .map(|(body, lump)| wrench(body, lump))
+            .collect();
+        let mut of_root = self.free_root.as_ref().map(|lump| wrench(&root, lump));
+        for touch in self.touches {
+            let (wrench, center) = match (touch.link, &mut of_root, &self.free_root) {
+                (Some(link), _, _) => (&mut wrenches[link], self.masses[link].center),
+                (None, Some(root), Some(own)) => (root, own.center),
+                (None, _, _) => continue,
+            };
+            *wrench = wrench.plus(&touch.about(center), -1.0);
+        }
+        if let (Some(answer), Some(own)) = (answer, &self.free_root) {
+            for (k, support) in self.supports.iter().enumerate() {
+                let (wrench, center) = match (support.link, &mut of_root) {
+                    (Some(link), _) => (&mut wrenches[link], self.masses[link].center),
+                    (None, Some(root)) => (root, own.center),
+                    (None, None) => continue,
+                };
+                *wrench = wrench.plus(&answer.wrench(k, support.at, center), -1.0);
+            }
+        }
+        (wrenches, of_root)
+    }
+
+    /// What all bodies need so that no joint accelerates, and neither does the root.
+    pub(super) fn loads(&self) -> TreeLoads {
+        let n = self.axes.len();
+        let own = |body: &BodyAcceleration, lump: &LumpedBody| {
+            let weight = -self.gravity * lump.weight_mass;
+            let force = body.acceleration * lump.mass + weight;
+            let moment = lump.inertia * body.angular_acceleration
+                + body.angular.cross(lump.inertia * body.angular)
+                + lump.center.cross(force);
+            let weight = Wrench {
+                force: weight,
+                moment: lump.center.cross(weight),
+            };
+            [Wrench { force, moment }, weight]
+        };
+        let moving = self.moving(&vec![0.0; n]);
+        let pairs = moving.iter().zip(&self.masses);
+        let mut links: Vec<[Wrench; 2]> = pairs.map(|(body, lump)| own(body, lump)).collect();
+        let pushed = |load: &mut [Wrench; 2], push: &ExternalWrench, lump: &LumpedBody| {
+            let push = Wrench {
+                force: push.force,
+                moment: push.moment + lump.center.cross(push.force),
+            };
+            load[0] = load[0].plus(&push, -1.0);
+        };
+        for ((link, push), lump) in links.iter_mut().zip(&self.pushes).zip(&self.masses) {
+            pushed(link, push, lump);
+        }
+        let mut root = [Wrench::default(); 2];
+        if let Some(lump) = &self.free_root {
+            root = own(&self.root, lump);
+            pushed(&mut root, &self.root_push, lump);
+        }
+        let mut carried = Vec::new();
+        if let Some(lump) = &self.free_root {
+            let all = links
+                .iter()
+                .fold(root[1], |all, link| all.plus(&link[1], 1.0));
+            let masses = self.masses.iter();
+            let whole = masses.fold(*lump, |whole, mass| whole.with(mass));
+            carried = support::forces(self.supports, &all, whole.center);
+            for (support, force) in self.supports.iter().zip(&carried) {
+                let force = DVec3::Y * *force;
+                let moment = support.at.cross(force);
+                let load = match support.link {
+                    Some(k) => &mut links[k],
+                    None => &mut root,
+                };
+                load[1] = load[1].plus(&Wrench { force, moment }, -1.0);
+            }
+        }
+        for k in (0..n).rev() {
+            let below = links[k];
+            let above = match self.axes[k].parent {
+                Some(parent) => &mut links[parent],
+                None => &mut root,
+            };
+            for (load, below) in above.iter_mut().zip(below) {
+                *load = load.plus(&below, 1.0);
+            }
+        }
+        TreeLoads {
+            links,
+            root,
+            carried,
+        }
+    }
+
+    /// The efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
+    pub(super) fn along(&self, loads: &TreeLoads, which: usize) -> Vec<f64> {
+        let pairs = self.axes.iter().zip(&loads.links);
+        pairs
+            .map(|(axis, load)| axis.generalized_force_of(&load[which]))
+            .collect()
+    }
+
+    /// The efforts that carry weight: a free root is carried where it or a joint's body stands on something, and gives way
+    /// otherwise. Shape (freedom,).
+    pub(super) fn weights(&self, loads: &TreeLoads) -> Vec<f64> {
+        let mut efforts = self.along(loads, 1);
+        if let Some(floating) = self.floating() {
+            floating.subtract_base_load(&loads.root[1], &mut efforts);
+        }
+        efforts
+    }
+}
+
+/// A force, N, and a moment, N·m.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wrench {
+    pub(super) force: DVec3,
+    pub(super) moment: DVec3,
+}
+
+impl Wrench {
+    pub(super) fn plus(&self, other: &Self, times: f64) -> Self {
+        Self {
+            force: self.force + other.force * times,
+            moment: self.moment + other.moment * times,
+        }
+    }
+}
+
+/// Forces and moments about the world's origin: with motion, and of weight and what carries it alone.
+pub(super) struct TreeLoads {
+    /// On each joint's body and all beyond it. Shape (freedom,).
+    pub(super) links: Vec<[Wrench; 2]>,
+    /// On everything.
+    pub(super) root: [Wrench; 2],
+    /// The weight on each support, N.
+    pub(super) carried: Vec<f64>,
+}

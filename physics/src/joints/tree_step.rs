@@ -1,0 +1,117 @@
+//! The joints of a tree that may move, as a step finds them and as it leaves them.
+
+use super::chain::Chain;
+use super::joint_state::{JointCoordinate, JointReading};
+use super::tree::KinematicTree;
+use super::{PhysicsJoint, child_at};
+use crate::engine::RapierWorld;
+
+/// How fast something moves that stands, m/s and rad/s: a tenth of a millimetre in the half second after which rapier lets it
+/// sleep.
+const STILL: f32 = 2e-4;
+/// How far from where its joint says a body stands that is in its place, m and rad.
+const IN_PLACE: f32 = 2e-5;
+
+/// A tree in a step: made before it, and used again after it.
+#[derive(Clone, Debug)]
+pub(crate) struct TreeStep {
+    /// The joints that may move, by their places in the tree. Shape (freedom,).
+    pub(super) free: Vec<usize>,
+    /// Shape (freedom,).
+    pub(super) readings: Vec<JointReading>,
+    pub(super) chain: Chain,
+}
+
+impl TreeStep {
+    /// `joint_coordinates`: the numbers of each of the world's joints. `None` for a tree that is asleep or shut.
+    pub(super) fn of(
+        engine: &RapierWorld,
+        tree: &KinematicTree,
+        joints: &[PhysicsJoint],
+        joint_coordinates: &[JointCoordinate],
+    ) -> Option<Self> {
+        let moves = |k: &usize| {
+            let child = joints[tree.joints[*k]].child_handle;
+            let body = engine.bodies.get(child);
+            body.is_some_and(|body| body.is_dynamic() && !body.is_sleeping())
+        };
+        let free: Vec<usize> = (0..tree.joints.len()).filter(moves).collect();
+        if free.is_empty() {
+            return None;
+        }
+        let read = |k: &usize| {
+            let place = tree.joints[*k];
+            JointReading::before(engine, &joints[place], joint_coordinates[place])
+        };
+        Some(Self {
+            readings: free.iter().map(read).collect(),
+            chain: Chain::of(engine, tree, &free, joints),
+            free,
+        })
+    }
+
+    /// Looks at the joints again, after the step. Returns how they were before.
+    pub(super) fn again(
+        &mut self,
+        engine: &RapierWorld,
+        tree: &KinematicTree,
+        joints: &[PhysicsJoint],
+    ) -> Vec<JointReading> {
+        let pairs = self.free.iter().zip(&self.readings);
+        let now = pairs.map(|(k, reading)| reading.later(engine, &joints[tree.joints[*k]]));
+        let now: Vec<JointReading> = now.collect();
+        std::mem::replace(&mut self.readings, now)
+    }
+
+    /// Whether nothing of a tree moves and its bodies are where its joints say. It is then left to rapier, which lets it sleep:
+    /// whatever is put somewhere, however near, it keeps awake.
+    pub(super) fn rests(
+        &self,
+        engine: &RapierWorld,
+        tree: &KinematicTree,
+        joints: &[PhysicsJoint],
+    ) -> bool {
+        let still = |handle| {
+            let body = engine.bodies.get(handle);
+            body.is_none_or(|body| body.linvel().length() < STILL && body.angvel().length() < STILL)
+        };
+        let stands = |(joint, now): (&&PhysicsJoint, &JointReading)| {
+            let Some(body) = engine.bodies.get(joint.child_handle) else {
+                return true;
+            };
+            let (place, says) = (
+                body.position(),
+                child_at(engine, joint, now.position as f32),
+            );
+            let off = (place.translation - says.translation).length();
+            let turn = (place.rotation.inverse() * says.rotation).xyz().length();
+            still(joint.child_handle) && off < IN_PLACE && turn < IN_PLACE
+        };
+        still(tree.root())
+            && self
+                .joints(tree, joints)
+                .iter()
+                .zip(&self.readings)
+                .all(stands)
+    }
+
+    /// rad or m. Shape (freedom,).
+    pub(super) fn positions(&self) -> Vec<f64> {
+        self.readings.iter().map(|r| r.position).collect()
+    }
+
+    /// rad/s or m/s. Shape (freedom,).
+    pub(super) fn velocities(&self) -> Vec<f64> {
+        self.readings.iter().map(|r| r.velocity).collect()
+    }
+
+    /// The free joints. Shape (freedom,).
+    pub(super) fn joints<'a>(
+        &self,
+        tree: &KinematicTree,
+        joints: &'a [PhysicsJoint],
+    ) -> Vec<&'a PhysicsJoint> {
+        let place = |k: &usize| &joints[tree.joints[*k]];
+        self.free.iter().map(place).collect()
+    }
+}

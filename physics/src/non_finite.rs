@@ -1,0 +1,140 @@
+//! What the solver loses: bodies whose place or speed is no longer a number.
+//!
+//! rapier takes such a body out of its world for good, where it last was. Here it is put back there, at rest, and a notice says so:
+//! nothing falls out of a world for the rest of an episode.
+
+use crate::actions::{ActionCode, ActionOutcome, DelayedOutcome};
+use crate::engine::RapierWorld;
+use crate::world::PhysicsWorld;
+use glam::Vec3;
+use rapier3d::dynamics::RigidBodyHandle;
+
+impl RapierWorld {
+    /// Puts a body back that rapier took out, at rest where it stands.
+    fn put_back(&mut self, handle: RigidBodyHandle) {
+        let Some(body) = self.bodies.get_mut(handle) else {
+            return;
+        };
+        if !body.position().translation.is_finite() || !body.position().rotation.is_finite() {
+            // It never had a place.
+            return;
+        }
+        body.set_linvel(Vec3::ZERO, false);
+        body.set_angvel(Vec3::ZERO, false);
+        body.set_enabled(true);
+        body.wake_up(true);
+        for collider in body.colliders().to_vec() {
+            if let Some(collider) = self.colliders.get_mut(collider) {
+                collider.set_enabled(true);
+            }
+        }
+        let attached = self.joints.attached_joints(handle);
+        let joints: Vec<_> = attached.map(|(_, _, joint, _)| joint).collect();
+        for joint in joints {
+            if let Some(joint) = self.joints.get_mut(joint, true) {
+                joint.impulses = Default::default();
+            }
+        }
+    }
+}
+
+impl PhysicsWorld {
+    /// Puts back what the last step lost. Returns whether there was anything.
+    pub(crate) fn recover_non_finite(&mut self) -> bool {
+        let lost = self.engine.take_lost();
+        if lost.is_empty() {
+            return false;
+        }
+        // Without them, so that contacts and warm starts forget them.
+        self.flush();
+        let model = self.model.clone();
+        for handle in lost {
+            self.engine.put_back(handle);
+            let Some(index) = self.body_of(handle) else {
+                continue;
+            };
+            let object = model.bodies[index].object;
+            let name = self.call(object);
+            tracing::warn!(object = %model.house.objects[object].name, "the solver lost a body");
+            self.notices.push(DelayedOutcome {
+                agent: None,
+                outcome: ActionOutcome::failed(
+                    ActionCode::Lost,
+                    format!("The {name} moved beyond all numbers and was stopped where it was."),
+                    Some(object),
+                ),
+            });
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::PhysicsConfig;
+    use dwell_scene::State;
+    use std::sync::Arc;
+
+    /// A thing whose speed is no number stands where it stood, and the world goes on, from a snapshot, too.
+    #[test]
+    fn what_is_lost_is_stopped_and_told() {
+        let house = Arc::new(
+            dwell_houses::open("builtin:studio")
+                .expect("it is built in")
+                .0,
+        );
+        let mut state = State::new(&house);
+        let config = PhysicsConfig::default();
+        let (mut world, _) =
+            PhysicsWorld::new(house.clone(), config.clone(), &mut state).expect("it opens");
+        let mut events = Vec::new();
+        let mut step = |world: &mut PhysicsWorld, state: &mut State| {
+            world.step(state, &[], &mut events).expect("it goes on");
+        };
+        step(&mut world, &mut state);
+        let is_free = |(_, body): &(usize, &crate::body::BodyHandle)| {
+            let rigid = world.engine.bodies.get(body.handle);
+            rigid.is_some_and(rapier3d::dynamics::RigidBody::is_dynamic)
+        };
+        let (place, body) = world
+            .bodies
+            .iter()
+            .enumerate()
+            .find(is_free)
+            .expect("things are free");
+        let (part, handle) = (world.model.bodies[place].root(), body.handle);
+        let before = state.part_pose[part];
+        let body = world.engine.bodies.get_mut(handle).expect("it is there");
+        body.set_linvel(Vec3::NAN, true);
+        step(&mut world, &mut state);
+        let told: Vec<_> = world
+            .notices()
+            .iter()
+            .map(|notice| notice.outcome.code)
+            .collect();
+        assert!(told.contains(&ActionCode::Lost), "{told:?}");
+        let moved = state.part_pose[part].position - before.position;
+        assert!(moved.length() < 0.01, "{moved}");
+        assert!(
+            world
+                .engine
+                .bodies
+                .iter()
+                .all(|(_, body)| body.is_enabled())
+        );
+        let saved = (state.clone(), world.snapshot());
+        let mut again = PhysicsWorld::new(house.clone(), config, &mut state.clone())
+            .expect("it opens")
+            .0;
+        let mut other = saved.0;
+        again.restore(&mut other, &saved.1).expect("it fits");
+        for _ in 0..20 {
+            for (world, state) in [(&mut world, &mut state), (&mut again, &mut other)] {
+                step(world, state);
+            }
+            assert_eq!(world.hash(), again.hash());
+        }
+        assert!(world.notices().is_empty());
+    }
+}

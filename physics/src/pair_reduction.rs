@@ -1,0 +1,94 @@
+//! What rest costs: no more pairs than touch or nearly touch, and no room for those that are gone.
+//!
+//! rapier pairs colliders whose boxes in its tree overlap, and keeps for each pair what it knows of its contacts. A box is
+//! wider than its collider, so that what moves a little leaves the tree alone, and never shrinks while the collider stays
+//! inside: a thing that came to rest keeps the width of its last motion, and with it pairs of things that stand a hand's
+//! breadth apart. Such pairs are most of all where many things have been thrown about, and they stay in memory and in
+//! snapshots for good. So a box is drawn tight when its body falls asleep; the next step forgets the pairs that are gone. A
+//! body that wakes and moves gets its wide box back from rapier at once.
+
+use crate::engine::RapierWorld;
+use crate::world::PhysicsWorld;
+use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
+use rapier3d::geometry::Aabb;
+use rapier3d::math::Vector;
+use rapier3d::pipeline::QueryFilter;
+
+/// How much wider than its contacts reach the box of a sleeping body's collider stands on each side, m. Not 0: rapier would
+/// then not notice that the box changed.
+const SKIN_M: f32 = 1e-3;
+/// rapier's margin around a box in units of its length unit.
+const RAPIER_SKIN: f32 = 0.04;
+/// A box this much wider than need be is left as it is, m.
+const WIDE_ENOUGH_M: f32 = 2.0 * SKIN_M;
+/// Physics steps after which room is given back: a quarter of a minute, so that a copy of a millisecond costs nothing.
+const TICKS_BETWEEN_COPIES: u64 = 2048;
+
+/// How many pairs of colliders a world keeps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PairCounts {
+    /// Pairs whose boxes overlap.
+    pub near: usize,
+    /// Those of them that touch.
+    pub touching: usize,
+}
+
+impl PhysicsWorld {
+    /// How many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
+    pub fn pair_counts(&self) -> PairCounts {
+        let mut counts = PairCounts::default();
+        for pair in self.engine.narrow_phase.contact_pairs() {
+            counts.near += 1;
+            counts.touching += usize::from(pair.has_any_active_contact());
+        }
+        counts
+    }
+
+    /// Now and then gives back the room of pairs that are gone. rapier keeps each for the next pair, with all the buffers that
+    /// it ever needed, so that in a long run every one of them comes to need the most. A copy has room for what it holds.
+    pub(crate) fn shrink_pair_storage(&mut self) {
+        if self.tick.is_multiple_of(TICKS_BETWEEN_COPIES) {
+            self.engine.narrow_phase = self.engine.narrow_phase.clone();
+        }
+    }
+}
+
+impl RapierWorld {
+    /// Draws the boxes of those bodies tight that were awake and have fallen asleep.
+    pub(crate) fn shrink_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
+        let parameters = IntegrationParameters {
+            length_unit: SKIN_M / RAPIER_SKIN,
+            ..*self.parameters()
+        };
+        for handle in awake_before {
+            let Some(body) = self.bodies.get(*handle).filter(|body| body.is_sleeping()) else {
+                continue;
+            };
+            for collider in body.colliders() {
+                let Some(shape) = self.colliders.get(*collider) else {
+                    continue;
+                };
+                let needed = shape.compute_broad_phase_aabb(self.parameters(), &self.bodies);
+                let queries = self.broad_phase.as_query_pipeline(
+                    self.narrow_phase.query_dispatcher(),
+                    &self.bodies,
+                    &self.colliders,
+                    QueryFilter::default(),
+                );
+                let leaf = queries.bvh.leaf_node(collider.into_raw_parts().0);
+                let Some(found) = leaf.map(|node| Aabb::new(node.mins(), node.maxs())) else {
+                    continue;
+                };
+                let wider = (needed.mins - found.mins).max(found.maxs - needed.maxs);
+                if wider.max_element() <= WIDE_ENOUGH_M || !needed.mins.is_finite() {
+                    continue;
+                }
+                // rapier only moves a box that a collider has left: so it leaves for a corner, and comes back.
+                let outside = found.mins - Vector::splat(SKIN_M);
+                let corner = Aabb::new(outside, outside);
+                self.broad_phase.set_aabb(&parameters, *collider, corner);
+                self.broad_phase.set_aabb(&parameters, *collider, needed);
+            }
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Things that come to rest before a world begins.
+
+use crate::contact::MergedEvents;
+use crate::error::PhysicsError;
+use crate::world::PhysicsWorld;
+use dwell_scene::{State, interrupt};
+
+/// The longest that things are given, s.
+const LONGEST_S: f64 = 60.0;
+
+impl PhysicsWorld {
+    /// Lets things fall, lean and come to rest for at most `longest_s`, 0 to 60 s, less where all rest sooner; agents stand still.
+    /// Then time begins: nothing that happened meanwhile is told.
+    ///
+    /// Worlds that are copied from one that has settled begin with most of their bodies laid aside, and so with a tenth of the work.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Range`] for another duration, [`PhysicsError::ForeignState`] for another world's state. Nothing has happened
+    /// then.
+    pub fn settle(&mut self, state: &mut State, longest_s: f64) -> Result<(), PhysicsError> {
+        if !(0.0..=LONGEST_S).contains(&longest_s) {
+            return Err(PhysicsError::Range {
+                at: "world".to_owned(),
+                field: "settle_s",
+                found: longest_s.to_string(),
+                allowed: "0 to 60 s",
+            });
+        }
+        self.check_state(state)?;
+        let steps = longest_s * f64::from(self.settings.config.control_rate_hz);
+        let mut events = Vec::new();
+        for _ in 0..steps.round() as u64 {
+            interrupt::check();
+            self.step(state, &[], &mut events)?;
+            events.clear();
+            if self.awake_count() == 0 {
+                break;
+            }
+        }
+        self.tick = 0;
+        self.contact_tracker.forget_events();
+        self.merged_events = MergedEvents::default();
+        self.notices.clear();
+        Ok(())
+    }
+}

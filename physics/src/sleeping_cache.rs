@@ -1,0 +1,464 @@
+//! What lies still is laid aside until something comes near.
+//!
+//! rapier keeps, for each pair of colliders near each other, their points of contact and what the solver knows of them: some
+//! 1.5 KB a pair, for things asleep too, and that is most of what a world takes. A thing that sleeps needs none of it. So it
+//! is made one that stands, of which rapier keeps no pairs but with what moves; what it touched is remembered here. Whatever
+//! comes within reach of it, as far as it goes in the next step, makes it a free body again before that step, and so on along
+//! all that touches: it never meets anything as one that stands, and what it carries falls when it is taken away.
+//!
+//! What joints hold together is laid aside together, and wakes together.
+
+use crate::body::{BodyHandle, BodyStatus};
+use crate::contact::touching;
+use crate::engine::RapierWorld;
+use crate::workspace::Workspace;
+use crate::world::PhysicsWorld;
+use dwell_scene::{Contact, State, SupportRelation};
+use glam::Vec3;
+use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodyType};
+use rapier3d::geometry::{Aabb, Collider, ColliderHandle};
+use rapier3d::math::Vector;
+use rapier3d::parry::bounding_volume::BoundingVolume;
+use rapier3d::parry::query;
+use rapier3d::pipeline::QueryFilter;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How near to each other things count as touching, m: more than contacts leave between things at rest.
+const TOUCH_M: f32 = 2e-3;
+/// How much further than it goes in a step at its velocity something is looked ahead of: gravity and pushes add to that.
+const AHEAD: f32 = 1.5;
+/// Physics steps between two looks for what fell asleep: a quarter of a second at the default rate.
+const TICKS_BETWEEN_LOOKS: u64 = 32;
+/// How far a box must move for rapier to notice, m; its margin in units of its length unit.
+const BOX_STEP_M: f32 = 1e-3;
+const RAPIER_SKIN: f32 = 0.04;
+
+/// A contact of something laid aside.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct CachedContact {
+    bodies: [RigidBodyHandle; 2],
+    contact: Contact,
+}
+
+/// What is laid aside.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct SleepingIslandCache {
+    /// In order.
+    bodies: Vec<RigidBodyHandle>,
+    contacts: Vec<CachedContact>,
+}
+
+impl SleepingIslandCache {
+    fn place(&self, body: RigidBodyHandle) -> Result<usize, usize> {
+        let key = |body: &RigidBodyHandle| body.into_raw_parts();
+        self.bodies.binary_search_by_key(&key(&body), key)
+    }
+
+    pub(crate) fn has(&self, body: RigidBodyHandle) -> bool {
+        self.place(body).is_ok()
+    }
+
+    /// What those things touch that are laid aside, among themselves and with what stands.
+    pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
+        self.contacts.iter().map(|kept| kept.contact)
+    }
+
+    fn add(&mut self, body: RigidBodyHandle) {
+        if let Err(place) = self.place(body) {
+            self.bodies.insert(place, body);
+        }
+    }
+
+    /// Returns whether it was there. What it touches is still kept.
+    fn remove(&mut self, body: RigidBodyHandle) -> bool {
+        let Ok(place) = self.place(body) else {
+            return false;
+        };
+        self.bodies.remove(place);
+        true
+    }
+
+    /// Forgets what bodies touch that are no longer laid aside.
+    fn forget_contacts(&mut self, of: &BodyIndexSet) {
+        if !of.is_empty() {
+            let has = |body: &RigidBodyHandle| of.contains(&body.into_raw_parts());
+            self.contacts.retain(|kept| !kept.bodies.iter().any(has));
+        }
+    }
+}
+
+/// Bodies, as rapier numbers them.
+type BodyIndexSet = BTreeSet<(u32, u32)>;
+
+/// What is left to do for a body that wakes.
+enum WakeRequest {
+    /// If it is laid aside, it is no longer, nor is what hangs on it.
+    Free(RigidBodyHandle),
+    /// rapier wakes it.
+    Wake(RigidBodyHandle),
+}
+
+impl RapierWorld {
+    /// Whether a body is free and sleeps: by rapier, or laid aside.
+    pub(crate) fn sleeps(&self, body: RigidBodyHandle) -> bool {
+        let rigid = self.bodies.get(body);
+        self.sleeping_cache.has(body)
+            || rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
+    }
+
+    /// Wakes a body, and what joints hold to it.
+    pub(crate) fn wake(&mut self, body: RigidBodyHandle) {
+        self.wake_each([body]);
+    }
+
+    fn wake_each(&mut self, bodies: impl IntoIterator<Item = RigidBodyHandle>) {
+        let mut woken = BodyIndexSet::new();
+        for body in bodies {
+            self.thaw_and_wake(body, &mut woken);
+        }
+        self.sleeping_cache.forget_contacts(&woken);
+    }
+
+    /// Wakes a body, and what joints hold to it; notes those that were laid aside, whose contacts are to be forgotten.
+    fn thaw_and_wake(&mut self, body: RigidBodyHandle, woken: &mut BodyIndexSet) {
+        let mut left = vec![WakeRequest::Wake(body), WakeRequest::Free(body)];
+        while let Some(next) = left.pop() {
+            let now = match next {
+                WakeRequest::Wake(now) => {
+                    self.islands.wake_up(&mut self.bodies, now, true);
+                    continue;
+                }
+                WakeRequest::Free(now) => now,
+            };
+            if !self.sleeping_cache.remove(now) {
+                continue;
+            }
+            woken.insert(now.into_raw_parts());
+            if let Some(rigid) = self.bodies.get_mut(now) {
+                rigid.set_body_type(RigidBodyType::Dynamic, false);
+            }
+            // It is roused after all that hangs on it.
+            if now != body {
+                left.push(WakeRequest::Wake(now));
+            }
+            let attached = self.attached(now).into_iter().rev();
+            left.extend(attached.map(WakeRequest::Free));
+        }
+    }
+
+    /// Wakes all that is laid aside.
+    pub(crate) fn wake_cached(&mut self) {
+        let mut woken = BodyIndexSet::new();
+        while let Some(body) = self.sleeping_cache.bodies.last() {
+            self.thaw_and_wake(*body, &mut woken);
+        }
+        self.sleeping_cache.forget_contacts(&woken);
+    }
+
+    /// The bodies that joints hold to a body.
+    fn attached(&self, body: RigidBodyHandle) -> Vec<RigidBodyHandle> {
+        let joints = self.joints.attached_joints(body);
+        joints
+            .map(|(one, two, ..)| if one == body { two } else { one })
+            .collect()
+    }
+
+    /// Wakes a body that is about to be put somewhere else, and what is laid aside around it.
+    pub(crate) fn wake_around(&mut self, body: RigidBodyHandle) {
+        self.wake(body);
+        self.wake_each(self.cached_within(body, TOUCH_M));
+    }
+
+    /// Wakes what lies within reach of anything that moves in the next step, and what touches that, and so on. `root_velocity_along`: agents,
+    /// which are moved from place to place.
+    pub(crate) fn wake_in_reach(
+        &mut self,
+        root_velocity_along: impl Iterator<Item = RigidBodyHandle>,
+    ) {
+        if self.sleeping_cache.bodies.is_empty() {
+            return;
+        }
+        let awake = self.islands.active_bodies();
+        let mut movers: Vec<RigidBodyHandle> = awake
+            .filter(|body| !self.sleeping_cache.has(*body))
+            .collect();
+        movers.extend(root_velocity_along);
+        let mut woken = BodyIndexSet::new();
+        while let Some(mover) = movers.pop() {
+            let Some(reach_m) = self.reach_m(mover) else {
+                continue;
+            };
+            for near in self.cached_within(mover, reach_m) {
+                self.thaw_and_wake(near, &mut woken);
+                movers.push(near);
+            }
+        }
+        self.sleeping_cache.forget_contacts(&woken);
+    }
+
+    /// How far from where a body is something must be so that it does not meet it in the next step; `None` for what stands.
+    fn reach_m(&self, body: RigidBodyHandle) -> Option<f32> {
+        let rigid = self.bodies.get(body)?;
+        let dt_s = self.step_s();
+        if rigid.is_dynamic() {
+            let spin = rigid.angvel().length() * rigid.mass_properties().max_extent();
+            let fastest = rigid.linvel().length() + spin + self.gravity.length() * dt_s;
+            return Some(TOUCH_M + AHEAD * fastest * dt_s);
+        }
+        if rigid.body_type() != RigidBodyType::KinematicPositionBased {
+            return None;
+        }
+        // An agent that stands still disturbs what it overlaps, as where it was put or has just risen.
+        let goes_m = (rigid.next_position().translation - rigid.position().translation).length();
+        Some(if goes_m > 0.0 {
+            TOUCH_M + AHEAD * goes_m
+        } else {
+            0.0
+        })
+    }
+
+    /// The bodies laid aside of which a piece is nearer than `reach_m` to one of a body's, in order.
+    fn cached_within(&self, body: RigidBodyHandle, reach_m: f32) -> Vec<RigidBodyHandle> {
+        let Some(rigid) = self.bodies.get(body) else {
+            return Vec::new();
+        };
+        let own: Vec<(&Collider, Aabb)> = rigid
+            .colliders()
+            .iter()
+            .filter_map(|collider| self.colliders.get(*collider))
+            .map(|collider| (collider, grown(&collider.compute_aabb(), reach_m)))
+            .collect();
+        let Some(around) = own
+            .iter()
+            .map(|(_, aabb)| *aabb)
+            .reduce(|a, b| Aabb::new(a.mins.min(b.mins), a.maxs.max(b.maxs)))
+        else {
+            return Vec::new();
+        };
+        let mut near: BTreeMap<(u32, u32), RigidBodyHandle> = BTreeMap::new();
+        let queries = self.queries(QueryFilter::default());
+        for (_, other) in queries.intersect_aabb_conservative(around) {
+            let Some(parent) = other
+                .parent()
+                .filter(|parent| self.sleeping_cache.has(*parent))
+            else {
+                continue;
+            };
+            if near.contains_key(&parent.into_raw_parts()) || parent == body {
+                continue;
+            }
+            let there = other.compute_aabb();
+            let meets = own.iter().any(|(piece, aabb)| {
+                aabb.intersects(&there)
+                    && query::distance(
+                        piece.position(),
+                        piece.shape(),
+                        other.position(),
+                        other.shape(),
+                    )
+                    .is_ok_and(|gap| gap.distance <= reach_m)
+            });
+            if meets {
+                near.insert(parent.into_raw_parts(), parent);
+            }
+        }
+        near.into_values().collect()
+    }
+
+    /// Takes out those that touch a free body that stays one, or hang on one: rapier wakes it when what it touches changes. Those
+    /// then stay free themselves.
+    fn keep_touching_free_bodies(&self, asleep: &mut Vec<RigidBodyHandle>) {
+        let mut sleeping_cache: BodyIndexSet =
+            asleep.iter().map(|body| body.into_raw_parts()).collect();
+        let stays = |sleeping_cache: &BodyIndexSet, body: &RigidBodyHandle| {
+            let rigid = self.bodies.get(*body);
+            rigid.is_some_and(RigidBody::is_dynamic)
+                && !sleeping_cache.contains(&body.into_raw_parts())
+        };
+        let touches_one = |body: &&RigidBodyHandle| {
+            let mut others = self.touching_or_attached(**body).into_iter();
+            others.any(|other| stays(&sleeping_cache, &other))
+        };
+        let mut left: Vec<RigidBodyHandle> = asleep.iter().filter(touches_one).copied().collect();
+        for body in &left {
+            sleeping_cache.remove(&body.into_raw_parts());
+        }
+        while let Some(body) = left.pop() {
+            for other in self.touching_or_attached(body) {
+                if sleeping_cache.remove(&other.into_raw_parts()) {
+                    left.push(other);
+                }
+            }
+        }
+        asleep.retain(|body| sleeping_cache.contains(&body.into_raw_parts()));
+    }
+
+    /// The bodies that one touches, and those that joints hold to it.
+    fn touching_or_attached(&self, body: RigidBodyHandle) -> Vec<RigidBodyHandle> {
+        let mut others = self.attached(body);
+        let Some(rigid) = self.bodies.get(body) else {
+            return others;
+        };
+        let parent = |collider| self.colliders.get(collider).and_then(Collider::parent);
+        for pair in self.pairs_of(rigid) {
+            if pair.has_any_active_contact() {
+                others.extend(
+                    [pair.collider1, pair.collider2]
+                        .into_iter()
+                        .filter_map(parent),
+                );
+            }
+        }
+        others
+    }
+
+    /// Gives back the room of pairs that are gone, which rapier keeps for the next ones.
+    fn shrink_pair_storage(&mut self) {
+        let bytes = postcard::to_stdvec(&self.narrow_phase)
+            .expect("rapier's sets are plain data that postcard can always write to memory");
+        self.narrow_phase = postcard::from_bytes(&bytes).expect("it was written just now");
+        self.broad_phase = self.broad_phase.clone();
+        self.islands = self.islands.clone();
+        self.workspace = Workspace::new();
+    }
+
+    /// Makes bodies that sleep ones that stand.
+    fn cache_bodies(&mut self, bodies: &[RigidBodyHandle]) {
+        for body in bodies {
+            self.sleeping_cache.add(*body);
+            if let Some(rigid) = self.bodies.get_mut(*body) {
+                rigid.set_linvel(Vec3::ZERO, false);
+                rigid.set_angvel(Vec3::ZERO, false);
+                rigid.set_body_type(RigidBodyType::KinematicVelocityBased, false);
+            }
+        }
+    }
+
+    /// Moves the boxes of bodies' colliders in rapier's tree to where they touch nothing, or back. rapier forgets a pair when a
+    /// box leaves the other, and does not make it again between two that stand.
+    fn toggle_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
+        let parameters = IntegrationParameters {
+            length_unit: BOX_STEP_M / RAPIER_SKIN,
+            ..*self.parameters()
+        };
+        for body in bodies {
+            let colliders = self.bodies.get(*body).map(RigidBody::colliders);
+            for collider in colliders.unwrap_or_default() {
+                if let Some(aabb) = self.box_of(*collider, away) {
+                    self.broad_phase.set_aabb(&parameters, *collider, aabb);
+                }
+            }
+        }
+    }
+
+    fn box_of(&self, collider: ColliderHandle, away: bool) -> Option<Aabb> {
+        let shape = self.colliders.get(collider)?;
+        let aabb = shape.compute_broad_phase_aabb(self.parameters(), &self.bodies);
+        if !aabb.mins.is_finite() || !aabb.maxs.is_finite() {
+            return None;
+        }
+        // Each its own place far below the house, so that they do not make pairs there either.
+        let number = collider.into_raw_parts().0 as f32;
+        let far = Vector::new(4.0 * number, -1e6, 0.0);
+        Some(if away { Aabb::new(far, far) } else { aabb })
+    }
+}
+
+impl PhysicsWorld {
+    /// Now and then lays aside what has fallen asleep since. `joints_before`: the tick at which the control step began.
+    pub(crate) fn cache_sleeping(&mut self, joints_before: u64) {
+        if joints_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
+            return;
+        }
+        let mut asleep: Vec<RigidBodyHandle> = (0..self.bodies.len())
+            .filter(|index| self.is_cacheable(*index))
+            .map(|index| self.bodies[index].handle)
+            .collect();
+        self.engine.keep_touching_free_bodies(&mut asleep);
+        if asleep.is_empty() {
+            return;
+        }
+        asleep.sort_unstable_by_key(|body| body.into_raw_parts());
+        let kept = self.current_contacts().into_iter();
+        let sleeps = |body: &RigidBodyHandle| {
+            let key = |body: &RigidBodyHandle| body.into_raw_parts();
+            asleep.binary_search_by_key(&key(body), key).is_ok()
+        };
+        let kept = kept.filter(|(bodies, _)| bodies.iter().any(sleeps));
+        let kept = kept.map(|(bodies, contact)| CachedContact { bodies, contact });
+        self.engine.sleeping_cache.contacts.extend(kept);
+        self.engine.cache_bodies(&asleep);
+        self.forget_pairs(&asleep);
+    }
+
+    /// Forgets the pairs of bodies that no longer move with others that stand.
+    fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
+        // First they become known as standing, or what they touch would wake when the pairs go.
+        self.flush();
+        self.engine.toggle_broad_phase_proxies(bodies, true);
+        self.flush();
+        self.engine.toggle_broad_phase_proxies(bodies, false);
+        self.flush();
+        self.engine.shrink_pair_storage();
+    }
+
+    /// Forgets the pairs that things made before they were shut or frozen, with others that stand.
+    pub(crate) fn forget_fixed_pairs(&mut self) {
+        let stands = |(_, hold): &(&BodyHandle, &BodyStatus)| **hold != BodyStatus::Free;
+        let bodies = self.bodies.iter().zip(&self.holds).filter(stands);
+        let bodies: Vec<RigidBodyHandle> = bodies.map(|(body, _)| body.handle).collect();
+        if !bodies.is_empty() {
+            self.forget_pairs(&bodies);
+        }
+    }
+
+    /// Who touches whom among the pairs that rapier has.
+    fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
+        touching(
+            &self.engine.narrow_phase,
+            &self.engine.colliders,
+            &self.entries,
+            self.settings.config.touch_distance_m,
+        )
+    }
+
+    /// Writes who touches whom into the state: all pairs of parts, and of parts with the structure, each once, sorted.
+    pub(crate) fn write_contacts(&self, state: &mut State) {
+        let contacts = &mut state.contacts;
+        contacts.clear();
+        contacts.extend(
+            self.current_contacts()
+                .into_iter()
+                .map(|(_, contact)| contact),
+        );
+        contacts.extend(self.engine.sleeping_cache.contacts());
+        // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
+        contacts.sort_unstable_by_key(|contact| {
+            (
+                contact.a,
+                contact.b,
+                contact.rest == SupportRelation::Beside,
+            )
+        });
+        contacts.dedup_by_key(|contact| (contact.a, contact.b));
+    }
+
+    /// Whether a body sleeps and has nothing to do with hands.
+    fn is_cacheable(&self, index: usize) -> bool {
+        let handle = self.bodies[index].handle;
+        let rigid = self.engine.bodies.get(handle);
+        self.holds[index] == BodyStatus::Free
+            && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
+            && self.grips.iter().all(|grip| grip.body as usize != index)
+            && self
+                .released_overlapping
+                .iter()
+                .all(|(body, _)| *body as usize != index)
+    }
+}
+
+fn grown(aabb: &Aabb, by_m: f32) -> Aabb {
+    let by = Vector::splat(by_m);
+    Aabb::new(aabb.mins - by, aabb.maxs + by)
+}

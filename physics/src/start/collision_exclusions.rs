@@ -1,0 +1,196 @@
+//! What the leaves of joints pass through.
+
+use super::overlap::depth;
+use super::{CLEARANCE_M, StartResolver};
+use crate::contact::{ColliderEntry, CollisionExclusions, ContactEntity, entry_index};
+use crate::error::PhysicsError;
+use crate::limits;
+use crate::model::{BodyPlan, PhysicsModel, PieceOwner, shapes};
+use crate::report::{PassingJoint, StartReport};
+use dwell_scene::interrupt;
+use dwell_scene::{Mobility, ObjectId};
+use rapier3d::parry::query;
+use rapier3d::pipeline::QueryFilter;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// How near to a leaf something stands that it passes through, m.
+const LEAF_MARGIN_M: f32 = 0.01;
+
+impl StartResolver<'_> {
+    /// What the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
+    /// pass through fewer things: the links they are joined with, and what they are inside of at the start.
+    ///
+    /// # Errors
+    /// [`PhysicsError::TooMany`] where that is too much to remember.
+    pub(crate) fn passing(
+        &self,
+        report: &mut StartReport,
+    ) -> Result<CollisionExclusions, PhysicsError> {
+        let mut pairs: BTreeSet<(u32, u32)> = BTreeSet::new();
+        let house = &self.model.house;
+        let driven = house.joints.iter().filter(|joint| joint.servo.is_some());
+        let robots: BTreeSet<ObjectId> = driven.map(|joint| joint.object).collect();
+        let families = ObjectPieces::new(self.model, self.entries);
+        for (index, plan) in self.model.bodies.iter().enumerate() {
+            let Some(joint) = plan.joint else { continue };
+            interrupt::check();
+            let robot = robots.contains(&plan.object);
+            let mut through = BTreeSet::new();
+            let place = self.place(index);
+            for piece in &plan.pieces {
+                let world_from_piece = place * piece.place;
+                let near = shapes::bounds(&piece.shape, &world_from_piece).grown(LEAF_MARGIN_M);
+                let aabb = rapier3d::geometry::Aabb::new(near.min, near.max);
+                let queries = self.engine.queries(QueryFilter::default());
+                for (_, collider) in queries.intersect_aabb_conservative(aabb) {
+                    let entry = entry_index(collider);
+                    let other = &self.entries[entry];
+                    let same = self.same_object(other, plan);
+                    // Free bodies are moved out of the way instead.
+                    let free = other
+                        .body
+                        .is_some_and(|other| self.model.bodies[other as usize].joint.is_none());
+                    if other.body == Some(index as u32) || (free && !same) {
+                        continue;
+                    }
+                    let within = |margin_m: f32| {
+                        query::distance(
+                            collider.position(),
+                            collider.shape(),
+                            &world_from_piece,
+                            &*piece.shape,
+                        )
+                        .is_ok_and(|found| found.distance <= margin_m)
+                    };
+                    let inside = || {
+                        depth(
+                            collider.position(),
+                            collider.shape(),
+                            &world_from_piece,
+                            &*piece.shape,
+                            self.owner(entry),
+                        )
+                        .is_some_and(|overlap| self.counts(&overlap))
+                    };
+                    let touches = match (robot, same) {
+                        (true, true) => within(CLEARANCE_M),
+                        (true, false) => !self.is_free(plan) && inside(),
+                        (false, true) => true,
+                        (false, false) => within(LEAF_MARGIN_M),
+                    };
+                    if touches {
+                        pairs.insert((index as u32, entry as u32));
+                        if let Some(owner) = other.toucher.filter(|_| !same) {
+                            through.insert(self.toucher_name(owner));
+                        }
+                    }
+                }
+            }
+            // Its own object's other parts may come near only later.
+            let number = index as u32;
+            if robot {
+                pairs.extend(
+                    families
+                        .joined(self.model, number)
+                        .map(|entry| (number, entry)),
+                );
+            } else {
+                pairs.extend(
+                    families
+                        .beside(plan.object, number)
+                        .map(|entry| (number, entry)),
+                );
+            }
+            limits::check_passing(&self.model.house, plan.object, pairs.len())?;
+            if !through.is_empty() {
+                report.passing.push(PassingJoint {
+                    joint,
+                    through: through.into_iter().collect(),
+                });
+            }
+        }
+        Ok(CollisionExclusions {
+            entries: pairs.into_iter().collect(),
+            carriers: Vec::new(),
+        })
+    }
+
+    /// Whether a body's object stands on its own feet.
+    fn is_free(&self, plan: &BodyPlan) -> bool {
+        self.model.house.objects[plan.object].mobility == Mobility::Movable
+    }
+
+    fn same_object(&self, entry: &ColliderEntry, plan: &BodyPlan) -> bool {
+        match entry.toucher {
+            Some(ContactEntity::Part(part)) => self.model.house.parts[part].object == plan.object,
+            _ => false,
+        }
+    }
+
+    fn toucher_name(&self, toucher: ContactEntity) -> String {
+        let owner = match toucher {
+            ContactEntity::Structure(id) => PieceOwner::Structure(id),
+            ContactEntity::Part(id) => PieceOwner::Part(id),
+            ContactEntity::Agent(id) => return format!("agent {}", id.0),
+        };
+        owner.name(&self.model.house)
+    }
+}
+
+/// The pieces of objects with joints, by object and body (`None`: those that never move), and who hangs on whom.
+struct ObjectPieces {
+    pieces: BTreeMap<(ObjectId, Option<u32>), Vec<u32>>,
+    children: BTreeMap<u32, Vec<u32>>,
+}
+
+impl ObjectPieces {
+    fn new(model: &PhysicsModel, entries: &[ColliderEntry]) -> Self {
+        let joints = model.house.joints.iter();
+        let jointed: BTreeSet<ObjectId> = joints.map(|joint| joint.object).collect();
+        let mut pieces: BTreeMap<_, Vec<u32>> = BTreeMap::new();
+        for (number, entry) in entries.iter().enumerate() {
+            if let Some(ContactEntity::Part(part)) = entry.toucher {
+                let object = model.house.parts[part].object;
+                if jointed.contains(&object) {
+                    let own = pieces.entry((object, entry.body)).or_default();
+                    own.push(number as u32);
+                }
+            }
+        }
+        let mut children: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (index, plan) in model.bodies.iter().enumerate() {
+            if let Some(parent) = parent(model, plan).flatten() {
+                children.entry(parent).or_default().push(index as u32);
+            }
+        }
+        Self { pieces, children }
+    }
+
+    /// The pieces of an object but those of one of its bodies.
+    fn beside(&self, object: ObjectId, body: u32) -> impl Iterator<Item = u32> {
+        let all = self.pieces.range((object, None)..=(object, Some(u32::MAX)));
+        let others = all.filter(move |((_, owner), _)| *owner != Some(body));
+        others.flat_map(|(_, pieces)| pieces.iter().copied())
+    }
+
+    /// The pieces of an object that a joint joins with one of its bodies, or what of the object never moves.
+    fn joined(&self, model: &PhysicsModel, body: u32) -> impl Iterator<Item = u32> {
+        let plan = &model.bodies[body as usize];
+        let children = self.children.get(&body).into_iter().flatten();
+        let joined = parent(model, plan)
+            .into_iter()
+            .chain(children.map(|child| Some(*child)));
+        let pieces = joined.filter_map(|owner| self.pieces.get(&(plan.object, owner)));
+        pieces.flatten().copied()
+    }
+}
+
+/// What a body hangs on by a joint: another body, or what never moves (`None`); `None` where it hangs on nothing.
+#[expect(
+    clippy::option_option,
+    reason = "hanging on nothing is not hanging on what stands"
+)]
+fn parent(model: &PhysicsModel, plan: &BodyPlan) -> Option<Option<u32>> {
+    let part = model.house.joints[plan.joint?].parent;
+    Some(part.and_then(|part| model.body_of_part[part]))
+}

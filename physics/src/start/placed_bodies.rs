@@ -1,0 +1,129 @@
+//! The things that have their place while others are resolved, found by where they are.
+
+use crate::model::PhysicsModel;
+use dwell_scene::Aabb;
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::parry::partitioning::Bvh;
+use std::collections::BTreeMap;
+
+/// A thing that stands where it is while others are resolved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlacedBody {
+    pub(super) body: u32,
+    pub(super) bounds: Aabb,
+    pub(super) place: RapierPose,
+    /// Who came first comes first.
+    rank: u32,
+}
+
+/// All of them.
+#[derive(Default)]
+pub(super) struct PlacedBodies {
+    tree: Bvh,
+    by_body: BTreeMap<u32, PlacedBody>,
+    next_rank: u32,
+}
+
+impl PlacedBodies {
+    /// Lets a body stand at a place; who stands already goes there and keeps the rank.
+    pub(super) fn put(&mut self, model: &PhysicsModel, body: usize, place: RapierPose) {
+        let number = body as u32;
+        let rank = self
+            .by_body
+            .get(&number)
+            .map_or(self.next_rank, |before| before.rank);
+        self.next_rank = self.next_rank.max(rank + 1);
+        self.put_back(PlacedBody {
+            body: number,
+            bounds: model.bodies[body].bounds(&place),
+            place,
+            rank,
+        });
+    }
+
+    /// Lets one stand again that was taken.
+    pub(super) fn put_back(&mut self, placed: PlacedBody) {
+        self.take(placed.body as usize);
+        self.tree.insert(to_parry(&placed.bounds), placed.body);
+        self.by_body.insert(placed.body, placed);
+    }
+
+    /// Takes a body away.
+    pub(super) fn take(&mut self, body: usize) {
+        let number = body as u32;
+        if self.by_body.remove(&number).is_some() {
+            self.tree.remove(number);
+        }
+    }
+
+    /// Those whose boxes meet a box, who came first first.
+    pub(super) fn near(&self, bounds: &Aabb) -> Vec<PlacedBody> {
+        let around = to_parry(bounds);
+        let found = self.tree.intersect_aabb(&around);
+        let mut near: Vec<PlacedBody> = found
+            .filter_map(|body| self.by_body.get(&body).copied())
+            .filter(|placed| placed.bounds.intersects(bounds))
+            .collect();
+        near.sort_unstable_by_key(|placed| placed.rank);
+        near
+    }
+}
+
+fn to_parry(bounds: &Aabb) -> rapier3d::geometry::Aabb {
+    rapier3d::geometry::Aabb::new(bounds.min, bounds.max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::random::RandomKey;
+    use glam::Vec3;
+
+    /// Against a list that is walked: who meets a box, in order, while things come, go and move.
+    #[test]
+    fn those_near_a_box_are_those_of_a_list() {
+        let mut stream = RandomKey::root(4).stream();
+        let mut standing = PlacedBodies::default();
+        let mut list: Vec<PlacedBody> = Vec::new();
+        let mut draw = |grow: f32| {
+            let at = Vec3::from_array(std::array::from_fn(|_| stream.range(0.0, 4.0)));
+            Aabb::new(at, at + Vec3::splat(grow * stream.range(0.1, 1.0)))
+        };
+        for turn in 0..600_u32 {
+            let body = turn * 7 % 150;
+            let stood = list.iter().position(|placed| placed.body == body);
+            match (stood, turn % 5) {
+                (Some(place), 0) => {
+                    list.remove(place);
+                    standing.take(body as usize);
+                }
+                (Some(place), _) => {
+                    list[place].bounds = draw(1.0);
+                    standing.put_back(list[place]);
+                }
+                (None, _) => {
+                    let placed = PlacedBody {
+                        body,
+                        bounds: draw(1.0),
+                        place: RapierPose::IDENTITY,
+                        rank: turn,
+                    };
+                    list.push(placed);
+                    standing.put_back(placed);
+                }
+            }
+            let asked = draw(2.0);
+            let bodies = |all: &[PlacedBody]| all.iter().map(|one| one.body).collect::<Vec<_>>();
+            let by_hand: Vec<PlacedBody> = list
+                .iter()
+                .filter(|placed| placed.bounds.intersects(&asked))
+                .copied()
+                .collect();
+            assert_eq!(
+                bodies(&standing.near(&asked)),
+                bodies(&by_hand),
+                "turn {turn}"
+            );
+        }
+    }
+}
