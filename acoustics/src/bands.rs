@@ -13,10 +13,11 @@ use std::ops::Range;
 pub const BAND_COUNT: usize = 8;
 
 /// A quantity in each band. Shape (band,).
-pub type Banded = [f32; BAND_COUNT];
+pub type BandValues = [f32; BAND_COUNT];
 
 /// Nominal centres of the octave bands, Hz. Shape (band,).
-pub const NOMINAL_CENTRES_HZ: Banded = [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
+pub const NOMINAL_CENTRES_HZ: BandValues =
+    [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
 /// What filters ring beyond this to either side is left out of account, s.
 const LONGEST_RING_S: f64 = 0.05;
@@ -40,7 +41,7 @@ pub fn exact_centre_hz(band: usize) -> f64 {
 }
 
 /// A material's values at the bands.
-pub fn sample(values: &Bands) -> Banded {
+pub fn sample(values: &Bands) -> BandValues {
     NOMINAL_CENTRES_HZ.map(|centre| values.at(centre))
 }
 

@@ -1,6 +1,6 @@
 //! Cells of equal area on the sphere: from where energy comes.
 
-use crate::bands::{BAND_COUNT, Banded};
+use crate::bands::{BAND_COUNT, BandValues};
 use dwell_scene::math::sin_cos;
 use dwell_scene::random::RandomStream;
 use glam::Vec3;
@@ -45,12 +45,12 @@ pub fn within(cell: usize, u: f32, v: f32) -> Vec3 {
 ///
 /// Shares are per cell and band and need no sum of 1; a band in which nothing was found counts as sound from all sides.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Directions {
+pub struct DirectionalEnergy {
     /// Energy by cell and band. Shape (cell,).
-    pub energy: Vec<Banded>,
+    pub energy: Vec<BandValues>,
 }
 
-impl Default for Directions {
+impl Default for DirectionalEnergy {
     fn default() -> Self {
         Self {
             energy: vec![[0.0; BAND_COUNT]; CELL_COUNT],
@@ -58,9 +58,9 @@ impl Default for Directions {
     }
 }
 
-impl Directions {
+impl DirectionalEnergy {
     /// Sum over the cells. Shape (band,).
-    pub fn total(&self) -> Banded {
+    pub fn total(&self) -> BandValues {
         let mut sum = [0.0; BAND_COUNT];
         for cell in &self.energy {
             for (total, e) in sum.iter_mut().zip(cell) {
@@ -83,17 +83,17 @@ impl Directions {
     }
 
     /// Ready to draw from.
-    pub(crate) fn sampler(&self) -> Sampler {
+    pub(crate) fn sampler(&self) -> DirectionSampler {
         let total = self.total();
         let heard = total.iter().filter(|t| **t > 0.0).count();
         let even = 1.0 / CELL_COUNT as f32;
-        let mut sampler = Sampler {
+        let mut sampler = DirectionSampler {
             up_to: [0.0; CELL_COUNT],
             gain: vec![[1.0; BAND_COUNT]; CELL_COUNT],
         };
         let mut sum = 0.0;
         for (cell, energy) in self.energy.iter().enumerate() {
-            let share: Banded = std::array::from_fn(|band| {
+            let share: BandValues = std::array::from_fn(|band| {
                 if total[band] > 0.0 {
                     energy[band] / total[band]
                 } else {
@@ -127,16 +127,16 @@ fn middle(cell: usize) -> Vec3 {
 }
 
 /// Draws directions.
-pub(crate) struct Sampler {
+pub(crate) struct DirectionSampler {
     /// Chances summed up to each cell.
     up_to: [f32; CELL_COUNT],
     /// Amplitude of a band against the mean of all, from each cell.
-    gain: Vec<Banded>,
+    gain: Vec<BandValues>,
 }
 
-impl Sampler {
+impl DirectionSampler {
     /// A direction that sound comes from, and the gain of its bands.
-    pub(crate) fn draw(&self, stream: &mut RandomStream) -> (Vec3, &Banded) {
+    pub(crate) fn draw(&self, stream: &mut RandomStream) -> (Vec3, &BandValues) {
         let place = stream.uniform_f32() * self.up_to[CELL_COUNT - 1];
         let cell = self.up_to.partition_point(|sum| *sum <= place);
         let cell = cell.min(CELL_COUNT - 1);
@@ -186,7 +186,7 @@ mod tests {
     /// Two bands from opposite sides: what is drawn gives each band its own side and its whole energy.
     #[test]
     fn every_band_keeps_its_directions() {
-        let mut directions = Directions::default();
+        let mut directions = DirectionalEnergy::default();
         directions.energy[3][2] = 5.0;
         directions.energy[40][6] = 0.1;
         let sampler = directions.sampler();
@@ -207,12 +207,12 @@ mod tests {
 
     #[test]
     fn without_energy_sound_comes_from_all_sides() {
-        let sampler = Directions::default().sampler();
+        let sampler = DirectionalEnergy::default().sampler();
         let mut stream = RandomKey::root(2).stream();
         let n = 20_000;
         let sum: Vec3 = (0..n).map(|_| sampler.draw(&mut stream).0).sum();
         // Each component has a variance of a third.
         assert!(sum.length() / (n as f32) < 5.0 * (1.0 / n as f32).sqrt());
-        assert_eq!(Directions::default().mean(), Vec3::ZERO);
+        assert_eq!(DirectionalEnergy::default().mean(), Vec3::ZERO);
     }
 }

@@ -1,6 +1,6 @@
 //! How loud a source is, or how sensitive a microphone, towards each side.
 
-use crate::bands::{self, BAND_COUNT, Banded};
+use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::error::{AcousticsError, range};
 use crate::head::sphere_response;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,7 @@ pub enum Directivity {
     /// is upside down where the gain is negative.
     FirstOrder {
         /// g, 0 to 1. Shape (band,).
-        gradient: Banded,
+        gradient: BandValues,
     },
     /// A point on a rigid sphere: omnidirectional at low frequencies, ever narrower at high ones. With 0.0875 m a talking
     /// head, with 0.15 m a small loudspeaker.
@@ -38,7 +38,7 @@ pub enum Directivity {
     Polar {
         /// Over that on the axis, from there (0 degrees) to behind (180) at equal steps; between them amplitudes are interpolated. At
         /// most 2. Shape (angle, band), 2 to 361 angles.
-        gain: Vec<Banded>,
+        gain: Vec<BandValues>,
     },
 }
 
@@ -98,11 +98,11 @@ impl Directivity {
     }
 
     /// Ready for many directions, in air with `speed_m_s`.
-    pub(crate) fn pattern(&self, speed_m_s: f64) -> Pattern {
+    pub(crate) fn pattern(&self, speed_m_s: f64) -> TabulatedPattern {
         match self {
-            Self::Omni => Pattern::Omni,
-            Self::FirstOrder { gradient } => Pattern::FirstOrder(*gradient),
-            Self::Polar { gain } => Pattern::Table(gain.clone()),
+            Self::Omni => TabulatedPattern::Omni,
+            Self::FirstOrder { gradient } => TabulatedPattern::FirstOrder(*gradient),
+            Self::Polar { gain } => TabulatedPattern::Table(gain.clone()),
             Self::Sphere { radius_m } => {
                 let cosines: Vec<f64> = (0..ANGLES)
                     .map(|k| libm::cos(PI * k as f64 / (ANGLES - 1) as f64))
@@ -119,7 +119,7 @@ impl Directivity {
                         row[band] = (size(&value) / front) as f32;
                     }
                 }
-                Pattern::Table(table)
+                TabulatedPattern::Table(table)
             }
         }
     }
@@ -127,15 +127,15 @@ impl Directivity {
 
 /// A directivity, tabulated.
 #[derive(Clone, Debug)]
-pub(crate) enum Pattern {
+pub(crate) enum TabulatedPattern {
     Omni,
-    FirstOrder(Banded),
-    Table(Vec<Banded>),
+    FirstOrder(BandValues),
+    Table(Vec<BandValues>),
 }
 
-impl Pattern {
+impl TabulatedPattern {
     /// Gain of amplitude at an angle to the axis, by its cosine. Shape (band,).
-    pub(crate) fn gain(&self, cosine: f32) -> Banded {
+    pub(crate) fn gain(&self, cosine: f32) -> BandValues {
         match self {
             Self::Omni => [1.0; BAND_COUNT],
             Self::FirstOrder(gradient) => gradient.map(|g| 1.0 - g + g * cosine),
@@ -151,7 +151,7 @@ impl Pattern {
     }
 
     /// Tabulated with other gains; `change` gets the cosine of the angle to the axis and the gain there.
-    pub(crate) fn reshaped(&self, change: impl Fn(f32, Banded) -> Banded) -> Self {
+    pub(crate) fn reshaped(&self, change: impl Fn(f32, BandValues) -> BandValues) -> Self {
         let cosine = |k: usize| libm::cos(PI * k as f64 / (ANGLES - 1) as f64) as f32;
         let cosines = (0..ANGLES).map(cosine);
         Self::Table(cosines.map(|c| change(c, self.gain(c))).collect())
@@ -210,7 +210,7 @@ mod tests {
             let off = found.gain(cosine)[3] - wanted.gain(cosine)[3];
             assert!(off.abs() < 1e-3, "{degrees}: {off}");
         }
-        let refused = |gain: Vec<Banded>| Directivity::Polar { gain }.check().unwrap_err();
+        let refused = |gain: Vec<BandValues>| Directivity::Polar { gain }.check().unwrap_err();
         let one = [1.0; BAND_COUNT];
         for gain in [
             vec![],

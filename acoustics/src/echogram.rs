@@ -1,13 +1,13 @@
 //! Energies over time: what arrives when, in which band, from where.
 
-use crate::bands::{BAND_COUNT, Banded};
-use crate::directions::Directions;
+use crate::bands::{BAND_COUNT, BandValues};
+use crate::directions::DirectionalEnergy;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// One deterministic path from source to receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Path {
+pub struct PropagationPath {
     /// The planes it is reflected by, from the source on. Shape (order,).
     pub planes: Vec<u32>,
     /// Where it bends around edges, from the source on, m; a path that bends is not reflected. Shape (0 to 2,).
@@ -15,7 +15,7 @@ pub struct Path {
     /// Its length, m.
     pub length_m: f64,
     /// Energy at the receiver re 1/d² of a free path, air included. Shape (band,).
-    pub energy: Banded,
+    pub energy: BandValues,
     /// Where it comes from at the receiver, unit length, world.
     pub arrival: Vec3,
     /// Where it leaves the source to, unit length, world.
@@ -26,7 +26,7 @@ pub struct Path {
     pub inverted: bool,
 }
 
-impl Path {
+impl PropagationPath {
     /// Whether it is the straight one, in sight or through walls.
     pub fn is_direct(&self) -> bool {
         self.planes.is_empty() && self.bends.is_empty()
@@ -40,7 +40,7 @@ impl Path {
 
 /// Energy of the tail over time, and from where it comes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Histogram {
+pub struct EnergyHistogram {
     /// Width of a bin, s.
     pub bin_s: f64,
     /// Energy re 1/d² of a free path, air included, from the moment of the impulse on. Shape (bin, band).
@@ -48,10 +48,10 @@ pub struct Histogram {
     /// Bins that share one entry of `directions`; at least 1.
     pub bins_per_direction: usize,
     /// From where it comes. Shape (ceil(bin / `bins_per_direction`),).
-    pub directions: Vec<Directions>,
+    pub directions: Vec<DirectionalEnergy>,
 }
 
-impl Histogram {
+impl EnergyHistogram {
     /// Sum over all bins. Shape (band,).
     pub fn total(&self) -> [f64; BAND_COUNT] {
         let mut sum = [0.0; BAND_COUNT];
@@ -64,7 +64,7 @@ impl Histogram {
     }
 
     /// From where the energy of bin `bin` comes, if that is known.
-    pub fn directions_at(&self, bin: usize) -> Option<&Directions> {
+    pub fn directions_at(&self, bin: usize) -> Option<&DirectionalEnergy> {
         self.directions.get(bin / self.bins_per_direction.max(1))
     }
 
@@ -74,12 +74,12 @@ impl Histogram {
     }
 }
 
-/// Spans of time in [`TraceStatistics::error_over_time`].
+/// Spans of time in [`RayStatistics::error_over_time`].
 pub const SPAN_COUNT: usize = 7;
 
 /// How the rays fared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct TraceStatistics {
+pub struct RayStatistics {
     /// Rays that started.
     pub rays: u64,
     /// Straight pieces that ended on a surface.
@@ -92,7 +92,7 @@ pub struct TraceStatistics {
     pub receiver_radius_m: f64,
     /// Standard error of the tail's energy over its mean, from the scatter among groups of rays; 0 where nothing arrives.
     /// Shape (band,).
-    pub relative_error: Banded,
+    pub relative_error: BandValues,
     /// The same for spans of time, all bands together, from the scatter among rays: up to 20, 40, 80, 160, 320, 640 ms, and later.
     /// Shape (span,).
     pub error_over_time: [f32; SPAN_COUNT],
@@ -104,11 +104,11 @@ pub struct TraceStatistics {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Echogram {
     /// Direct sound, low-order reflections and what bends around edges, by length.
-    pub paths: Vec<Path>,
+    pub paths: Vec<PropagationPath>,
     /// Everything else.
-    pub tail: Histogram,
+    pub tail: EnergyHistogram,
     /// How the rays fared.
-    pub trace: TraceStatistics,
+    pub trace: RayStatistics,
     /// Where the source is, m.
     pub source: Vec3,
     /// The straight distance from source to receiver, m, whatever stands between: nothing is heard before that.
@@ -119,12 +119,12 @@ pub struct Echogram {
 
 impl Echogram {
     /// The direct path, if sound gets through.
-    pub fn direct(&self) -> Option<&Path> {
+    pub fn direct(&self) -> Option<&PropagationPath> {
         self.paths.iter().find(|path| path.is_direct())
     }
 
     /// When a path arrives, s.
-    pub fn delay_s(&self, path: &Path) -> f64 {
+    pub fn delay_s(&self, path: &PropagationPath) -> f64 {
         path.length_m / self.speed_m_s
     }
 

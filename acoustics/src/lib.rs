@@ -1,6 +1,6 @@
 //! What a microphone hears: rays, band materials, impulse responses.
 //!
-//! An [`AcousticScene`] is a house as sound sees it. Between a [`Source`] and a [`Receiver`] it finds an [`Echogram`] (exact
+//! An [`AcousticScene`] is a house as sound sees it. Between a [`SoundSourcePose`] and a [`Receiver`] it finds an [`Echogram`] (exact
 //! early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A [`Stream`] convolves
 //! sources with them, block by block, in step with a world. [`signals`], [`recordings`] and [`contact`] are what things sound like, and
 //! [`metrics`] what rooms sound like.
@@ -25,7 +25,6 @@
 
 pub mod air;
 pub mod bands;
-mod channel;
 mod config;
 pub mod contact;
 mod diffraction;
@@ -33,16 +32,17 @@ mod directions;
 mod directivity;
 mod echogram;
 mod error;
-mod explain;
 mod fft;
 pub mod hdf5;
 pub mod head;
-mod images;
+mod image_sources;
 pub mod laws;
+mod material_report;
 pub mod metrics;
-mod microphones;
+mod microphone_chain;
 mod planes;
 mod receiver;
+mod receiver_channel;
 pub mod recordings;
 mod reflection;
 mod response;
@@ -56,15 +56,15 @@ mod transmission;
 
 pub use air::Air;
 pub use config::AcousticConfig;
-pub use directions::{CELL_COUNT, Directions, cell_of, within};
+pub use directions::{CELL_COUNT, DirectionalEnergy, cell_of, within};
 pub use directivity::Directivity;
-pub use echogram::{Echogram, Histogram, Path, SPAN_COUNT, TraceStatistics};
+pub use echogram::{Echogram, EnergyHistogram, PropagationPath, RayStatistics, SPAN_COUNT};
 pub use error::AcousticsError;
-pub use explain::{Explanation, MaterialRow};
 pub use head::{Head, HeadId};
-pub use images::{EarlyPath, NEAREST_M};
-pub use planes::{Edge, NO_PLANE, Plane, PlaneTable};
-pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, Source};
+pub use image_sources::{EarlyPath, NEAREST_M};
+pub use material_report::{AcousticReport, MaterialAcoustics};
+pub use planes::{DiffractionEdge, NO_PLANE, Plane, PlaneTable};
+pub use receiver::{MOST_MICROPHONES, Microphone, Receiver, ReceiverKind, SoundSourcePose};
 pub use recordings::Recording;
 pub use response::ImpulseResponse;
 pub use scene::AcousticScene;

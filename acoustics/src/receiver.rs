@@ -14,14 +14,14 @@ const HIGHEST_ORDER: u8 = 3;
 
 /// What radiates sound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Source {
+pub struct SoundSourcePose {
     /// Where it is, and its axes (forward -Z), m.
     pub pose: Pose,
     /// How loud it is towards each side; its level is that on its axis.
     pub directivity: Directivity,
 }
 
-impl Source {
+impl SoundSourcePose {
     /// A source at `position` that radiates equally in all directions.
     pub const fn at(position: Vec3) -> Self {
         Self {

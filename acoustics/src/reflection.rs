@@ -1,6 +1,6 @@
 //! What a surface keeps of a wave, by the angle at which it meets it.
 
-use crate::bands::Banded;
+use crate::bands::BandValues;
 
 /// The admittance that absorbs most over all angles: 1 / 1.567.
 const HIGHEST_ADMITTANCE: f64 = 0.638_163;
@@ -23,9 +23,9 @@ const GRAZING: f32 = 1e-4;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reflection {
     /// Of air over the surface's impedance; 0 for what does not depend on the angle. Shape (band,).
-    admittance: Banded,
+    admittance: BandValues,
     /// What is kept where the admittance keeps all. Shape (band,).
-    most: Banded,
+    most: BandValues,
 }
 
 impl Reflection {
@@ -36,7 +36,7 @@ impl Reflection {
     };
 
     /// That of `absorption` (from 0 to 1) at all angles alike.
-    pub(crate) fn uniform(absorption: &Banded) -> Self {
+    pub(crate) fn uniform(absorption: &BandValues) -> Self {
         Self {
             most: absorption.map(|a| 1.0 - a),
             ..Self::HARD
@@ -44,7 +44,7 @@ impl Reflection {
     }
 
     /// That of a surface which absorbs `absorption` (from 0 to 1) of sound from all sides.
-    pub(crate) fn by_angle(absorption: &Banded) -> Self {
+    pub(crate) fn by_angle(absorption: &BandValues) -> Self {
         let highest = from_all_sides(HIGHEST_ADMITTANCE);
         let rest = |a: f32| (1.0 - f64::from(a)) / (1.0 - highest);
         Self {
@@ -54,7 +54,7 @@ impl Reflection {
     }
 
     /// The part of the energy that is kept, at a cosine of incidence. Shape (band,).
-    pub(crate) fn kept(&self, cosine: f32) -> Banded {
+    pub(crate) fn kept(&self, cosine: f32) -> BandValues {
         let cosine = cosine.max(GRAZING);
         std::array::from_fn(|band| {
             let admittance = self.admittance[band];
@@ -105,7 +105,7 @@ mod tests {
 
     #[test]
     fn what_comes_from_all_sides_is_absorbed_as_the_table_has_it() {
-        let absorption: Banded = [0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.97, 1.0];
+        let absorption: BandValues = [0.0, 0.01, 0.1, 0.3, 0.6, 0.9, 0.97, 1.0];
         let reflection = Reflection::by_angle(&absorption);
         for (band, wanted) in absorption.into_iter().map(f64::from).enumerate() {
             let absorbed = over_all_sides(|c| 1.0 - f64::from(reflection.kept(c as f32)[band]));

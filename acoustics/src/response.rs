@@ -1,7 +1,7 @@
 //! What a receiver hears of an impulse.
 
 use crate::echogram::Echogram;
-use crate::synthesis::KnownLevels;
+use crate::synthesis::CachedGains;
 use serde::{Deserialize, Serialize};
 
 /// Pressure over time at a receiver, for a source that makes an impulse of 1 Pa at 1 m.
@@ -20,7 +20,7 @@ pub struct ImpulseResponse {
     pub echogram: Echogram,
     /// How its noise was corrected: the same whichever way the receiver turns.
     #[serde(skip)]
-    pub(crate) levels: KnownLevels,
+    pub(crate) levels: CachedGains,
 }
 
 impl ImpulseResponse {
@@ -50,7 +50,7 @@ impl ImpulseResponse {
 
 #[cfg(test)]
 mod tests {
-    use crate::{AcousticConfig, AcousticScene, Receiver, Source};
+    use crate::{AcousticConfig, AcousticScene, Receiver, SoundSourcePose};
     use dwell_scene::Pose;
     use dwell_scene::parallel::Threads;
     use dwell_scene::random::RandomKey;
@@ -65,7 +65,7 @@ mod tests {
         let rays = RayScene::new(house.clone());
         let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
         let (place, key) = (Vec3::new(2.0, 1.5, 2.0), RandomKey::root(4));
-        let source = Source::at(place + 0.5 * Vec3::X);
+        let source = SoundSourcePose::at(place + 0.5 * Vec3::X);
         let echogram = scene
             .echogram(&rays, &source, place, key, Threads::ONE)
             .unwrap();

@@ -1,20 +1,20 @@
 //! A house as sound sees it.
 
-use crate::bands::{BAND_COUNT, Banded, NOMINAL_CENTRES_HZ};
+use crate::bands::{BAND_COUNT, BandValues, NOMINAL_CENTRES_HZ};
 use crate::config::AcousticConfig;
-use crate::echogram::{Echogram, Path};
+use crate::echogram::{Echogram, PropagationPath};
 use crate::error::{AcousticsError, finite};
-use crate::explain::Explanation;
-use crate::head::{Head, Heads};
-use crate::laws::{self, Effects, stage::Listener};
-use crate::microphones::Microphones;
-use crate::planes::{Edge, Plane, PlaneTable, WALL_M2};
-use crate::receiver::{Receiver, Source};
+use crate::head::{Head, HeadSet};
+use crate::laws::{self, PathEffects, microphone_stage::StageContext};
+use crate::material_report::AcousticReport;
+use crate::microphone_chain::MicrophoneChain;
+use crate::planes::{DiffractionEdge, Plane, PlaneTable, WALL_M2};
+use crate::receiver::{Receiver, SoundSourcePose};
 use crate::response::ImpulseResponse;
-use crate::surface::Surface;
-use crate::synthesis::{Hearing, KnownLevels, Synthesizer, UpperAir, Wavelet};
-use crate::tail::Late;
-use crate::{images, tail};
+use crate::surface::AcousticSurface;
+use crate::synthesis::{CachedGains, HearingContext, Synthesizer, UpperAir, Wavelet};
+use crate::tail::LateReverberation;
+use crate::{image_sources, tail};
 use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -42,21 +42,21 @@ pub struct AcousticScene {
     stated: AcousticConfig,
     /// As laws make it.
     config: AcousticConfig,
-    effects: Effects,
+    effects: PathEffects,
     laws: Vec<LawSpec>,
     table: Arc<PlaneTable>,
     synthesizer: Arc<Synthesizer>,
-    heads: Arc<Heads>,
+    heads: Arc<HeadSet>,
     /// What air takes above the highest band, where that can be heard.
     upper_air: Option<Arc<UpperAir>>,
     /// Where all planes are now.
     planes: Vec<Plane>,
     /// Where the edges of moving parts are now.
-    moving_edges: Vec<Edge>,
+    moving_edges: Vec<DiffractionEdge>,
     /// Where the moving parts are now. Shape (moving part,).
     poses: Vec<Pose>,
     /// Shape (material,).
-    surfaces: Vec<Surface>,
+    surfaces: Vec<AcousticSurface>,
     overrides: BTreeMap<Address, f64>,
 }
 
@@ -77,14 +77,14 @@ impl AcousticScene {
             surfaces: house
                 .materials
                 .ids()
-                .map(|id| Surface::new(&house, None, id, &config))
+                .map(|id| AcousticSurface::new(&house, None, id, &config))
                 .collect(),
             upper_air: synthesizer.upper_air(&config, 1.0).map(Arc::new),
             synthesizer,
-            heads: Arc::new(Heads::new(&config)),
+            heads: Arc::new(HeadSet::new(&config)),
             overrides: BTreeMap::new(),
             stated: config,
-            effects: Effects::default(),
+            effects: PathEffects::default(),
             laws: Vec::new(),
             table,
             config,
@@ -96,13 +96,13 @@ impl AcousticScene {
     pub fn update(&mut self, state: &State) {
         if state.laws != self.laws {
             self.laws.clone_from(&state.laws);
-            self.obey(laws::effects(&self.laws));
+            self.apply_laws(laws::path_effects(&self.laws));
         }
         if state.overrides != self.overrides {
             self.overrides.clone_from(&state.overrides);
             let ids = self.house.materials.ids();
             self.surfaces = ids
-                .map(|id| Surface::new(&self.house, Some(state), id, &self.config))
+                .map(|id| AcousticSurface::new(&self.house, Some(state), id, &self.config))
                 .collect();
         }
         if self.table.update(&mut self.planes, &mut self.poses, state) {
@@ -110,7 +110,7 @@ impl AcousticScene {
         }
     }
 
-    fn obey(&mut self, effects: Effects) {
+    fn apply_laws(&mut self, effects: PathEffects) {
         let (air, absorption) = (self.config.air, self.effects.air_absorption());
         self.config = effects.config(&self.stated);
         self.effects = effects;
@@ -135,14 +135,14 @@ impl AcousticScene {
     }
 
     /// The same scene as laws with some effects have it.
-    pub(crate) fn as_heard(&self, effects: Effects) -> Self {
+    pub(crate) fn as_heard(&self, effects: PathEffects) -> Self {
         let mut scene = self.clone();
-        scene.obey(effects);
+        scene.apply_laws(effects);
         scene
     }
 
     /// What laws do to air and sources.
-    pub(crate) fn effects(&self) -> &Effects {
+    pub(crate) fn effects(&self) -> &PathEffects {
         &self.effects
     }
 
@@ -162,7 +162,7 @@ impl AcousticScene {
     }
 
     /// All edges that sound bends around, where they are now.
-    pub fn edges(&self) -> impl Iterator<Item = &Edge> {
+    pub fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
         let fixed = self.table.edges().fixed.iter();
         fixed.chain(&self.moving_edges)
     }
@@ -171,10 +171,12 @@ impl AcousticScene {
         &self.table
     }
 
-    pub(crate) fn surface(&self, id: MaterialId) -> &Surface {
+    pub(crate) fn surface(&self, id: MaterialId) -> &AcousticSurface {
         use dwell_scene::Id;
         // An id of another house counts as a hard wall; houses are compared where calls come in.
-        self.surfaces.get(id.index()).unwrap_or(&Surface::HARD)
+        self.surfaces
+            .get(id.index())
+            .unwrap_or(&AcousticSurface::HARD)
     }
 
     /// The fraction of reflected energy that a surface scatters where a ray meets it, after `straight_m` from the source or the
@@ -191,11 +193,11 @@ impl AcousticScene {
     /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy.
     pub(crate) fn scattering(
         &self,
-        material: &Surface,
+        material: &AcousticSurface,
         hit: &Hit,
         cosine: f32,
         straight_m: f64,
-    ) -> Banded {
+    ) -> BandValues {
         let mut scattering = material.scattering;
         if !self.config.panel_size {
             return scattering;
@@ -239,15 +241,15 @@ impl AcousticScene {
     }
 
     /// What sound meets: areas, mean absorption, which materials are guesses.
-    pub fn explain(&self) -> Explanation {
-        Explanation::new(self)
+    pub fn explain(&self) -> AcousticReport {
+        AcousticReport::new(self)
     }
 
     /// Whether source and receiver are somewhere, and rays meet this house.
     pub(crate) fn check(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Vec3],
     ) -> Result<(), AcousticsError> {
         source.check()?;
@@ -275,7 +277,7 @@ impl AcousticScene {
     pub fn echogram(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receiver: Vec3,
         key: RandomKey,
         threads: Threads,
@@ -294,7 +296,7 @@ impl AcousticScene {
     pub fn echograms(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Vec3],
         key: RandomKey,
         threads: Threads,
@@ -307,7 +309,7 @@ impl AcousticScene {
     pub(crate) fn echograms_of(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Vec3],
         count: usize,
         key: RandomKey,
@@ -315,7 +317,7 @@ impl AcousticScene {
     ) -> Vec<Echogram> {
         let position = source.position();
         let early = threads.map(receivers.len(), |k| {
-            images::find(self, rays, source, receivers[k])
+            image_sources::find(self, rays, source, receivers[k])
         });
         let late = tail::trace(
             self,
@@ -334,8 +336,8 @@ impl AcousticScene {
     /// The echogram of early paths and a tail.
     pub(crate) fn joined(
         &self,
-        paths: Vec<Path>,
-        late: Late,
+        paths: Vec<PropagationPath>,
+        late: LateReverberation,
         source: Vec3,
         receiver: Vec3,
     ) -> Echogram {
@@ -366,7 +368,7 @@ impl AcousticScene {
     pub fn impulse_response(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receiver: &Receiver,
         key: RandomKey,
         threads: Threads,
@@ -386,7 +388,7 @@ impl AcousticScene {
     pub fn impulse_responses(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Receiver],
         key: RandomKey,
         threads: Threads,
@@ -427,19 +429,19 @@ impl AcousticScene {
         let listener = self.listener(receiver, key.child("room"), own);
         let rate_hz = f64::from(self.config.rate_hz);
         ImpulseResponse {
-            samples: Microphones::record(&self.laws, rate_hz, &listener, response.samples),
+            samples: MicrophoneChain::record(&self.laws, rate_hz, &listener, response.samples),
             ..response
         }
     }
 
-    /// Who listens; `room` and `own` as in [`Listener`].
+    /// Who listens; `room` and `own` as in [`StageContext`].
     pub(crate) fn listener<'a>(
         &'a self,
         receiver: &'a Receiver,
         room: RandomKey,
         own: RandomKey,
-    ) -> Listener<'a> {
-        Listener {
+    ) -> StageContext<'a> {
+        StageContext {
             receiver,
             heads: &self.heads,
             speed_m_s: self.config.air.speed_of_sound_m_s(),
@@ -459,7 +461,7 @@ impl AcousticScene {
     pub(crate) fn arrivals(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Receiver],
         key: RandomKey,
         noise: impl Fn(&Receiver) -> RandomKey + Sync,
@@ -482,12 +484,12 @@ impl AcousticScene {
     pub(crate) fn early_of_microphones(
         &self,
         rays: &RayScene,
-        source: &Source,
+        source: &SoundSourcePose,
         receiver: &Receiver,
-    ) -> Option<Vec<Vec<Path>>> {
+    ) -> Option<Vec<Vec<PropagationPath>>> {
         let positions = receiver.microphone_positions()?;
         let found = positions.iter().map(|position| {
-            let mut paths = images::find(self, rays, source, *position);
+            let mut paths = image_sources::find(self, rays, source, *position);
             self.effects.on_paths(&mut paths);
             paths
         });
@@ -501,9 +503,9 @@ impl AcousticScene {
         rays: &RayScene,
         source: Vec3,
         receiver: Vec3,
-        known: &[Path],
-    ) -> Vec<Path> {
-        let mut paths = images::follow(self, rays, source, receiver, known);
+        known: &[PropagationPath],
+    ) -> Vec<PropagationPath> {
+        let mut paths = image_sources::follow(self, rays, source, receiver, known);
         self.effects.on_paths(&mut paths);
         paths
     }
@@ -512,15 +514,15 @@ impl AcousticScene {
     pub(crate) fn wavelets(
         &self,
         speed_m_s: f64,
-        paths: &[Path],
+        paths: &[PropagationPath],
         receiver: &Receiver,
     ) -> Vec<Vec<Wavelet>> {
         let hearing = self.hearing(receiver);
         self.synthesizer.wavelets(speed_m_s, paths, &hearing)
     }
 
-    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> Hearing<'a> {
-        Hearing {
+    fn hearing<'a>(&'a self, receiver: &'a Receiver) -> HearingContext<'a> {
+        HearingContext {
             receiver,
             heads: &self.heads,
             air: self.upper_air.as_deref(),
@@ -531,12 +533,12 @@ impl AcousticScene {
     pub(crate) fn without(
         &self,
         response: &ImpulseResponse,
-        paths: &[Path],
+        paths: &[PropagationPath],
         receiver: &Receiver,
     ) -> Vec<f32> {
         let mut samples = response.samples.clone();
         let wavelets = self.wavelets(response.echogram.speed_m_s, paths, receiver);
-        self.synthesizer.take_out(&wavelets, &mut samples);
+        self.synthesizer.subtract_wavelets(&wavelets, &mut samples);
         samples
     }
 
@@ -546,10 +548,10 @@ impl AcousticScene {
         &self,
         echogram: Echogram,
         receiver: &Receiver,
-        early: Option<&[Vec<Path>]>,
+        early: Option<&[Vec<PropagationPath>]>,
         key: RandomKey,
     ) -> ImpulseResponse {
-        self.arrive_with(KnownLevels::default(), echogram, receiver, early, key)
+        self.arrive_with(CachedGains::default(), echogram, receiver, early, key)
     }
 
     /// The same response for a receiver that has turned in its place and is otherwise the same; `key` as it was.
@@ -565,10 +567,10 @@ impl AcousticScene {
 
     fn arrive_with(
         &self,
-        mut levels: KnownLevels,
+        mut levels: CachedGains,
         echogram: Echogram,
         receiver: &Receiver,
-        early: Option<&[Vec<Path>]>,
+        early: Option<&[Vec<PropagationPath>]>,
         key: RandomKey,
     ) -> ImpulseResponse {
         let (hearing, key) = (self.hearing(receiver), key.child("noise"));

@@ -1,30 +1,30 @@
 //! What materials do to sound.
 
-use crate::bands::{self, BAND_COUNT, Banded};
+use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
 use crate::reflection::Reflection;
 use dwell_scene::{House, Material, MaterialId, State};
 
 /// What a material does to sound energy.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Surface {
+pub(crate) struct AcousticSurface {
     /// Energy that sound from all sides loses in a reflection.
-    pub(crate) absorption: Banded,
+    pub(crate) absorption: BandValues,
     pub(crate) reflection: Reflection,
     /// Fraction of what stays that is scattered.
-    pub(crate) scattering: Banded,
+    pub(crate) scattering: BandValues,
     /// Energy that passes through, from 0 to 1.
-    pub(crate) passed: Banded,
+    pub(crate) passed: BandValues,
 }
 
 /// What a reflection makes of a wave's energy. Shapes (band,).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Parts {
-    pub(crate) scattered: Banded,
-    pub(crate) mirrored: Banded,
+pub(crate) struct ReflectedEnergy {
+    pub(crate) scattered: BandValues,
+    pub(crate) mirrored: BandValues,
 }
 
-impl Surface {
+impl AcousticSurface {
     pub(crate) const HARD: Self = Self {
         absorption: [0.0; BAND_COUNT],
         reflection: Reflection::HARD,
@@ -75,9 +75,9 @@ impl Surface {
     /// What is left of a wave that meets it with a cosine of incidence where so much is scattered.
     ///
     /// What is scattered forgets the angle that it came at, so that ways there and back lose alike.
-    pub(crate) fn parts(&self, cosine: f32, scattering: &Banded) -> Parts {
+    pub(crate) fn parts(&self, cosine: f32, scattering: &BandValues) -> ReflectedEnergy {
         let kept = self.reflection.kept(cosine);
-        Parts {
+        ReflectedEnergy {
             scattered: std::array::from_fn(|b| (1.0 - self.absorption[b]) * scattering[b]),
             mirrored: std::array::from_fn(|b| kept[b] * (1.0 - scattering[b])),
         }

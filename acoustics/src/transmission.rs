@@ -1,6 +1,6 @@
 //! Sound through walls and doors.
 
-use crate::bands::{BAND_COUNT, Banded};
+use crate::bands::{BAND_COUNT, BandValues};
 use crate::scene::AcousticScene;
 use crate::tail::margin_m;
 use dwell_scene::SurfaceOwner;
@@ -16,25 +16,25 @@ const MOST_SURFACES: usize = 64;
 const THICKEST_WALL_M: f32 = 0.5;
 
 /// One obstacle on the way.
-struct Wall {
+struct TransmittingWall {
     owner: SurfaceOwner,
     normal: Vec3,
     /// Where the first of its faces is, m from the source.
     first_m: f32,
     /// The least energy that one of its materials lets pass.
-    passed: Banded,
+    passed: BandValues,
 }
 
 /// The energy that gets from `source` to `receiver` through what stands between, and how many walls that is.
-pub(crate) fn through(
+pub(crate) fn transmitted(
     scene: &AcousticScene,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
-) -> Option<(Banded, usize)> {
+) -> Option<(BandValues, usize)> {
     let whole = Ray::segment(source, receiver, 0.0);
     let mut near_m = 0.0;
-    let mut walls: Vec<Wall> = Vec::new();
+    let mut walls: Vec<TransmittingWall> = Vec::new();
     for _ in 0..MOST_SURFACES {
         let Some(hit) = rays.closest(&whole.between(near_m, whole.far_m), RayMask::EAR) else {
             let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
@@ -43,7 +43,7 @@ pub(crate) fn through(
             return Some((fractions, walls.len()));
         };
         near_m = hit.distance_m + margin_m(whole.at(hit.distance_m));
-        let here = Wall::new(scene, rays, &hit);
+        let here = TransmittingWall::new(scene, rays, &hit);
         // Both faces of a solid, or both shells of a wall, are crossed by one sound: it counts once, by its better insulator.
         if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
             wall.join(&here);
@@ -52,7 +52,7 @@ pub(crate) fn through(
         } else {
             walls.push(here);
         }
-        let blocks = |wall: &Wall| wall.passed.iter().all(|passed| *passed <= 0.0);
+        let blocks = |wall: &TransmittingWall| wall.passed.iter().all(|passed| *passed <= 0.0);
         if walls.iter().any(blocks) {
             return None;
         }
@@ -61,11 +61,11 @@ pub(crate) fn through(
 }
 
 /// The far side of a wall that a ray meets.
-pub(crate) struct Beyond {
+pub(crate) struct WallExit {
     /// Where the ray goes on.
     pub(crate) start: Vec3,
     /// Energy that gets there. Shape (band,).
-    pub(crate) passed: Banded,
+    pub(crate) passed: BandValues,
 }
 
 /// Where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
@@ -74,8 +74,8 @@ pub(crate) fn beyond(
     rays: &RayScene,
     ray: &Ray,
     hit: &Hit,
-) -> Option<Beyond> {
-    let mut wall = Wall::new(scene, rays, hit);
+) -> Option<WallExit> {
+    let mut wall = TransmittingWall::new(scene, rays, hit);
     let mut last_m = hit.distance_m;
     for _ in 0..MOST_SURFACES {
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
@@ -84,13 +84,13 @@ pub(crate) fn beyond(
         let near_m = last_m + margin_m(ray.at(last_m));
         let rest = ray.between(near_m, hit.distance_m + THICKEST_WALL_M);
         let next = rays.closest(&rest, RayMask::EAR);
-        match next.map(|next| (Wall::new(scene, rays, &next), next.distance_m)) {
+        match next.map(|next| (TransmittingWall::new(scene, rays, &next), next.distance_m)) {
             Some((here, distance_m)) if wall.is_same(&here) => {
                 wall.join(&here);
                 last_m = distance_m;
             }
             _ => {
-                return Some(Beyond {
+                return Some(WallExit {
                     start: ray.at(near_m),
                     passed: wall.passed,
                 });
@@ -100,7 +100,7 @@ pub(crate) fn beyond(
     None
 }
 
-impl Wall {
+impl TransmittingWall {
     fn new(scene: &AcousticScene, rays: &RayScene, hit: &Hit) -> Self {
         let surface = rays.surface(hit);
         Self {

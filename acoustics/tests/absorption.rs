@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Hall, box_sides, dry, material, pieces};
-use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Source, bands, metrics};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, SoundSourcePose, bands, metrics};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
@@ -206,7 +206,13 @@ fn source_and_receiver_may_change_places() {
         let hear = |from: Vec3, to: Vec3, seed: u64| {
             let key = RandomKey::root(seed);
             scene
-                .echogram(&rays, &Source::at(from), to, key, Threads::exactly(2))
+                .echogram(
+                    &rays,
+                    &SoundSourcePose::at(from),
+                    to,
+                    key,
+                    Threads::exactly(2),
+                )
                 .unwrap()
         };
         let (there, back) = (hear(a, b, 1), hear(b, a, 2));

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Hall, dry, material};
-use dwell_acoustics::{AcousticConfig, Histogram, Microphone, Receiver, Source};
+use dwell_acoustics::{AcousticConfig, EnergyHistogram, Microphone, Receiver, SoundSourcePose};
 use dwell_acoustics::{cell_of, metrics, within};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
@@ -130,7 +130,7 @@ fn t30_s(energies: impl DoubleEndedIterator<Item = f64>) -> f64 {
 }
 
 /// Mean squares of the directions of what arrives between two times.
-fn squares(tail: &Histogram, from_s: f64, to_s: f64) -> [f64; 3] {
+fn squares(tail: &EnergyHistogram, from_s: f64, to_s: f64) -> [f64; 3] {
     let (mut all, mut squares) = (0.0, [0.0; 3]);
     for (row, directions) in tail.directions.iter().enumerate() {
         let time_s = (row as f64 + 0.5) * tail.bins_per_direction as f64 * tail.bin_s;
@@ -237,7 +237,8 @@ fn the_tail_of_a_long_room_is_that_of_a_diffuse_field() {
         let mut sums = vec![[0.0; 3]; frequencies_hz.len()];
         for k in 0..12 {
             let angle = f32::to_radians(30.0 * k as f32);
-            let source = Source::at(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
+            let source =
+                SoundSourcePose::at(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
             let (key, threads) = (RandomKey::root(0), Threads::exactly(2));
             let heard = hall
                 .scene
@@ -286,7 +287,7 @@ fn every_pair_of_places_has_arrivals_of_its_own() {
     let hall = Hall::shoebox(SIZE_M, &material(0.2, 0.5), config(true, 1000));
     let (near, far) = (Vec3::new(2.0, 1.2, 2.0), Vec3::new(7.0, 1.4, 4.0));
     let hear = |source: Vec3, ear: Vec3| {
-        let (source, receiver) = (Source::at(source), Receiver::omni(ear));
+        let (source, receiver) = (SoundSourcePose::at(source), Receiver::omni(ear));
         let (key, threads) = (RandomKey::root(1), Threads::ONE);
         let heard = hall
             .scene

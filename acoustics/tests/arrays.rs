@@ -5,7 +5,8 @@ mod common;
 use common::{Hall, dry, material};
 use dwell_acoustics::bands::BAND_COUNT;
 use dwell_acoustics::{
-    AcousticConfig, Directions, Directivity, Echogram, Histogram, Microphone, Receiver, Source,
+    AcousticConfig, DirectionalEnergy, Directivity, Echogram, EnergyHistogram, Microphone,
+    Receiver, SoundSourcePose,
 };
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
@@ -51,8 +52,8 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
     ];
     let receiver = Receiver::array(Pose::from_position_yaw(Vec3::splat(1.0), 0.4), pair);
     let bins = 250;
-    let echogram = |directions: Directions| Echogram {
-        tail: Histogram {
+    let echogram = |directions: DirectionalEnergy| Echogram {
+        tail: EnergyHistogram {
             bin_s: 0.004,
             bins: vec![[1.0; BAND_COUNT]; bins],
             bins_per_direction: bins,
@@ -61,7 +62,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
         speed_m_s: C,
         ..Echogram::default()
     };
-    let coherence = |directions: Directions, frequencies_hz: &[f64]| -> Vec<Complex<f64>> {
+    let coherence = |directions: DirectionalEnergy, frequencies_hz: &[f64]| -> Vec<Complex<f64>> {
         let size = 512;
         let mut sums = vec![(0.0, 0.0, Complex::default()); frequencies_hz.len()];
         for seed in 0..4 {
@@ -84,7 +85,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
         sums.iter().map(|(a, b, ab)| ab / (a * b).sqrt()).collect()
     };
     let frequencies_hz: Vec<f64> = (0..40).map(|k| 200.0 + 95.0 * f64::from(k)).collect();
-    let found = coherence(Directions::default(), &frequencies_hz);
+    let found = coherence(DirectionalEnergy::default(), &frequencies_hz);
     let squares = found.iter().zip(&frequencies_hz).map(|(found, f)| {
         let kd = TAU * f * f64::from(d) / C;
         (found.re - kd.sin() / kd).powi(2)
@@ -93,7 +94,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
     // 350 windows: a standard error of 0.05 at most where the law is 0.
     assert!(rms < 0.06, "{rms}");
 
-    let mut one_side = Directions::default();
+    let mut one_side = DirectionalEnergy::default();
     one_side.energy[20] = [1.0; BAND_COUNT];
     let found = coherence(one_side, &[500.0, 1000.0]);
     assert!(found.iter().all(|value| value.norm() > 0.9), "{found:?}");
@@ -118,7 +119,7 @@ fn an_array_hears_differences_of_time() {
     for azimuth in 0..12 {
         let angle = f32::to_radians(30.0 * azimuth as f32);
         let towards = Vec3::new(-angle.sin(), 0.0, -angle.cos());
-        let source = Source::at(middle + 50.0 * towards);
+        let source = SoundSourcePose::at(middle + 50.0 * towards);
         let heard = hall
             .scene
             .impulse_response(
@@ -150,7 +151,7 @@ fn an_array_hears_differences_of_time() {
 #[test]
 fn the_microphones_of_an_array_hear_their_own_early_paths() {
     let hall = box_of(0.2, 0.0, 0);
-    let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
     let (pose, place) = (
         Pose::from_position_yaw(Vec3::new(4.4, 1.2, 3.2), 0.7),
         Vec3::new(0.11, 0.2, -0.3),
@@ -187,7 +188,7 @@ fn ambisonics_encode_where_sound_comes_from() {
             .scene
             .impulse_response(
                 &hall.rays,
-                &Source::at(middle - 10.0 * Vec3::X),
+                &SoundSourcePose::at(middle - 10.0 * Vec3::X),
                 &Receiver::ambisonics(pose, 1),
                 RandomKey::root(0),
                 Threads::ONE,
@@ -208,7 +209,7 @@ fn ambisonics_encode_where_sound_comes_from() {
 fn a_directive_source_fills_the_room_with_less() {
     let hall = box_of(0.2, 1.0, 20_000);
     let (place, ear) = (Vec3::new(3.0, 1.5, 2.5), Vec3::new(4.6, 1.5, 2.5));
-    let hear = |source: &Source| {
+    let hear = |source: &SoundSourcePose| {
         let threads = Threads::exactly(2);
         hall.scene
             .echogram(&hall.rays, source, ear, RandomKey::root(3), threads)
@@ -216,8 +217,8 @@ fn a_directive_source_fills_the_room_with_less() {
     };
     // Forward -Z turned to -X: away from the ear.
     let pose = Pose::from_position_yaw(place, std::f32::consts::FRAC_PI_2);
-    let away = hear(&Source::facing(pose, Directivity::CARDIOID));
-    let equal = hear(&Source::at(place));
+    let away = hear(&SoundSourcePose::facing(pose, Directivity::CARDIOID));
+    let equal = hear(&SoundSourcePose::at(place));
     let direct = |echogram: &Echogram| echogram.direct().map_or(0.0, |path| path.energy[4]);
     assert!(direct(&equal) > 0.3 && direct(&away) < 1e-9);
     // What has gone two ways through the room no longer knows where it came from.
@@ -235,7 +236,7 @@ fn a_directive_source_fills_the_room_with_less() {
 #[test]
 fn receivers_share_rays() {
     let hall = box_of(0.2, 0.4, 4000);
-    let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
     let ears = [
         Vec3::new(4.6, 1.2, 3.3),
         Vec3::new(2.0, 1.0, 4.0),
@@ -270,7 +271,7 @@ fn tracing_ends_when_the_error_is_small_enough() {
     };
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material, config);
     let (source, ear) = (
-        Source::at(Vec3::new(1.2, 1.5, 1.4)),
+        SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4)),
         Vec3::new(4.6, 1.2, 3.3),
     );
     let [one, seven] = [1, 7].map(|threads| {
@@ -292,9 +293,9 @@ fn tracing_ends_when_the_error_is_small_enough() {
 #[test]
 fn receivers_and_sources_out_of_range_are_refused() {
     let hall = box_of(0.2, 0.4, 64);
-    let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
     let pose = Pose::from_position(Vec3::new(4.6, 1.2, 3.3));
-    let ask = |source: &Source, receiver: &Receiver| {
+    let ask = |source: &SoundSourcePose, receiver: &Receiver| {
         let (rays, key) = (&hall.rays, RandomKey::root(0));
         let heard = hall
             .scene
@@ -314,6 +315,6 @@ fn receivers_and_sources_out_of_range_are_refused() {
     let mut turned = pose;
     turned.rotation = glam::Quat::from_xyzw(0.0, 0.0, 0.0, 0.0);
     assert!(ask(&source, &Receiver::binaural(turned)).is_err());
-    let loud = Source::facing(pose, Directivity::Sphere { radius_m: -1.0 });
+    let loud = SoundSourcePose::facing(pose, Directivity::Sphere { radius_m: -1.0 });
     assert!(ask(&loud, &crowd(1)).is_err());
 }

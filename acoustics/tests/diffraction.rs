@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::bands::{BAND_COUNT, NOMINAL_CENTRES_HZ};
-use dwell_acoustics::{AcousticConfig, Receiver, Source};
+use dwell_acoustics::{AcousticConfig, Receiver, SoundSourcePose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material};
@@ -39,7 +39,7 @@ fn screen() -> Hall {
 fn level(hall: &Hall, source: Vec3, receiver: Vec3) -> [f64; BAND_COUNT] {
     let paths = hall
         .scene
-        .early_paths(&hall.rays, &Source::at(source), receiver)
+        .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
         .unwrap();
     let d = f64::from(source.distance(receiver));
     let mut sum = [0.0; BAND_COUNT];
@@ -194,12 +194,12 @@ fn doorway() -> Hall {
 fn a_doorway_has_six_edges() {
     let hall = doorway();
     let edges: Vec<_> = hall.scene.edges().collect();
-    let frame = |edge: &&&dwell_acoustics::Edge| {
+    let frame = |edge: &&&dwell_acoustics::DiffractionEdge| {
         let middle = edge.ends[0].lerp(edge.ends[1], 0.5);
         (middle.z - 2.0).abs() < 0.51 && middle.y < 2.01 && edge.open_rad < 4.8 && middle.y > 0.9
     };
     assert_eq!(edges.iter().filter(frame).count(), 6, "{edges:?}");
-    let seam = |edge: &&&dwell_acoustics::Edge| {
+    let seam = |edge: &&&dwell_acoustics::DiffractionEdge| {
         edge.ends
             .iter()
             .all(|end| end.y > 1.99 && (end.z - 1.5).abs() < 0.01)
@@ -216,7 +216,7 @@ fn sound_goes_around_a_door_frame() {
     let bends = |receiver: Vec3| {
         let paths = hall
             .scene
-            .early_paths(&hall.rays, &Source::at(source), receiver)
+            .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
             .unwrap();
         assert!(!paths.is_empty(), "nothing reaches {receiver}");
         for one in &paths {
@@ -247,7 +247,7 @@ fn small_things_shadow_short_waves_only() {
         .scene
         .impulse_response(
             &hall.rays,
-            &Source::at(source),
+            &SoundSourcePose::at(source),
             &Receiver::omni(receiver),
             RandomKey::root(1),
             Threads::ONE,
@@ -279,7 +279,7 @@ fn walking_out_of_sight_is_smooth() {
         let receiver = Vec3::new(5.5, 1.3, 2.0 + 0.01 * k as f32);
         let paths = hall
             .scene
-            .early_paths(&hall.rays, &Source::at(source), receiver)
+            .early_paths(&hall.rays, &SoundSourcePose::at(source), receiver)
             .unwrap();
         kinds.extend(paths.iter().map(|one| one.path.bends.len()));
         let now = level(&hall, source, receiver);

@@ -12,8 +12,8 @@ mod common;
 use common::{Hall, dry, law, material};
 use dwell_acoustics::bands::FilterBank;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Air, Directivity, ImpulseResponse, Receiver, Source, Stream,
-    StreamConfig, laws,
+    AcousticConfig, ActiveSource, Air, Directivity, ImpulseResponse, Receiver, SoundSourcePose,
+    Stream, StreamConfig, laws,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{RandomKey, RandomStream as Random};
@@ -59,11 +59,21 @@ fn state(hall: &Hall, laws: Vec<LawSpec>) -> State {
 }
 
 fn response(hall: &Hall, hidden: &[LawSpec], receiver: Vec3) -> Vec<f32> {
-    let heard = heard(hall, hidden, &Source::at(SOURCE), &Receiver::omni(receiver));
+    let heard = heard(
+        hall,
+        hidden,
+        &SoundSourcePose::at(SOURCE),
+        &Receiver::omni(receiver),
+    );
     heard.samples
 }
 
-fn heard(hall: &Hall, hidden: &[LawSpec], source: &Source, receiver: &Receiver) -> ImpulseResponse {
+fn heard(
+    hall: &Hall,
+    hidden: &[LawSpec],
+    source: &SoundSourcePose,
+    receiver: &Receiver,
+) -> ImpulseResponse {
     let mut scene = hall.scene.clone();
     scene.update(&state(hall, hidden.to_vec()));
     let threads = Threads::exactly(2);
@@ -173,7 +183,7 @@ fn lateness(stated: &[f32], measured: &[f32]) -> f64 {
 fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
     let side = |offset: Vec3| {
         let late = |side: Vec3| {
-            let (source, receiver) = (Source::at(NEAR + side), Receiver::omni(NEAR));
+            let (source, receiver) = (SoundSourcePose::at(NEAR + side), Receiver::omni(NEAR));
             let of = |laws: &[LawSpec]| heard(hall, laws, &source, &receiver).samples;
             lateness(&of(&[]), &of(hidden))
         };
@@ -187,7 +197,7 @@ fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
 fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let from = |laws: &[LawSpec], side: Vec3| {
         let receiver = Receiver::ambisonics(Pose::from_position(NEAR), 1);
-        let response = heard(hall, laws, &Source::at(NEAR + side), &receiver);
+        let response = heard(hall, laws, &SoundSourcePose::at(NEAR + side), &receiver);
         let pressure = response.channel(0);
         let peak = peak_of(pressure);
         let product = |channel: usize| {
@@ -212,7 +222,7 @@ fn uneven_db(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let ear = Receiver::omni(NEAR + Vec3::X);
     let change = [-0.5, 0.0, 0.5].map(|turns: f32| {
         let pose = Pose::from_position_yaw(NEAR, (turns - 0.5) * std::f32::consts::PI);
-        let source = Source::facing(pose, Directivity::TALKER);
+        let source = SoundSourcePose::facing(pose, Directivity::TALKER);
         let of = |laws: &[LawSpec]| levels(&direct(&heard(hall, laws, &source, &ear).samples));
         let change = difference(&of(hidden), &of(&[]));
         change.iter().sum::<f64>() / change.len() as f64

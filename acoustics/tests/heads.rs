@@ -5,9 +5,9 @@
 mod common;
 
 use common::{Hall, dry, material, pieces};
-use dwell_acoustics::head::Measurement;
+use dwell_acoustics::head::HrirMeasurement;
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Head, Receiver, Source, Stream, StreamConfig, metrics,
+    AcousticConfig, ActiveSource, Head, Receiver, SoundSourcePose, Stream, StreamConfig, metrics,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -35,7 +35,7 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     scene.add_head(head);
     let pose = Pose::from_position_yaw(Vec3::new(3.0, 1.5, -2.0), 0.7);
-    let source = Source::at(pose.transform_point(in_head * FAR_M));
+    let source = SoundSourcePose::at(pose.transform_point(in_head * FAR_M));
     let receiver = Receiver::wearing(head.id(), pose);
     let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let response = scene.impulse_response(&hall.rays, &source, &receiver, key, threads);
@@ -44,11 +44,11 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
 }
 
 /// A sphere's responses from so many directions on a spiral.
-fn measure(count: usize) -> Measurement {
+fn measure(count: usize) -> HrirMeasurement {
     let hall = nowhere(MEASURED_HZ as u32);
     let head = Head::sphere(RADIUS_M).unwrap();
     let samples = 700;
-    let mut measured = Measurement {
+    let mut measured = HrirMeasurement {
         sources: Vec::new(),
         responses: Vec::new(),
         delays_samples: Vec::new(),
@@ -73,13 +73,13 @@ fn measure(count: usize) -> Measurement {
 }
 
 /// The sphere from 710 directions, as many as KEMAR was measured from.
-static MEASURED: LazyLock<Measurement> = LazyLock::new(|| measure(710));
+static MEASURED: LazyLock<HrirMeasurement> = LazyLock::new(|| measure(710));
 static WHOLE: LazyLock<Head> = LazyLock::new(|| Head::measured(&MEASURED).unwrap());
 
 /// Those of the directions for which `keep` holds.
-fn part(keep: impl Fn(usize, Vec3) -> bool) -> Measurement {
+fn part(keep: impl Fn(usize, Vec3) -> bool) -> HrirMeasurement {
     let samples = MEASURED.responses.len() / (2 * MEASURED.sources.len());
-    let mut kept = Measurement {
+    let mut kept = HrirMeasurement {
         sources: Vec::new(),
         responses: Vec::new(),
         ..MEASURED.clone()
@@ -299,7 +299,7 @@ fn measurements_may_be_written_in_several_ways() {
 #[test]
 fn bad_measurements_are_refused_by_name() {
     let good = measure(20);
-    let message = |change: &dyn Fn(&mut Measurement)| {
+    let message = |change: &dyn Fn(&mut HrirMeasurement)| {
         let mut bad = good.clone();
         change(&mut bad);
         Head::measured(&bad).unwrap_err().to_string()
@@ -348,7 +348,7 @@ fn bad_measurements_are_refused_by_name() {
     );
     let hall = nowhere(16_000);
     let stranger = Receiver::wearing(WHOLE.id(), Pose::IDENTITY);
-    let source = Source::at(Vec3::ONE);
+    let source = SoundSourcePose::at(Vec3::ONE);
     let (key, threads) = (RandomKey::root(1), Threads::ONE);
     let refused = hall
         .scene
@@ -387,7 +387,7 @@ fn threads_and_readings_do_not_matter() {
     let hear = |head: &Head, threads| {
         let mut scene = hall.scene.clone();
         scene.add_head(head);
-        let source = Source::at(SOURCE);
+        let source = SoundSourcePose::at(SOURCE);
         scene
             .impulse_response(
                 &hall.rays,
@@ -436,7 +436,7 @@ fn streams_wear_heads() {
     let mut first = stream();
     let found = play(&mut first, 0..6);
     let key = key.child("source").child(5);
-    let source = Source::at(SOURCE);
+    let source = SoundSourcePose::at(SOURCE);
     let offline = scene.impulse_response(&hall.rays, &source, &listener(), key, Threads::ONE);
     let offline = offline.unwrap();
     let peak = offline.samples.iter().fold(0.0_f32, |m, x| m.max(x.abs()));
@@ -462,7 +462,7 @@ fn the_tail_is_as_coherent_as_at_the_sphere() {
             kind: dwell_acoustics::ReceiverKind::Head(head.id()),
             ..listener()
         };
-        let source = Source::at(SOURCE);
+        let source = SoundSourcePose::at(SOURCE);
         let mut sums = vec![0.0_f64; 8];
         for seed in 0..6 {
             let (key, threads) = (RandomKey::root(seed), Threads::ONE);

@@ -5,7 +5,9 @@
 mod common;
 
 use common::{Hall, dry, law, material};
-use dwell_acoustics::{AcousticConfig, ActiveSource, Receiver, Source, Stream, StreamConfig, laws};
+use dwell_acoustics::{
+    AcousticConfig, ActiveSource, Receiver, SoundSourcePose, Stream, StreamConfig, laws,
+};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{LawSpec, Pose, State};
@@ -120,7 +122,7 @@ fn response(hall: &Hall, laws: &[LawSpec]) -> [Vec<f32>; 2] {
     state.laws = laws.to_vec();
     scene.update(&state);
     let key = RandomKey::root(8).child("source").child(ID);
-    let (source, threads) = (Source::at(SOURCE), Threads::ONE);
+    let (source, threads) = (SoundSourcePose::at(SOURCE), Threads::ONE);
     let response = scene
         .impulse_response(&hall.rays, &source, &head(), key, threads)
         .unwrap();

@@ -6,7 +6,7 @@
 mod common;
 
 use common::{Hall, material};
-use dwell_acoustics::{AcousticConfig, Microphone, Receiver, Source};
+use dwell_acoustics::{AcousticConfig, Microphone, Receiver, SoundSourcePose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{Bands, Material, Pose};
@@ -183,7 +183,7 @@ fn an_array_hears_where_sources_are_in_a_reverberant_room() {
         let wanted_deg = f64::from(30 * k);
         let angle = wanted_deg.to_radians() as f32;
         let towards = Vec3::new(-angle.sin(), 0.0, -angle.cos());
-        let source = Source::at(pose.transform_point(DISTANCE_M * towards));
+        let source = SoundSourcePose::at(pose.transform_point(DISTANCE_M * towards));
         let threads = Threads::exactly(2);
         let heard = hall
             .scene

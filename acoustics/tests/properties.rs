@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Hall, dry, material};
-use dwell_acoustics::{AcousticConfig, Receiver, Source};
+use dwell_acoustics::{AcousticConfig, Receiver, SoundSourcePose};
 use dwell_scene::Pose;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -55,7 +55,7 @@ proptest! {
         }
         prop_assert_eq!(there.trace.escaped, 0);
         let head = Receiver::binaural(Pose::from_position_yaw(to, yaw_rad));
-        let source = Source::at(from);
+        let source = SoundSourcePose::at(from);
         let response = hall.scene.impulse_response(&hall.rays, &source, &head, RandomKey::root(seed), Threads::ONE).unwrap();
         prop_assert!(response.samples.iter().all(|x| x.is_finite()));
         let start = (from.distance(to) / 343.2 - 0.001) * 16_000.0 - 46.0;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 #![allow(clippy::print_stdout, reason = "what is skipped is said")]
 
-use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics, signals};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, SoundSourcePose, metrics, signals};
 use dwell_scene::navigation::{NavConfig, NavGrid};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -73,7 +73,7 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
         let response = scene
             .impulse_response(
                 &rays,
-                &Source::at(from),
+                &SoundSourcePose::at(from),
                 &receiver,
                 RandomKey::root(1),
                 Threads::exactly(2),

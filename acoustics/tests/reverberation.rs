@@ -5,7 +5,7 @@
 mod common;
 
 use common::{Hall, dry, material};
-use dwell_acoustics::{AcousticConfig, Receiver, Source, bands, metrics};
+use dwell_acoustics::{AcousticConfig, Receiver, SoundSourcePose, bands, metrics};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material};
@@ -245,7 +245,7 @@ fn a_band_does_not_feel_how_others_scatter() {
 #[test]
 fn threads_do_not_change_a_bit() {
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.2, 0.4), dry(700));
-    let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
     let ear = Receiver::omni(Vec3::new(4.6, 1.2, 3.3));
     let [one, two, seven] = [1, 2, 7].map(|threads| {
         let threads = Threads::exactly(threads);
@@ -266,7 +266,7 @@ fn threads_do_not_change_a_bit() {
 #[test]
 fn the_impulse_response_decays_as_its_echogram() {
     let hall = Hall::shoebox([6.0, 3.0, 5.0], &material(0.15, 0.6), dry(2000));
-    let source = Source::at(Vec3::new(1.2, 1.5, 1.4));
+    let source = SoundSourcePose::at(Vec3::new(1.2, 1.5, 1.4));
     for receiver in [
         Receiver::omni(Vec3::new(4.6, 1.2, 3.3)),
         Receiver::binaural(dwell_scene::Pose::from_position_yaw(

@@ -6,7 +6,7 @@ mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::bands::BAND_COUNT;
-use dwell_acoustics::{AcousticConfig, Echogram, Source};
+use dwell_acoustics::{AcousticConfig, Echogram, SoundSourcePose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, Material, Mesh};
@@ -40,7 +40,7 @@ fn mean_db(echograms: &[Echogram], band: usize) -> f64 {
 }
 
 fn hear(hall: &Hall, source: Vec3, ears: &[Vec3]) -> Vec<Echogram> {
-    let (source, threads) = (Source::at(source), Threads::exactly(2));
+    let (source, threads) = (SoundSourcePose::at(source), Threads::exactly(2));
     hall.scene
         .echograms(&hall.rays, &source, ears, RandomKey::root(1), threads)
         .unwrap()

@@ -6,7 +6,8 @@ mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Microphone, Receiver, Source, Stream, StreamConfig, signals,
+    AcousticConfig, ActiveSource, Microphone, Receiver, SoundSourcePose, Stream, StreamConfig,
+    signals,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -95,7 +96,7 @@ fn a_still_scene_is_a_convolution() {
         .scene
         .impulse_response(
             &hall.rays,
-            &Source::at(SOURCE),
+            &SoundSourcePose::at(SOURCE),
             &receiver,
             key,
             Threads::ONE,

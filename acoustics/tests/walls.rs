@@ -6,7 +6,8 @@ mod common;
 
 use common::{Hall, box_sides, dry, material, pieces, rectangle};
 use dwell_acoustics::{
-    AcousticConfig, ActiveSource, Echogram, Receiver, Source, Stream, StreamConfig, metrics,
+    AcousticConfig, ActiveSource, Echogram, Receiver, SoundSourcePose, Stream, StreamConfig,
+    metrics,
 };
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -127,7 +128,7 @@ fn a_closed_box_is_silent() {
                 .scene
                 .impulse_response(
                     &hall.rays,
-                    &Source::at(from),
+                    &SoundSourcePose::at(from),
                     &receiver,
                     RandomKey::root(1),
                     Threads::ONE,
@@ -321,7 +322,7 @@ fn a_moved_plate_mirrors_from_its_new_place() {
     let found = scene
         .echogram(
             &rays,
-            &Source::at(source),
+            &SoundSourcePose::at(source),
             ear,
             RandomKey::root(0),
             Threads::ONE,

@@ -7,7 +7,8 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use dwell_acoustics::{
-    AcousticConfig, AcousticScene, ActiveSource, Receiver, Source, Stream, StreamConfig, signals,
+    AcousticConfig, AcousticScene, ActiveSource, Receiver, SoundSourcePose, Stream, StreamConfig,
+    signals,
 };
 use dwell_houses::open;
 use dwell_scene::parallel::Threads;
@@ -96,7 +97,7 @@ fn respond(bencher: Bencher<'_, '_>, name: &str, config: AcousticConfig) {
         RayScene::new(case.house.clone()),
     );
     let (source, ear) = (
-        Source::at(case.source),
+        SoundSourcePose::at(case.source),
         Receiver::binaural(Pose::from_position(case.ear)),
     );
     bencher
@@ -130,7 +131,7 @@ fn rays(bencher: Bencher<'_, '_>, name: &str) {
         RayScene::new(case.house.clone()),
     );
     let trace = || {
-        let source = Source::at(case.source);
+        let source = SoundSourcePose::at(case.source);
         scene.echogram(&rays, &source, case.ear, RandomKey::root(0), Threads::ONE)
     };
     let segments = trace().map_or(0, |echogram| echogram.trace.segments);

@@ -7,7 +7,9 @@ use crate::head::PyHead;
 use crate::house::PyHouse;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::metrics::BandWidth;
-use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Receiver, Source, metrics};
+use dwell_acoustics::{
+    AcousticConfig, AcousticScene, Echogram, Receiver, SoundSourcePose, metrics,
+};
 use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -58,7 +60,7 @@ impl PyAcousticScene {
         mic: [f32; 3],
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
-            let source: Source = serde_json::from_str(source_json)?;
+            let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let mic = Vec3::from_array(mic);
             let paths = self.scene.early_paths(&self.rays, &source, mic)?;
             Ok(serde_json::to_string(&paths)?)
@@ -76,7 +78,7 @@ impl PyAcousticScene {
         threads: Option<usize>,
     ) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
         let responses = py.engine(|| {
-            let source: Source = serde_json::from_str(source_json)?;
+            let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
             let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
             let mut scene = self.scene.clone();
@@ -104,7 +106,7 @@ impl PyAcousticScene {
         threads: Option<usize>,
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
-            let source: Source = serde_json::from_str(source_json)?;
+            let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
             let mut all = Vec::with_capacity(receivers.len());
             for (echogram, receiver) in self
@@ -136,7 +138,7 @@ impl PyAcousticScene {
         threads: Option<usize>,
     ) -> PyResult<String> {
         py.engine(|| -> Result<_, Fault> {
-            let source: Source = serde_json::from_str(source_json)?;
+            let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let receiver: Receiver = serde_json::from_str(receiver_json)?;
             let found = self.echograms(&source, &[receiver], seed, threads)?;
             Ok(serde_json::to_string(&found[0])?)
@@ -161,7 +163,7 @@ impl PyAcousticScene {
     /// Shape (receiver,).
     fn echograms(
         &self,
-        source: &Source,
+        source: &SoundSourcePose,
         receivers: &[Receiver],
         seed: u64,
         threads: Option<usize>,

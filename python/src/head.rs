@@ -3,7 +3,7 @@
 use crate::doorway::Doorway;
 use crate::errors::Fault;
 use dwell_acoustics::Head;
-use dwell_acoustics::head::Measurement;
+use dwell_acoustics::head::HrirMeasurement;
 use glam::DVec3;
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -52,7 +52,7 @@ impl PyHead {
         if delays.shape() != [count, 2] {
             return Err(shape("delays", &format!("({count}, 2)"), delays.shape()));
         }
-        let measurement = Measurement {
+        let measurement = HrirMeasurement {
             sources: sources
                 .rows()
                 .into_iter()

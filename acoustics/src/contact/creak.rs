@@ -1,8 +1,8 @@
 //! What a hinge sounds like that sticks and slips.
 
+use super::impact_force::add_half_sine;
 use super::radiation::Radiator;
-use super::strike::add_half_sine;
-use super::{Partner, samples};
+use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub struct CreakSound {
     /// The hinge's friction, N·m.
     pub friction_n_m: f32,
     /// What hangs on it, and what it hangs on.
-    pub partners: [Partner; 2],
+    pub partners: [ContactPartner; 2],
     /// The hinge.
     pub place: RandomKey,
 }
@@ -102,8 +102,8 @@ mod tests {
             length_s,
             friction_n_m,
             partners: [
-                Partner::body("wood_door", 20.0, [0.9, 2.0, 0.04]),
-                Partner::leaf("gypsum_board", 40.0),
+                ContactPartner::body("wood_door", 20.0, [0.9, 2.0, 0.04]),
+                ContactPartner::leaf("gypsum_board", 40.0),
             ],
             place: RandomKey::root(8),
         }

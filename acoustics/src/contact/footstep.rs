@@ -1,9 +1,9 @@
 //! What a step sounds like.
 
+use super::friction_noise::{FrictionSound, FrictionSoundKind};
+use super::impact_force::{add_half_sine, hertz_s, modulus_pa};
 use super::radiation::Radiator;
-use super::rub::{RubKind, RubSound};
-use super::strike::{add_half_sine, hertz_s, modulus_pa};
-use super::{Partner, samples};
+use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -40,7 +40,7 @@ pub struct FootstepSound {
     /// The time between two steps, s.
     pub period_s: f32,
     /// What is trodden on.
-    pub floor: Partner,
+    pub floor: ContactPartner,
     /// Tells steps apart.
     pub key: RandomKey,
 }
@@ -56,15 +56,15 @@ impl FootstepSound {
         [(leg, HEEL_M, SOLE), (EDGE * leg, EDGE_M, EDGE_OF)]
     }
 
-    fn rub(&self) -> RubSound {
-        RubSound {
+    fn rub(&self) -> FrictionSound {
+        FrictionSound {
             position: self.position,
-            kind: RubKind::Slide,
+            kind: FrictionSoundKind::Slide,
             force_n: self.mass_kg.clamp(1.0, 1_000.0) * 9.8 * 0.2,
             speed_m_s: RUB_SPEED * self.speed_m_s,
             length_s: RUB_S,
             partners: [
-                Partner::body(SOLE, 0.3, [0.3, 0.1, 0.02]),
+                ContactPartner::body(SOLE, 0.3, [0.3, 0.1, 0.02]),
                 self.floor.clone(),
             ],
             key: self.key.child("rub"),
@@ -114,7 +114,7 @@ mod tests {
             mass_kg,
             speed_m_s,
             period_s: 0.5,
-            floor: Partner::leaf(floor, leaf),
+            floor: ContactPartner::leaf(floor, leaf),
             key: RandomKey::root(2),
         }
     }

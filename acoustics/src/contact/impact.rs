@@ -1,8 +1,8 @@
 //! What two things sound like that hit each other.
 
+use super::impact_force::{add_half_sine, lasts_s};
 use super::radiation::Radiator;
-use super::strike::{add_half_sine, lasts_s};
-use super::{Partner, samples};
+use super::{ContactPartner, samples};
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ pub struct ImpactSound {
     /// How fast they met, m/s.
     pub speed_m_s: f32,
     /// The two.
-    pub partners: [Partner; 2],
+    pub partners: [ContactPartner; 2],
     /// Tells blows apart that are otherwise equal.
     pub key: RandomKey,
 }
@@ -55,7 +55,7 @@ impl ImpactSound {
 mod tests {
     use super::*;
 
-    fn blow(partners: [Partner; 2], impulse_n_s: f32, speed_m_s: f32) -> ImpactSound {
+    fn blow(partners: [ContactPartner; 2], impulse_n_s: f32, speed_m_s: f32) -> ImpactSound {
         ImpactSound {
             position: Vec3::ZERO,
             impulse_n_s,
@@ -65,12 +65,12 @@ mod tests {
         }
     }
 
-    fn mug(substance: &str) -> Partner {
-        Partner::body(substance, 0.3, [0.09, 0.1, 0.08])
+    fn mug(substance: &str) -> ContactPartner {
+        ContactPartner::body(substance, 0.3, [0.09, 0.1, 0.08])
     }
 
-    fn floor(substance: &str) -> Partner {
-        Partner::leaf(substance, 300.0)
+    fn floor(substance: &str) -> ContactPartner {
+        ContactPartner::leaf(substance, 300.0)
     }
 
     fn peak(samples: &[f32]) -> f32 {
@@ -101,7 +101,7 @@ mod tests {
         let ratio = peak(&two) / peak(&one);
         assert!((1.9..3.0).contains(&ratio), "{ratio}");
         // A blow too soft to ring with all it may is exactly as loud as its impulse.
-        let ball = || Partner::body("rubber", 0.05, [0.04; 3]);
+        let ball = || ContactPartner::body("rubber", 0.05, [0.04; 3]);
         let soft = |impulse| peak(&blow([ball(), floor("oak")], impulse, 1.0).render(16_000));
         let ratio = soft(0.1) / soft(0.05);
         assert!((ratio - 2.0).abs() < 1e-4, "{ratio}");
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn steel_rings_longer_than_oak_and_carpet_makes_dull() {
         let late = |name: &str| {
-            let tray = Partner::body(name, 0.5, [0.4, 0.3, 0.01]);
+            let tray = ContactPartner::body(name, 0.5, [0.4, 0.3, 0.01]);
             let heard = blow([tray, floor("oak")], 0.5, 1.0).render(16_000);
             let power = |x: &[f32]| x.iter().map(|v| f64::from(*v).powi(2)).sum::<f64>();
             power(&heard[heard.len().min(1_600)..]) / power(&heard)

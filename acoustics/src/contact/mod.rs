@@ -1,33 +1,33 @@
 //! What touching things sound like: blows, scrapes, rolling, creaking hinges, steps.
 //!
-//! Every sound here is a force and two things that it acts on. The force comes from how they touch (`strike`, `rub`, `creak`,
-//! `footstep`); what each makes of it from its modes (`modes`, `substances`) and from how it radiates (`radiation`). Figures
+//! Every sound here is a force and two things that it acts on. The force comes from how they touch (`impact_force`, `friction_noise`, `creak`,
+//! `footstep`); what each makes of it from its modes (`modes`, `elastic_properties`) and from how it radiates (`radiation`). Figures
 //! of substances stand in `assets/ringing.toml`, with sources.
 //!
 //! It is a model of plain bars, panels and walls, not of a violin: things are taken for the simplest body that has their
 //! size, mass and substance.
 
 mod creak;
+mod elastic_properties;
 mod footstep;
+mod friction_noise;
 mod impact;
+mod impact_force;
 pub mod modes;
 mod radiation;
-mod rub;
-mod strike;
-mod substances;
 
 pub use creak::CreakSound;
+pub use elastic_properties::{ElasticProperties, elastic};
 pub use footstep::FootstepSound;
+pub use friction_noise::{FrictionSound, FrictionSoundKind};
 pub use impact::ImpactSound;
-pub use rub::{RubKind, RubSound};
-pub use substances::{Elastic, elastic};
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// A thing that moves, as sound knows it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Body {
+pub struct ContactBody {
     /// kg; above 0.
     pub mass_kg: f32,
     /// The edges of a box around it, m, in any order.
@@ -36,7 +36,7 @@ pub struct Body {
 
 /// One of two things that touch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Partner {
+pub struct ContactPartner {
     /// What it is made of there: a name of the materials' library; unknown ones count as its default.
     pub substance: String,
     /// What it is.
@@ -47,17 +47,17 @@ pub struct Partner {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PartnerKind {
     /// A thing with modes of its own.
-    Body(Body),
+    Body(ContactBody),
     /// A wall, floor or ceiling, endless for the blow: kg/m² of the leaf that is struck.
     Leaf(f32),
 }
 
-impl Partner {
+impl ContactPartner {
     /// A thing that moves.
     pub fn body(substance: &str, mass_kg: f32, size_m: [f32; 3]) -> Self {
         Self {
             substance: substance.to_owned(),
-            kind: PartnerKind::Body(Body { mass_kg, size_m }),
+            kind: PartnerKind::Body(ContactBody { mass_kg, size_m }),
         }
     }
 
@@ -84,7 +84,7 @@ pub enum ContactSound {
     /// A blow.
     Impact(ImpactSound),
     /// A stretch of scraping or rolling.
-    Rub(RubSound),
+    Rub(FrictionSound),
     /// A stretch of a hinge's creaking.
     Creak(CreakSound),
     /// A step.

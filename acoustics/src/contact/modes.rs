@@ -1,6 +1,6 @@
 //! Bending modes of free bars and panels.
 
-use super::{Body, Elastic};
+use super::{ContactBody, ElasticProperties};
 use std::f64::consts::{PI, TAU};
 
 /// Solutions of cosh x cos x = 1, the free bar's equation.
@@ -26,7 +26,7 @@ const AUDIBLE_HZ: (f64, f64) = (20.0, 20_000.0);
 /// # Source
 /// Euler and Bernoulli's beam, as in L. Meirovitch, *Fundamentals of Vibrations* (2001), section 8.4:
 /// ω = x² / L² √(E I / ρ A), with I / A = h² / 12.
-pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &Elastic) -> f64 {
+pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &ElasticProperties) -> f64 {
     let place = n.max(1) as usize - 1;
     let root = BAR_ROOTS.get(place).copied();
     let root = root.unwrap_or((f64::from(n) + 0.5) * PI);
@@ -39,7 +39,12 @@ pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &Elastic) -> f64 {
 ///
 /// # Source
 /// Kirchhoff's plate in the approximation of G. B. Warburton, *Proc. Inst. Mech. Eng.* 168, 371 (1954), table 1, edges free.
-pub fn panel_hz(lines: [u32; 2], sides_m: [f64; 2], thickness_m: f64, of: &Elastic) -> f64 {
+pub fn panel_hz(
+    lines: [u32; 2],
+    sides_m: [f64; 2],
+    thickness_m: f64,
+    of: &ElasticProperties,
+) -> f64 {
     let [(gx, hx, jx), (gy, hy, jy)] = lines.map(warburton);
     let [a, b] = sides_m;
     let across = (a / b) * (a / b);
@@ -67,7 +72,7 @@ fn warburton(m: u32) -> (f64, f64, f64) {
 
 /// A body as the simplest thing of its size, mass and substance that bends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Panel {
+pub struct BendingPanel {
     /// Its two longer edges, m, the longest first.
     pub sides_m: [f64; 2],
     /// What bends: the whole when it is solid, one wall of it when it is hollow, m.
@@ -82,19 +87,19 @@ pub struct Panel {
 
 /// A mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
+pub struct BendingMode {
     /// Hz.
     pub frequency_hz: f64,
     /// Nodal lines across each side.
     pub lines: [u32; 2],
 }
 
-impl Panel {
+impl BendingPanel {
     /// What `body` of a substance is.
     ///
     /// The box around it and its mass say how much of the box the substance fills: below 0.4 it is hollow, with walls of equal
     /// thickness all around, one of which bends.
-    pub fn of(body: &Body, of: &Elastic) -> Self {
+    pub fn of(body: &ContactBody, of: &ElasticProperties) -> Self {
         let mut edges = body.size_m.map(|edge| f64::from(edge).clamp(1e-3, 20.0));
         edges.sort_by(|a, b| b.total_cmp(a));
         let [length, width, height] = edges;
@@ -122,12 +127,12 @@ impl Panel {
     }
 
     /// Its audible modes, the lowest first; at most 40.
-    pub fn modes(&self, of: &Elastic) -> Vec<Mode> {
+    pub fn modes(&self, of: &ElasticProperties) -> Vec<BendingMode> {
         let mut modes = Vec::new();
         if self.bar {
             for n in 1..=MOST_LINES {
                 let frequency_hz = bar_hz(n, self.sides_m[0], self.thickness_m, of);
-                modes.push(Mode {
+                modes.push(BendingMode {
                     frequency_hz,
                     lines: [n + 1, 0],
                 });
@@ -137,7 +142,7 @@ impl Panel {
                 for y in 0..=MOST_LINES {
                     let lines = [x, y];
                     let frequency_hz = panel_hz(lines, self.sides_m, self.thickness_m, of);
-                    modes.push(Mode {
+                    modes.push(BendingMode {
                         frequency_hz,
                         lines,
                     });
@@ -161,7 +166,7 @@ mod tests {
     /// Warburton's one-term shapes are stiffer than the plate, and cannot mix (2, 0) with (0, 2) on a square.
     #[test]
     fn free_panels_have_the_exact_solutions_frequencies() {
-        let of = Elastic {
+        let of = ElasticProperties {
             poisson: 0.3,
             ..elastic("steel")
         };
@@ -219,37 +224,40 @@ mod tests {
     fn bodies_become_bars_panels_and_shells() {
         let steel = elastic("steel");
         // A ruler, a tray, a pot of 1 mm.
-        let ruler = Body {
+        let ruler = ContactBody {
             mass_kg: 0.3 * 0.03 * 0.002 * 7850.0,
             size_m: [0.03, 0.3, 0.002],
         };
-        let panel = Panel::of(&ruler, &steel);
+        let panel = BendingPanel::of(&ruler, &steel);
         assert!(panel.bar && (panel.thickness_m - 0.002).abs() < 1e-9);
-        let tray = Body {
+        let tray = ContactBody {
             mass_kg: 0.4 * 0.3 * 0.002 * 7850.0,
             size_m: [0.3, 0.002, 0.4],
         };
-        let panel = Panel::of(&tray, &steel);
+        let panel = BendingPanel::of(&tray, &steel);
         assert!(!panel.bar && (panel.mass_kg - f64::from(tray.mass_kg)).abs() < 1e-9);
         let area = 2.0 * (0.3 * 0.3 + 2.0 * 0.3 * 0.2);
-        let pot = Body {
+        let pot = ContactBody {
             mass_kg: (area * 0.001 * 7850.0) as f32,
             size_m: [0.3, 0.2, 0.3],
         };
-        let panel = Panel::of(&pot, &steel);
+        let panel = BendingPanel::of(&pot, &steel);
         assert!((panel.thickness_m - 0.001).abs() < 1e-6, "{panel:?}");
         assert!((panel.area_m2 - area).abs() < 1e-6);
-        for modes in [panel.modes(&steel), Panel::of(&ruler, &steel).modes(&steel)] {
+        for modes in [
+            panel.modes(&steel),
+            BendingPanel::of(&ruler, &steel).modes(&steel),
+        ] {
             assert!(modes.len() >= 5 && modes.len() <= MOST_MODES);
             assert!(modes.is_sorted_by(|a, b| a.frequency_hz <= b.frequency_hz));
         }
         // A die's lowest mode is above hearing.
-        let die = Body {
+        let die = ContactBody {
             mass_kg: 0.004,
             size_m: [0.015; 3],
         };
         assert!(
-            Panel::of(&die, &elastic("plastic"))
+            BendingPanel::of(&die, &elastic("plastic"))
                 .modes(&elastic("plastic"))
                 .len()
                 <= 1

@@ -1,7 +1,7 @@
 //! From a force to pressure: modes that ring and radiate, walls that are pushed, small things that are jerked.
 
-use super::modes::Panel;
-use super::{Partner, PartnerKind, elastic};
+use super::modes::BendingPanel;
+use super::{ContactPartner, PartnerKind, elastic};
 use dwell_scene::random::RandomKey;
 use std::f64::consts::{LN_10, PI, TAU};
 
@@ -15,7 +15,7 @@ const LONGEST_DECAY_S: f64 = 0.4;
 
 /// A mode that rings: velocity after a unit impulse is e^(-δt) cos ωt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Ringing {
+struct DecayingMode {
     omega: f64,
     decay_per_s: f64,
     /// Pressure at 1 m for an impulse of 1 N·s, Pa.
@@ -27,7 +27,7 @@ struct Ringing {
 /// What one force makes two things radiate.
 #[derive(Clone, Debug)]
 pub(super) struct Radiator {
-    modes: Vec<Ringing>,
+    modes: Vec<DecayingMode>,
     /// Pressure at 1 m for a force of 1 N on walls, Pa.
     push: f64,
     /// Pressure at 1 m for a force that grows by 1 N/s on compact bodies, Pa.
@@ -36,7 +36,7 @@ pub(super) struct Radiator {
 
 impl Radiator {
     /// `key` says where on the things the force acts, and how uneven they are.
-    pub(super) fn new(partners: &[Partner], key: RandomKey) -> Self {
+    pub(super) fn new(partners: &[ContactPartner], key: RandomKey) -> Self {
         let mut all = Self {
             modes: Vec::new(),
             push: 0.0,
@@ -56,12 +56,12 @@ impl Radiator {
         all
     }
 
-    fn add_body(&mut self, partner: &Partner, key: RandomKey) {
+    fn add_body(&mut self, partner: &ContactPartner, key: RandomKey) {
         let PartnerKind::Body(body) = partner.kind else {
             return;
         };
         let of = elastic(&partner.substance);
-        let panel = Panel::of(&body, &of);
+        let panel = BendingPanel::of(&body, &of);
         let mut stream = key.child("struck at").stream();
         let at = [stream.uniform(), stream.uniform()];
         let half_m = 0.5 * panel.sides_m[0];
@@ -90,7 +90,7 @@ impl Radiator {
             let efficiency = coincidence / (1.0 + coincidence) * compact / (1.0 + compact);
             // W = ρ c S σ <v²>, and p² at 1 m = W ρ c / 4π.
             let radiated = AIR_KG_M3 * SOUND_M_S * (panel.area_m2 * efficiency / (4.0 * PI)).sqrt();
-            self.modes.push(Ringing {
+            self.modes.push(DecayingMode {
                 omega,
                 decay_per_s: (0.5 * omega * of.loss).max(1.0 / LONGEST_DECAY_S),
                 gain: shape * radiated / panel.mass_kg,
@@ -107,7 +107,7 @@ impl Radiator {
     /// Makes the modes ring with `energy_j` at the most after a half sine of `impulse_n_s` that lasts `lasts_s`: the same impulse
     /// cannot go whole into every mode.
     pub(super) fn bound(&mut self, impulse_n_s: f64, lasts_s: f64, energy_j: f64) {
-        let taken = |mode: &Ringing| {
+        let taken = |mode: &DecayingMode| {
             // The spectrum of a half sine re its impulse.
             let x = mode.omega * lasts_s / PI;
             let reached = if (x - 1.0).abs() < 1e-6 {
@@ -178,7 +178,7 @@ impl Radiator {
 mod tests {
     use super::*;
 
-    fn rung(partners: &[Partner], rate_hz: u32, samples: usize) -> Vec<f64> {
+    fn rung(partners: &[ContactPartner], rate_hz: u32, samples: usize) -> Vec<f64> {
         let radiator = Radiator::new(partners, RandomKey::root(5));
         let mut out = vec![0.0; samples];
         radiator.respond(&[f64::from(rate_hz)], rate_hz, &mut out);
@@ -189,7 +189,7 @@ mod tests {
     #[test]
     fn a_mode_decays_as_its_loss_factor_says() {
         let of = elastic("steel");
-        let rod = Partner::body("steel", 0.2 * 1e-4 * 7850.0, [0.01, 0.2, 0.01]);
+        let rod = ContactPartner::body("steel", 0.2 * 1e-4 * 7850.0, [0.01, 0.2, 0.01]);
         let mode = Radiator::new(std::slice::from_ref(&rod), RandomKey::root(5)).modes[0];
         let hz = mode.omega / TAU;
         assert!((hz / super::super::modes::bar_hz(1, 0.2, 0.01, &of) - 1.0).abs() < 0.016);
@@ -207,14 +207,17 @@ mod tests {
     /// What W = ρ c S σ <v²> radiates arrives as p² = W ρ c / 4π, and the mode takes J φ / M.
     #[test]
     fn a_wall_gives_the_force_and_a_body_its_mean_square_velocity() {
-        let radiator = Radiator::new(&[Partner::leaf("concrete", 100.0)], RandomKey::root(1));
+        let radiator = Radiator::new(
+            &[ContactPartner::leaf("concrete", 100.0)],
+            RandomKey::root(1),
+        );
         let mut out = [0.0; 400];
         radiator.respond(&[500.0], 16_000, &mut out);
         assert!((out[0] - 1.2 * 500.0 / (TAU * 100.0)).abs() < 1e-12 && out[1] == 0.0);
         assert_eq!(radiator.ring_s(), 0.0);
         // Half the mass at the same size: thinner, hollow or not, it moves more.
         let loud = |mass_kg| {
-            let tray = Partner::body("steel", mass_kg, [0.4, 0.3, 0.004]);
+            let tray = ContactPartner::body("steel", mass_kg, [0.4, 0.3, 0.004]);
             let out = rung(&[tray], 16_000, 8_000);
             out.iter().map(|x| x * x).sum::<f64>()
         };

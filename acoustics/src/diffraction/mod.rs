@@ -4,16 +4,16 @@
 //! are close to the straight line take some of the sound, in sight or not, so that nothing jumps at the border of the shadow. Waves that go around two sides of
 //! an obstacle and come within a quarter of their length are one wave.
 
-mod bend;
-mod loss;
+mod edge_path;
+mod insertion_loss;
 
 use crate::bands::BAND_COUNT;
-use crate::echogram::Path;
-use crate::images;
+use crate::echogram::PropagationPath;
+use crate::image_sources;
 use crate::scene::AcousticScene;
-use bend::{Bend, Frame};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
+use edge_path::{EdgeFrame, EdgePath};
 use glam::{DVec3, Vec3};
 
 /// Ways that are this much longer than the straight line are not followed, m.
@@ -34,9 +34,9 @@ const BESIDE_WAVES: f64 = 0.1;
 const FAINTEST: f64 = 1e-6;
 
 /// One way around what hides the source.
-struct Way {
+struct DiffractionPath {
     /// From the source on.
-    touches: Vec<Touch>,
+    touches: Vec<EdgePoint>,
     detour_m: f64,
     /// Amplitude against a free path of its length. Shape (band,).
     amplitude: [f64; BAND_COUNT],
@@ -44,15 +44,15 @@ struct Way {
 
 /// Where a way touches an edge.
 #[derive(Clone, Copy)]
-struct Touch {
+struct EdgePoint {
     at: DVec3,
     along: DVec3,
     /// From the straight line to it.
     aside: DVec3,
 }
 
-impl Touch {
-    fn new(frame: &Frame, at: DVec3, from: DVec3, to: DVec3) -> Self {
+impl EdgePoint {
+    fn new(frame: &EdgeFrame, at: DVec3, from: DVec3, to: DVec3) -> Self {
         let line = (to - from).normalize_or_zero();
         let there = at - from;
         Self {
@@ -76,12 +76,12 @@ pub(crate) fn around_edges(
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
-) -> Vec<Path> {
-    let n_per_m = loss::per_metre(scene.config().air.speed_of_sound_m_s());
+) -> Vec<PropagationPath> {
+    let n_per_m = insertion_loss::per_metre(scene.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let sight = |a, b| is_free(rays, a, b);
     let mut ways = Vec::new();
-    let mut seen: Vec<(&Frame, &Bend, [bool; 2])> = Vec::new();
+    let mut seen: Vec<(&EdgeFrame, &EdgePath, [bool; 2])> = Vec::new();
     let near = near_edges(scene, from, to, LONGEST_DETOUR_M, |bend| {
         // What lies within the matter of an edge may be reached over a second one.
         bend.open[0] != bend.open[1] || (bend.hidden && bend.open == [true; 2])
@@ -93,8 +93,8 @@ pub(crate) fn around_edges(
             bend.open[1] && sight(at, to),
         ];
         if sees == [true; 2] && bend.hidden {
-            ways.push(Way {
-                touches: vec![Touch::new(frame, bend.at, from, to)],
+            ways.push(DiffractionPath {
+                touches: vec![EdgePoint::new(frame, bend.at, from, to)],
                 detour_m: bend.detour_m,
                 amplitude: bend.passed(&n_per_m).map(f64::sqrt),
             });
@@ -118,11 +118,11 @@ pub(crate) fn around_edges(
         let first = bend.at[0] + a.outward() * STAND_OFF_M;
         let second = bend.at[1] + b.outward() * STAND_OFF_M;
         if sight(from, first) && sight(first, second) && sight(second, to) {
-            ways.push(Way {
+            ways.push(DiffractionPath {
                 amplitude: bend.passed(&n_per_m).map(f64::sqrt),
                 touches: vec![
-                    Touch::new(a, bend.at[0], from, to),
-                    Touch::new(b, bend.at[1], from, to),
+                    EdgePoint::new(a, bend.at[0], from, to),
+                    EdgePoint::new(b, bend.at[1], from, to),
                 ],
                 detour_m: bend.detour_m,
             });
@@ -132,7 +132,7 @@ pub(crate) fn around_edges(
     if ways.is_empty() {
         return Vec::new();
     }
-    let touched: Vec<Touch> = ways.iter().flat_map(|way| way.touches.clone()).collect();
+    let touched: Vec<EdgePoint> = ways.iter().flat_map(|way| way.touches.clone()).collect();
     let kept = beside_edges(scene, rays, source, receiver, &touched);
     unite(&mut ways, &n_per_m);
     for way in &mut ways {
@@ -145,11 +145,11 @@ pub(crate) fn around_edges(
     let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
     let paths = ways.into_iter().map(|way| {
         let length_m = straight_m + way.detour_m;
-        let mut energy = images::spread(scene, length_m);
+        let mut energy = image_sources::spread(scene, length_m);
         for (e, amplitude) in energy.iter_mut().zip(way.amplitude) {
             *e *= amplitude * amplitude;
         }
-        Path {
+        PropagationPath {
             planes: Vec::new(),
             length_m,
             energy: energy.map(|e| e as f32),
@@ -180,9 +180,9 @@ fn beside_edges(
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
-    touched: &[Touch],
+    touched: &[EdgePoint],
 ) -> [f64; BAND_COUNT] {
-    let n_per_m = loss::per_metre(scene.config().air.speed_of_sound_m_s());
+    let n_per_m = insertion_loss::per_metre(scene.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let longest_m = BESIDE_WAVES * 2.0 / n_per_m[0];
     let near = near_edges(scene, from, to, longest_m, |bend| {
@@ -192,7 +192,7 @@ fn beside_edges(
     let mut taken = touched.to_vec();
     for (frame, bend) in &near {
         // Of the edges of one profile the nearest acts.
-        let touch = Touch::new(frame, bend.at, from, to);
+        let touch = EdgePoint::new(frame, bend.at, from, to);
         if taken.iter().any(|other| other.is_near(&touch)) {
             continue;
         }
@@ -202,7 +202,7 @@ fn beside_edges(
         }
         taken.push(touch);
         for (kept, n_per_m) in kept.iter_mut().zip(n_per_m) {
-            let lost = 1.0 - loss::passed(-n_per_m * bend.detour_m);
+            let lost = 1.0 - insertion_loss::passed(-n_per_m * bend.detour_m);
             *kept *= 1.0 - lost * bend.reach(n_per_m) * bend.facing;
         }
     }
@@ -219,8 +219,8 @@ fn near_edges(
     from: DVec3,
     to: DVec3,
     longest_m: f64,
-    wanted: impl Fn(&Bend) -> bool,
-) -> Vec<(Frame, Bend)> {
+    wanted: impl Fn(&EdgePath) -> bool,
+) -> Vec<(EdgeFrame, EdgePath)> {
     let straight_m = from.distance(to);
     let mut near = Vec::new();
     for edge in scene.edges() {
@@ -230,7 +230,7 @@ fn near_edges(
         if least_m - straight_m > longest_m {
             continue;
         }
-        let frame = Frame::new(edge);
+        let frame = EdgeFrame::new(edge);
         if let Some(bend) = frame.bend(from, to)
             && bend.detour_m <= longest_m
             && bend.at.distance(from) + bend.at.distance(to) - straight_m <= longest_m
@@ -245,13 +245,13 @@ fn near_edges(
 }
 
 /// The strongest ways, one of each profile.
-fn strongest(mut ways: Vec<Way>) -> Vec<Way> {
-    let power = |way: &Way| way.amplitude.iter().map(|a| a * a).sum::<f64>();
+fn strongest(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
+    let power = |way: &DiffractionPath| way.amplitude.iter().map(|a| a * a).sum::<f64>();
     ways.sort_by(|a, b| power(b).total_cmp(&power(a)));
-    let mut kept: Vec<Way> = Vec::new();
+    let mut kept: Vec<DiffractionPath> = Vec::new();
     for way in ways {
-        let same = |other: &Way| {
-            let near = |touch: &Touch| other.touches.iter().any(|there| there.is_near(touch));
+        let same = |other: &DiffractionPath| {
+            let near = |touch: &EdgePoint| other.touches.iter().any(|there| there.is_near(touch));
             way.touches.iter().any(near)
         };
         if !kept.iter().any(same) {
@@ -265,9 +265,9 @@ fn strongest(mut ways: Vec<Way>) -> Vec<Way> {
 }
 
 /// Adds, in each band, the waves that come within a quarter of their length of the strongest one to it.
-fn unite(ways: &mut [Way], n_per_m: &[f64; BAND_COUNT]) {
+fn unite(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT]) {
     for (band, n_per_m) in n_per_m.iter().enumerate() {
-        let amplitude = |way: &Way| way.amplitude[band];
+        let amplitude = |way: &DiffractionPath| way.amplitude[band];
         let strongest = (0..ways.len()).reduce(|a, b| {
             if amplitude(&ways[b]) > amplitude(&ways[a]) {
                 b

@@ -1,7 +1,7 @@
 //! Arrays of chunks: of a fixed length, and such as grow.
 
-use super::bytes::{Cursor, Read, Source, refuse};
-use super::grid::Stored;
+use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
+use super::grid::StoredChunk;
 
 /// Bytes of the check sum behind a block.
 const CHECK_SUM: u64 = 4;
@@ -10,14 +10,18 @@ const MOST_BITS: u8 = 40;
 
 /// The form of an entry: its bytes, and whether it states a size and filters.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Entry {
+pub(super) struct ArrayEntry {
     pub(super) width: usize,
     pub(super) filtered: bool,
 }
 
-impl Entry {
+impl ArrayEntry {
     /// The next entry, which stands at `place`; none for a chunk that was never written.
-    pub(super) fn read(self, cursor: &mut Cursor<'_>, place: u64) -> Read<Option<Stored>> {
+    pub(super) fn read(
+        self,
+        cursor: &mut Cursor<'_>,
+        place: u64,
+    ) -> Hdf5Result<Option<StoredChunk>> {
         let mut entry = cursor.part(self.width)?;
         let address = entry.address()?;
         let (mut size, mut skipped) = (None, 0);
@@ -25,7 +29,7 @@ impl Entry {
             size = Some(entry.uint(entry.remaining().saturating_sub(4))?);
             skipped = entry.u32()?;
         }
-        Ok(address.map(|address| Stored {
+        Ok(address.map(|address| StoredChunk {
             number: place,
             address,
             size,
@@ -38,8 +42,8 @@ impl Entry {
         self,
         cursor: &mut Cursor<'_>,
         places: std::ops::Range<u64>,
-        to: &mut Vec<Stored>,
-    ) -> Read<()> {
+        to: &mut Vec<StoredChunk>,
+    ) -> Hdf5Result<()> {
         for place in places {
             to.extend(self.read(cursor, place)?);
         }
@@ -53,8 +57,8 @@ impl Entry {
         places: std::ops::Range<u64>,
         page_bits: u8,
         written: &[u8],
-        to: &mut Vec<Stored>,
-    ) -> Read<()> {
+        to: &mut Vec<StoredChunk>,
+    ) -> Hdf5Result<()> {
         let mut first = places.start;
         for page in 0.. {
             if first >= places.end {
@@ -75,7 +79,7 @@ impl Entry {
 }
 
 /// The entries of an array of a fixed length.
-pub(super) fn fixed(source: &Source<'_>, address: u64) -> Read<Vec<Stored>> {
+pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
     header.signed(b"FAHD", 0)?;
@@ -91,7 +95,7 @@ pub(super) fn fixed(source: &Source<'_>, address: u64) -> Read<Vec<Stored>> {
             "damaged at byte {address}: an array of {count} chunks"
         ));
     }
-    let entry = Entry { width, filtered };
+    let entry = ArrayEntry { width, filtered };
     let mut cursor = source.at(block)?;
     cursor.signed(b"FADB", 0)?;
     cursor.skip(1)?;
@@ -109,8 +113,8 @@ pub(super) fn fixed(source: &Source<'_>, address: u64) -> Read<Vec<Stored>> {
 
 /// An array that grows: some entries in its index block, the others in blocks, whose number and length double in turn from group
 /// to group. The blocks of later groups are listed in a block of their own.
-struct Extensible {
-    entry: Entry,
+struct ExtensibleArray {
+    entry: ArrayEntry,
     /// Entries in the index block.
     direct: u64,
     /// Entries of the first block.
@@ -124,7 +128,7 @@ struct Extensible {
 }
 
 /// The entries of an array that grows.
-pub(super) fn extensible(source: &Source<'_>, address: u64) -> Read<Vec<Stored>> {
+pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
     header.signed(b"EAHD", 0)?;
@@ -150,8 +154,8 @@ pub(super) fn extensible(source: &Source<'_>, address: u64) -> Read<Vec<Stored>>
             "damaged at byte {address}: an array without a form"
         ));
     }
-    let array = Extensible {
-        entry: Entry { width, filtered },
+    let array = ExtensibleArray {
+        entry: ArrayEntry { width, filtered },
         direct,
         shortest,
         listed_groups: 2 * pointers.ilog2(),
@@ -163,13 +167,18 @@ pub(super) fn extensible(source: &Source<'_>, address: u64) -> Read<Vec<Stored>>
     Ok(found)
 }
 
-impl Extensible {
+impl ExtensibleArray {
     /// Blocks of a group, and entries of each.
     fn group(&self, group: u32) -> (u64, u64) {
         (1 << (group / 2), self.shortest << group.div_ceil(2))
     }
 
-    fn read(&self, source: &Source<'_>, index: u64, to: &mut Vec<Stored>) -> Read<()> {
+    fn read(
+        &self,
+        source: &FileBytes<'_>,
+        index: u64,
+        to: &mut Vec<StoredChunk>,
+    ) -> Hdf5Result<()> {
         let mut cursor = source.at(index)?;
         cursor.signed(b"EAIB", 0)?;
         cursor.skip(1)?;
@@ -198,12 +207,12 @@ impl Extensible {
     /// A block that lists those of a group.
     fn read_list(
         &self,
-        source: &Source<'_>,
+        source: &FileBytes<'_>,
         address: u64,
         group: u32,
         first: u64,
-        to: &mut Vec<Stored>,
-    ) -> Read<()> {
+        to: &mut Vec<StoredChunk>,
+    ) -> Hdf5Result<()> {
         let mut cursor = source.at(address)?;
         cursor.signed(b"EASB", 0)?;
         cursor.skip(1)?;
@@ -235,12 +244,12 @@ impl Extensible {
     /// A block of entries; those in pages have a bit for each page that was written.
     fn read_block(
         &self,
-        source: &Source<'_>,
+        source: &FileBytes<'_>,
         address: u64,
         places: std::ops::Range<u64>,
         written: &[u8],
-        to: &mut Vec<Stored>,
-    ) -> Read<()> {
+        to: &mut Vec<StoredChunk>,
+    ) -> Hdf5Result<()> {
         let mut cursor = source.at(address)?;
         cursor.signed(b"EADB", 0)?;
         cursor.skip(1)?;

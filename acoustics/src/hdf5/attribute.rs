@@ -1,15 +1,19 @@
 //! Attributes: texts beside a group or a variable.
 
 use super::btree2;
-use super::bytes::{Cursor, Fault, Read, Source, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
 use super::datatype::Datatype;
 use super::fractal_heap::FractalHeap;
 use super::global_heap;
-use super::header::{Header, kind};
-use super::shape::Shape;
+use super::header::{ObjectHeader, kind};
+use super::shape::Dataspace;
 
 /// The text of an attribute; none where there is no such attribute.
-pub(super) fn text(source: &Source<'_>, header: &Header<'_>, name: &str) -> Read<Option<String>> {
+pub(super) fn text(
+    source: &FileBytes<'_>,
+    header: &ObjectHeader<'_>,
+    name: &str,
+) -> Hdf5Result<Option<String>> {
     for message in header.all(kind::ATTRIBUTE) {
         if message.shared {
             continue;
@@ -45,7 +49,11 @@ pub(super) fn text(source: &Source<'_>, header: &Header<'_>, name: &str) -> Read
 }
 
 /// The text of this attribute if it has that name.
-fn text_of(source: &Source<'_>, mut cursor: Cursor<'_>, name: &str) -> Read<Option<String>> {
+fn text_of(
+    source: &FileBytes<'_>,
+    mut cursor: Cursor<'_>,
+    name: &str,
+) -> Hdf5Result<Option<String>> {
     let version = cursor.u8()?;
     if !(1..=3).contains(&version) {
         return refuse(format!(
@@ -71,11 +79,11 @@ fn text_of(source: &Source<'_>, mut cursor: Cursor<'_>, name: &str) -> Read<Opti
         return Ok(None);
     }
     let (datatype, dataspace) = (part(sizes[1])?, part(sizes[2])?);
-    let fault = |why: &str| Err(Fault(format!("{name}: {why}")));
+    let fault = |why: &str| Err(Hdf5Fault(format!("{name}: {why}")));
     if version > 1 && flags & 3 != 0 {
         return fault("its description is shared with another object; not read");
     }
-    let Some(shape) = Shape::read(dataspace)? else {
+    let Some(shape) = Dataspace::read(dataspace)? else {
         return Ok(None);
     };
     if shape.count() != Some(1) {

@@ -1,23 +1,23 @@
 //! B-trees of version 1: the entries of a group, and where chunks are.
 
-use super::bytes::{Cursor, Fault, Read, Source};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
 
 /// Hands every leaf's entry to `each`: its key, and the address that it stands for.
 ///
 /// `kind` is 0 for groups and 1 for chunks, `key` the bytes of a key.
 pub(super) fn entries(
-    source: &Source<'_>,
+    source: &FileBytes<'_>,
     root: u64,
     kind: u8,
     key: usize,
-    each: &mut impl FnMut(Cursor<'_>, u64) -> Read<()>,
-) -> Read<()> {
+    each: &mut impl FnMut(Cursor<'_>, u64) -> Hdf5Result<()>,
+) -> Hdf5Result<()> {
     // Levels fall from node to child, so that loops end.
     let mut open: Vec<(u64, Option<u8>)> = vec![(root, None)];
     while let Some((address, expected)) = open.pop() {
         let mut node = source.at(address)?;
         let fault = || {
-            Fault(format!(
+            Hdf5Fault(format!(
                 "damaged at byte {address}: expected a node of a tree"
             ))
         };

@@ -1,9 +1,9 @@
 //! B-trees of version 2: names of links and attributes, and where chunks are.
 
-use super::bytes::{Cursor, Read, Source, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 
 /// How a tree's nodes are laid out.
-struct Tree {
+struct BTreeLayout {
     kind: u8,
     node_size: u64,
     record_size: usize,
@@ -18,10 +18,10 @@ const MOST_LEVELS: u16 = 40;
 
 /// Hands every record of a tree to `each`.
 pub(super) fn records(
-    source: &Source<'_>,
+    source: &FileBytes<'_>,
     address: u64,
-    each: &mut impl FnMut(Cursor<'_>) -> Read<()>,
-) -> Read<()> {
+    each: &mut impl FnMut(Cursor<'_>) -> Hdf5Result<()>,
+) -> Hdf5Result<()> {
     let mut header = source.at(address)?;
     header.signed(b"BTHD", 0)?;
     let kind = header.u8()?;
@@ -34,7 +34,8 @@ pub(super) fn records(
     let Some(root) = root else {
         return Ok(());
     };
-    let Some(tree) = Tree::new(kind, node_size, record_size, depth, header.widths.address) else {
+    let Some(tree) = BTreeLayout::new(kind, node_size, record_size, depth, header.widths.address)
+    else {
         return refuse(format!(
             "damaged at byte {address}: a tree of {depth} levels with nodes of {node_size} bytes"
         ));
@@ -63,7 +64,7 @@ pub(super) fn records(
     Ok(())
 }
 
-impl Tree {
+impl BTreeLayout {
     /// The widths follow from how many records fit into a node of each level. None where that is none.
     fn new(
         kind: u8,

@@ -9,32 +9,32 @@ const MOST_STRUCTURE_BYTES: u64 = 32 << 20;
 
 /// What is wrong with a file, as a sentence.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Fault(pub(super) String);
+pub(super) struct Hdf5Fault(pub(super) String);
 
-pub(super) type Read<T> = Result<T, Fault>;
+pub(super) type Hdf5Result<T> = Result<T, Hdf5Fault>;
 
 /// Refuses with a sentence.
-pub(super) fn refuse<T>(message: impl Into<String>) -> Read<T> {
-    Err(Fault(message.into()))
+pub(super) fn refuse<T>(message: impl Into<String>) -> Hdf5Result<T> {
+    Err(Hdf5Fault(message.into()))
 }
 
 /// How many bytes an address and a length take in a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Widths {
+pub(super) struct FieldWidths {
     pub(super) address: usize,
     pub(super) length: usize,
 }
 
 /// A file's bytes from its superblock on, and what may still be read of its structure.
 #[derive(Debug)]
-pub(super) struct Source<'a> {
+pub(super) struct FileBytes<'a> {
     bytes: &'a [u8],
-    widths: Widths,
+    widths: FieldWidths,
     left: Cell<u64>,
 }
 
-impl<'a> Source<'a> {
-    pub(super) fn new(bytes: &'a [u8], widths: Widths) -> Self {
+impl<'a> FileBytes<'a> {
+    pub(super) fn new(bytes: &'a [u8], widths: FieldWidths) -> Self {
         Self {
             bytes,
             widths,
@@ -43,12 +43,12 @@ impl<'a> Source<'a> {
     }
 
     /// A cursor at an address, up to the end of the file.
-    pub(super) fn at(&self, address: u64) -> Read<Cursor<'_>> {
+    pub(super) fn at(&self, address: u64) -> Hdf5Result<Cursor<'_>> {
         self.block(address, (self.bytes.len() as u64).saturating_sub(address))
     }
 
     /// A cursor at an address, over `length` bytes.
-    pub(super) fn block(&self, address: u64, length: u64) -> Read<Cursor<'_>> {
+    pub(super) fn block(&self, address: u64, length: u64) -> Hdf5Result<Cursor<'_>> {
         interrupt::check();
         Ok(Cursor {
             bytes: self.values(address, length)?,
@@ -60,7 +60,7 @@ impl<'a> Source<'a> {
     }
 
     /// Values: bytes that the budget does not count.
-    pub(super) fn values(&self, address: u64, length: u64) -> Read<&'a [u8]> {
+    pub(super) fn values(&self, address: u64, length: u64) -> Hdf5Result<&'a [u8]> {
         let range = || {
             let start = usize::try_from(address).ok()?;
             let end = start.checked_add(usize::try_from(length).ok()?)?;
@@ -68,7 +68,7 @@ impl<'a> Source<'a> {
         };
         range().ok_or_else(|| {
             let size = self.bytes.len();
-            Fault(format!(
+            Hdf5Fault(format!(
                 "damaged: it points at {length} bytes from byte {address} on, and the file has {size}"
             ))
         })
@@ -82,7 +82,7 @@ pub(super) struct Cursor<'a> {
     /// Where `bytes` begin in the file.
     start: u64,
     at: usize,
-    pub(super) widths: Widths,
+    pub(super) widths: FieldWidths,
     left: &'a Cell<u64>,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Takes `length` bytes as a cursor of their own.
-    pub(super) fn part(&mut self, length: usize) -> Read<Self> {
+    pub(super) fn part(&mut self, length: usize) -> Hdf5Result<Self> {
         let start = self.position();
         Ok(Self {
             bytes: self.take(length)?,
@@ -108,7 +108,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    pub(super) fn take(&mut self, length: usize) -> Read<&'a [u8]> {
+    pub(super) fn take(&mut self, length: usize) -> Hdf5Result<&'a [u8]> {
         let Some(taken) = self.bytes[self.at..].get(..length) else {
             return refuse(format!(
                 "damaged at byte {}: expected {length} more bytes, found {}",
@@ -126,17 +126,17 @@ impl<'a> Cursor<'a> {
         Ok(taken)
     }
 
-    pub(super) fn skip(&mut self, length: usize) -> Read<()> {
+    pub(super) fn skip(&mut self, length: usize) -> Hdf5Result<()> {
         self.take(length).map(|_| ())
     }
 
     /// Skips to a multiple of 8 bytes behind the cursor's start.
-    pub(super) fn align(&mut self) -> Read<()> {
+    pub(super) fn align(&mut self) -> Hdf5Result<()> {
         self.skip(self.at.next_multiple_of(8) - self.at)
     }
 
     /// An unsigned integer of at most 8 bytes.
-    pub(super) fn uint(&mut self, width: usize) -> Read<u64> {
+    pub(super) fn uint(&mut self, width: usize) -> Hdf5Result<u64> {
         if width > 8 {
             return refuse(format!(
                 "damaged at byte {}: an integer of {width} bytes; allowed are 8",
@@ -147,43 +147,43 @@ impl<'a> Cursor<'a> {
         Ok(bytes.fold(0, |value, byte| (value << 8) | u64::from(*byte)))
     }
 
-    pub(super) fn u8(&mut self) -> Read<u8> {
+    pub(super) fn u8(&mut self) -> Hdf5Result<u8> {
         Ok(self.take(1)?[0])
     }
 
-    pub(super) fn u16(&mut self) -> Read<u16> {
+    pub(super) fn u16(&mut self) -> Hdf5Result<u16> {
         Ok(self.uint(2)? as u16)
     }
 
-    pub(super) fn u32(&mut self) -> Read<u32> {
+    pub(super) fn u32(&mut self) -> Hdf5Result<u32> {
         Ok(self.uint(4)? as u32)
     }
 
     /// A length in the file's width.
-    pub(super) fn length(&mut self) -> Read<u64> {
+    pub(super) fn length(&mut self) -> Hdf5Result<u64> {
         self.uint(self.widths.length)
     }
 
     /// An address in the file's width; none where all bits are set.
-    pub(super) fn address(&mut self) -> Read<Option<u64>> {
+    pub(super) fn address(&mut self) -> Hdf5Result<Option<u64>> {
         let width = self.widths.address;
         let found = self.uint(width)?;
         Ok((found != u64::MAX >> (64 - 8 * width)).then_some(found))
     }
 
     /// An address that must be one.
-    pub(super) fn place(&mut self) -> Read<u64> {
+    pub(super) fn place(&mut self) -> Hdf5Result<u64> {
         let at = self.position();
         let found = self.address()?;
         found.ok_or_else(|| {
-            Fault(format!(
+            Hdf5Fault(format!(
                 "damaged at byte {at}: expected an address, found none"
             ))
         })
     }
 
     /// Takes a signature and a version.
-    pub(super) fn signed(&mut self, signature: &[u8; 4], version: u8) -> Read<()> {
+    pub(super) fn signed(&mut self, signature: &[u8; 4], version: u8) -> Hdf5Result<()> {
         let at = self.position();
         let name = String::from_utf8_lossy(signature);
         if self.take(4)? != signature {

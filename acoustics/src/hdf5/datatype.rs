@@ -1,6 +1,6 @@
 //! Datatypes: what a value is.
 
-use super::bytes::{Cursor, Read, refuse};
+use super::bytes::{Cursor, Hdf5Result, refuse};
 
 /// What is read: numbers and text.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ const SINGLE: ([u8; 4], u32, u32) = ([23, 8, 0, 23], 127, 31);
 const DOUBLE: ([u8; 4], u32, u32) = ([52, 11, 0, 52], 1023, 63);
 
 impl Datatype {
-    pub(super) fn read(mut cursor: Cursor<'_>) -> Read<Self> {
+    pub(super) fn read(mut cursor: Cursor<'_>) -> Hdf5Result<Self> {
         let class = cursor.u8()?;
         let bits = cursor.uint(3)? as u32;
         let size = cursor.u32()? as usize;

@@ -1,6 +1,6 @@
 //! Filters: what was done to a chunk before it was stored.
 
-use super::bytes::{Cursor, Read, refuse};
+use super::bytes::{Cursor, Hdf5Result, refuse};
 use dwell_scene::interrupt;
 use flate2::read::ZlibDecoder;
 use std::io::Read as _;
@@ -11,7 +11,7 @@ const MOST_FILTERS: u8 = 8;
 const PIECE: u64 = 1 << 20;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Filter {
+enum ChunkFilter {
     Deflate,
     /// Bytes of values, sorted by their place in the value: so many bytes a value.
     Shuffle(usize),
@@ -20,10 +20,10 @@ enum Filter {
 
 /// Filters in the order in which they were applied.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Filters(Vec<Filter>);
+pub(super) struct FilterPipeline(Vec<ChunkFilter>);
 
-impl Filters {
-    pub(super) fn read(mut cursor: Cursor<'_>) -> Read<Self> {
+impl FilterPipeline {
+    pub(super) fn read(mut cursor: Cursor<'_>) -> Hdf5Result<Self> {
         let version = cursor.u8()?;
         let count = cursor.u8()?;
         if !(1..=2).contains(&version) || count > MOST_FILTERS {
@@ -50,9 +50,9 @@ impl Filters {
                 cursor.skip(4 * (values % 2))?;
             }
             filters.push(match id {
-                1 => Filter::Deflate,
-                2 => Filter::Shuffle(of.u32()? as usize),
-                3 => Filter::Fletcher32,
+                1 => ChunkFilter::Deflate,
+                2 => ChunkFilter::Shuffle(of.u32()? as usize),
+                3 => ChunkFilter::Fletcher32,
                 _ => {
                     return refuse(format!(
                         "compressed by filter {id}; read are deflate (1), shuffle (2) and Fletcher-32 (3)"
@@ -68,7 +68,7 @@ impl Filters {
     }
 
     /// The bytes of a chunk that has `size` of them, from those that are stored; the filters of `skipped` were not applied.
-    pub(super) fn undo(&self, stored: &[u8], skipped: u32, size: usize) -> Read<Vec<u8>> {
+    pub(super) fn undo(&self, stored: &[u8], skipped: u32, size: usize) -> Hdf5Result<Vec<u8>> {
         let mut bytes = stored.to_vec();
         for (k, filter) in self.0.iter().enumerate().rev() {
             if skipped & (1 << k) != 0 {
@@ -76,9 +76,9 @@ impl Filters {
             }
             bytes = match filter {
                 // Behind the values there may be a check sum.
-                Filter::Deflate => inflate(&bytes, size as u64 + 64)?,
-                Filter::Shuffle(width) => in_order(&bytes, *width),
-                Filter::Fletcher32 => checked(bytes)?,
+                ChunkFilter::Deflate => inflate(&bytes, size as u64 + 64)?,
+                ChunkFilter::Shuffle(width) => in_order(&bytes, *width),
+                ChunkFilter::Fletcher32 => checked(bytes)?,
             };
         }
         if bytes.len() != size {
@@ -91,7 +91,7 @@ impl Filters {
     }
 }
 
-fn inflate(bytes: &[u8], most: u64) -> Read<Vec<u8>> {
+fn inflate(bytes: &[u8], most: u64) -> Hdf5Result<Vec<u8>> {
     let mut stream = ZlibDecoder::new(bytes).take(most + 1);
     let mut inflated = Vec::new();
     loop {
@@ -126,7 +126,7 @@ fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// The bytes before their check sum, if it is theirs.
-fn checked(mut bytes: Vec<u8>) -> Read<Vec<u8>> {
+fn checked(mut bytes: Vec<u8>) -> Hdf5Result<Vec<u8>> {
     let Some(at) = bytes.len().checked_sub(4) else {
         return refuse("damaged: a chunk without its check sum");
     };

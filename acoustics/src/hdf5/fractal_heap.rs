@@ -1,6 +1,6 @@
 //! Heaps for links and attributes where there are many.
 
-use super::bytes::{Cursor, Fault, Read, Source, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
 
 /// A heap: blocks in rows, whose sizes double from row to row.
 pub(super) struct FractalHeap {
@@ -17,7 +17,7 @@ pub(super) struct FractalHeap {
 }
 
 impl FractalHeap {
-    pub(super) fn read(source: &Source<'_>, address: u64) -> Read<Self> {
+    pub(super) fn read(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Self> {
         let mut header = source.at(address)?;
         header.signed(b"FRHP", 0)?;
         let id_length = usize::from(header.u16()?);
@@ -74,9 +74,9 @@ impl FractalHeap {
     /// An object; none for one that is kept elsewhere because of its size.
     pub(super) fn object<'s>(
         &self,
-        source: &'s Source<'_>,
+        source: &'s FileBytes<'_>,
         mut id: Cursor<'_>,
-    ) -> Read<Option<Cursor<'s>>> {
+    ) -> Hdf5Result<Option<Cursor<'s>>> {
         let flags = id.u8()?;
         if flags >> 4 != 0 {
             return Ok(None);
@@ -84,13 +84,14 @@ impl FractalHeap {
         let (offset, length) = (id.uint(self.offset_width)?, id.uint(self.length_width)?);
         let (block, inside) = self.block_of(source, offset)?;
         let start = block.checked_add(inside);
-        let start = start.ok_or_else(|| Fault(format!("damaged: an address beyond {block}")))?;
+        let start =
+            start.ok_or_else(|| Hdf5Fault(format!("damaged: an address beyond {block}")))?;
         source.block(start, length).map(Some)
     }
 
     /// The block's address that holds an offset of the heap, and the offset in that block.
-    fn block_of(&self, source: &Source<'_>, offset: u64) -> Read<(u64, u64)> {
-        let damaged = || Fault(format!("damaged: a heap has nothing at {offset}"));
+    fn block_of(&self, source: &FileBytes<'_>, offset: u64) -> Hdf5Result<(u64, u64)> {
+        let damaged = || Hdf5Fault(format!("damaged: a heap has nothing at {offset}"));
         let mut address = self.root.ok_or_else(damaged)?;
         let (mut rows, mut inside) = (self.rows, offset);
         // Each block in blocks is smaller than the one it stands in.

@@ -1,15 +1,15 @@
 //! The heap for texts of any length.
 
-use super::bytes::{Read, Source, refuse};
+use super::bytes::{FileBytes, Hdf5Result, refuse};
 use super::header::as_size;
 
 /// The first `length` bytes of an object of a collection.
 pub(super) fn object<'a>(
-    source: &'a Source<'_>,
+    source: &'a FileBytes<'_>,
     address: u64,
     index: u32,
     length: usize,
-) -> Read<&'a [u8]> {
+) -> Hdf5Result<&'a [u8]> {
     let mut collection = source.at(address)?;
     collection.signed(b"GCOL", 1)?;
     collection.skip(3)?;

@@ -1,11 +1,11 @@
 //! The chunks of a variable as a grid, and its values from them.
 
-use super::bytes::{Fault, Read, Source, refuse};
+use super::bytes::{FileBytes, Hdf5Fault, Hdf5Result, refuse};
 use super::datatype::Datatype;
-use super::filters::Filters;
+use super::filters::FilterPipeline;
 use super::index;
-use super::layout::Chunked;
-use super::shape::{Shape, product};
+use super::layout::ChunkedStorage;
+use super::shape::{Dataspace, product};
 use dwell_scene::interrupt;
 
 /// Most values of all chunks together, those beyond the variable's edges counted.
@@ -13,7 +13,7 @@ const MOST_PADDED: u64 = 2 * super::MOST_NUMBERS;
 
 /// A chunk in the file.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Stored {
+pub(super) struct StoredChunk {
     /// Its number in the grid, the last axis first.
     pub(super) number: u64,
     pub(super) address: u64,
@@ -25,7 +25,7 @@ pub(super) struct Stored {
 
 /// How chunks cover a variable.
 #[derive(Debug)]
-pub(super) struct Grid {
+pub(super) struct ChunkGrid {
     /// Values of a chunk along each axis.
     chunk: Vec<u64>,
     /// Chunks along each axis.
@@ -38,8 +38,8 @@ pub(super) struct Grid {
     pub(super) bytes: u64,
 }
 
-impl Grid {
-    pub(super) fn new(shape: &Shape, chunk: &[u64], value_size: usize) -> Read<Self> {
+impl ChunkGrid {
+    pub(super) fn new(shape: &Dataspace, chunk: &[u64], value_size: usize) -> Hdf5Result<Self> {
         let axes = shape.lengths.len();
         if chunk.len() != axes || axes == 0 || chunk.contains(&0) {
             return refuse(format!(
@@ -128,7 +128,7 @@ impl Grid {
         bytes: &[u8],
         of: Datatype,
         size: usize,
-        shape: &Shape,
+        shape: &Dataspace,
         values: &mut [f64],
     ) {
         let start = self.start(number);
@@ -159,14 +159,14 @@ impl Grid {
 
 /// The numbers of a variable in chunks.
 pub(super) fn numbers(
-    source: &Source<'_>,
-    shape: &Shape,
-    chunked: &Chunked,
-    filters: &Filters,
+    source: &FileBytes<'_>,
+    shape: &Dataspace,
+    chunked: &ChunkedStorage,
+    filters: &FilterPipeline,
     of: Datatype,
     size: usize,
-) -> Read<Vec<f64>> {
-    let grid = Grid::new(shape, &chunked.shape, size)?;
+) -> Hdf5Result<Vec<f64>> {
+    let grid = ChunkGrid::new(shape, &chunked.shape, size)?;
     let mut chunks = index::chunks(source, chunked, &grid)?;
     chunks.sort_by_key(|chunk| chunk.number);
     chunks.dedup_by_key(|chunk| chunk.number);
@@ -188,7 +188,8 @@ pub(super) fn numbers(
         interrupt::check();
         let stored = source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
         let undone = filters.undo(stored, chunk.skipped, whole);
-        let bytes = undone.map_err(|Fault(why)| Fault(format!("chunk {}: {why}", chunk.number)))?;
+        let bytes =
+            undone.map_err(|Hdf5Fault(why)| Hdf5Fault(format!("chunk {}: {why}", chunk.number)))?;
         grid.place(chunk.number, &bytes, of, size, shape, &mut values);
     }
     Ok(values)

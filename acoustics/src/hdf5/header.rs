@@ -1,6 +1,6 @@
 //! Headers of objects: lists of messages, in two versions of the format.
 
-use super::bytes::{Cursor, Read, Source, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 use std::collections::VecDeque;
 
 /// Kinds of messages that are read.
@@ -23,7 +23,7 @@ const MOST_MESSAGES: usize = 65_536;
 
 /// A message of a header.
 #[derive(Debug, Clone)]
-pub(super) struct Message<'a> {
+pub(super) struct HeaderMessage<'a> {
     pub(super) kind: u16,
     /// Its content stands elsewhere.
     pub(super) shared: bool,
@@ -32,12 +32,12 @@ pub(super) struct Message<'a> {
 
 /// The header of a group or a dataset.
 #[derive(Debug)]
-pub(super) struct Header<'a> {
-    messages: Vec<Message<'a>>,
+pub(super) struct ObjectHeader<'a> {
+    messages: Vec<HeaderMessage<'a>>,
 }
 
-impl<'a> Header<'a> {
-    pub(super) fn read(source: &'a Source<'_>, address: u64) -> Read<Self> {
+impl<'a> ObjectHeader<'a> {
+    pub(super) fn read(source: &'a FileBytes<'_>, address: u64) -> Hdf5Result<Self> {
         let mut messages = Vec::new();
         let mut cursor = source.at(address)?;
         let mut blocks = VecDeque::new();
@@ -66,7 +66,7 @@ impl<'a> Header<'a> {
         };
         let mut count = 0;
         while let Some(mut block) = blocks.pop_front() {
-            while let Some(message) = Message::next(&mut block, tracked)? {
+            while let Some(message) = HeaderMessage::next(&mut block, tracked)? {
                 count += 1;
                 if count > MOST_MESSAGES {
                     return refuse(format!(
@@ -95,21 +95,21 @@ impl<'a> Header<'a> {
     }
 
     /// The messages of a kind.
-    pub(super) fn all(&self, kind: u16) -> impl Iterator<Item = &Message<'a>> {
+    pub(super) fn all(&self, kind: u16) -> impl Iterator<Item = &HeaderMessage<'a>> {
         self.messages
             .iter()
             .filter(move |message| message.kind == kind)
     }
 
     /// The first message of a kind.
-    pub(super) fn first(&self, kind: u16) -> Option<&Message<'a>> {
+    pub(super) fn first(&self, kind: u16) -> Option<&HeaderMessage<'a>> {
         self.all(kind).next()
     }
 }
 
-impl<'a> Message<'a> {
+impl<'a> HeaderMessage<'a> {
     /// The next of a block; `tracked` says for headers of version 2 whether messages have numbers.
-    fn next(block: &mut Cursor<'a>, tracked: Option<bool>) -> Read<Option<Self>> {
+    fn next(block: &mut Cursor<'a>, tracked: Option<bool>) -> Hdf5Result<Option<Self>> {
         let prefix = match tracked {
             None => 8,
             Some(false) => 4,
@@ -139,7 +139,7 @@ impl<'a> Message<'a> {
     }
 
     /// Its content.
-    pub(super) fn content(&self) -> Read<Cursor<'a>> {
+    pub(super) fn content(&self) -> Hdf5Result<Cursor<'a>> {
         if self.shared {
             return refuse("it shares its description with another object; not read");
         }
@@ -148,6 +148,6 @@ impl<'a> Message<'a> {
 }
 
 /// A number of bytes.
-pub(super) fn as_size(found: u64) -> Read<usize> {
+pub(super) fn as_size(found: u64) -> Hdf5Result<usize> {
     usize::try_from(found).or_else(|_| refuse(format!("damaged: a size of {found} bytes")))
 }

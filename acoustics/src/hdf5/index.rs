@@ -1,26 +1,30 @@
 //! Where the chunks of a variable are: six kinds of index.
 
-use super::arrays::{self, Entry};
+use super::arrays::{self, ArrayEntry};
 use super::btree1;
 use super::btree2;
-use super::bytes::{Cursor, Fault, Read, Source};
-use super::grid::{Grid, Stored};
-use super::layout::{Chunked, Index};
+use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
+use super::grid::{ChunkGrid, StoredChunk};
+use super::layout::{ChunkIndex, ChunkedStorage};
 
 /// All chunks that an index knows; numbers may be missing.
-pub(super) fn chunks(source: &Source<'_>, chunked: &Chunked, grid: &Grid) -> Read<Vec<Stored>> {
+pub(super) fn chunks(
+    source: &FileBytes<'_>,
+    chunked: &ChunkedStorage,
+    grid: &ChunkGrid,
+) -> Hdf5Result<Vec<StoredChunk>> {
     let Some(address) = chunked.address else {
         return Ok(Vec::new());
     };
     let mut found = Vec::new();
     match chunked.index {
-        Index::Tree1 => {
+        ChunkIndex::Tree1 => {
             // Size, filters, and where it begins, with an axis for the bytes of a value.
             let key = 8 + 8 * (grid.axes() + 1);
             btree1::entries(source, address, 1, key, &mut |mut key, address| {
                 let (size, skipped) = (Some(u64::from(key.u32()?)), key.u32()?);
                 let number = grid.number_from(&coordinates(&mut key, grid.axes())?);
-                found.extend(number.map(|number| Stored {
+                found.extend(number.map(|number| StoredChunk {
                     number,
                     address,
                     size,
@@ -29,51 +33,51 @@ pub(super) fn chunks(source: &Source<'_>, chunked: &Chunked, grid: &Grid) -> Rea
                 Ok(())
             })?;
         }
-        Index::Tree2 => {
+        ChunkIndex::Tree2 => {
             let plain = 8 * grid.axes();
             btree2::records(source, address, &mut |mut record| {
                 let width = record.remaining().saturating_sub(plain);
                 let filtered = width > record.widths.address;
-                let stored = Entry { width, filtered }.read(&mut record, 0)?;
+                let stored = ArrayEntry { width, filtered }.read(&mut record, 0)?;
                 let number = grid.number(&coordinates(&mut record, grid.axes())?);
                 let both = stored.zip(number);
-                found.extend(both.map(|(stored, number)| Stored { number, ..stored }));
+                found.extend(both.map(|(stored, number)| StoredChunk { number, ..stored }));
                 Ok(())
             })?;
         }
-        Index::Single { size, skipped } => found.push(Stored {
+        ChunkIndex::Single { size, skipped } => found.push(StoredChunk {
             number: 0,
             address,
             size,
             skipped,
         }),
-        Index::Implicit => {
+        ChunkIndex::Implicit => {
             // All are there or none is.
             let length = grid.count.checked_mul(grid.bytes);
-            let length = length.ok_or_else(|| Fault("damaged: too many chunks".to_owned()))?;
+            let length = length.ok_or_else(|| Hdf5Fault("damaged: too many chunks".to_owned()))?;
             source.values(address, length)?;
-            found.extend((0..grid.count).map(|number| Stored {
+            found.extend((0..grid.count).map(|number| StoredChunk {
                 number,
                 address: address + number * grid.bytes,
                 size: None,
                 skipped: 0,
             }));
         }
-        Index::Fixed | Index::Extensible => {
-            let entries = if matches!(chunked.index, Index::Fixed) {
+        ChunkIndex::Fixed | ChunkIndex::Extensible => {
+            let entries = if matches!(chunked.index, ChunkIndex::Fixed) {
                 arrays::fixed(source, address)?
             } else {
                 arrays::extensible(source, address)?
             };
             found.extend(entries.into_iter().filter_map(|stored| {
                 let number = grid.number_in_array(stored.number)?;
-                Some(Stored { number, ..stored })
+                Some(StoredChunk { number, ..stored })
             }));
         }
     }
     Ok(found)
 }
 
-fn coordinates(cursor: &mut Cursor<'_>, axes: usize) -> Read<Vec<u64>> {
+fn coordinates(cursor: &mut Cursor<'_>, axes: usize) -> Hdf5Result<Vec<u64>> {
     (0..axes).map(|_| cursor.uint(8)).collect()
 }

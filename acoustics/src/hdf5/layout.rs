@@ -1,31 +1,31 @@
 //! Where a variable's values are.
 
-use super::bytes::{Cursor, Read, refuse};
+use super::bytes::{Cursor, Hdf5Result, refuse};
 
 /// The storage of a variable.
 #[derive(Debug)]
-pub(super) enum Layout<'a> {
+pub(super) enum StorageLayout<'a> {
     /// In the header.
     Compact(Cursor<'a>),
     /// In one piece of so many bytes.
     Contiguous(Option<u64>, u64),
     /// In chunks.
-    Chunked(Chunked),
+    Chunked(ChunkedStorage),
 }
 
 /// Chunks: their shape, and how to find them.
 #[derive(Debug)]
-pub(super) struct Chunked {
+pub(super) struct ChunkedStorage {
     /// Values of a chunk along each axis.
     pub(super) shape: Vec<u64>,
-    pub(super) index: Index,
+    pub(super) index: ChunkIndex,
     /// Of the index; none where nothing was ever written.
     pub(super) address: Option<u64>,
 }
 
 /// How chunks are found.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Index {
+pub(super) enum ChunkIndex {
     /// A B-tree of version 1.
     Tree1,
     /// One chunk: bytes as stored, if not as many as it has, and which filters it skipped.
@@ -41,8 +41,8 @@ pub(super) enum Index {
     Tree2,
 }
 
-impl<'a> Layout<'a> {
-    pub(super) fn read(mut cursor: Cursor<'a>) -> Read<Self> {
+impl<'a> StorageLayout<'a> {
+    pub(super) fn read(mut cursor: Cursor<'a>) -> Hdf5Result<Self> {
         let version = cursor.u8()?;
         if !(3..=5).contains(&version) {
             return refuse(format!("a layout of version {version}; read are 3 to 5"));
@@ -57,7 +57,7 @@ impl<'a> Layout<'a> {
                 let axes = cursor.u8()?;
                 let address = cursor.address()?;
                 let shape = (0..axes).map(|_| cursor.u32().map(u64::from)).collect();
-                chunked(shape, Index::Tree1, address)
+                chunked(shape, ChunkIndex::Tree1, address)
             }
             2 => {
                 let flags = cursor.u8()?;
@@ -68,19 +68,19 @@ impl<'a> Layout<'a> {
                 let width = usize::from(cursor.u8()?);
                 let shape = (0..axes).map(|_| cursor.uint(width)).collect();
                 let index = match cursor.u8()? {
-                    1 if flags & 0x02 != 0 => Index::Single {
+                    1 if flags & 0x02 != 0 => ChunkIndex::Single {
                         size: Some(cursor.length()?),
                         skipped: cursor.u32()?,
                     },
-                    1 => Index::Single {
+                    1 => ChunkIndex::Single {
                         size: None,
                         skipped: 0,
                     },
-                    2 => Index::Implicit,
+                    2 => ChunkIndex::Implicit,
                     // What follows stands in the index's header, too.
-                    3 => cursor.skip(1).map(|()| Index::Fixed)?,
-                    4 => cursor.skip(5).map(|()| Index::Extensible)?,
-                    5 => cursor.skip(6).map(|()| Index::Tree2)?,
+                    3 => cursor.skip(1).map(|()| ChunkIndex::Fixed)?,
+                    4 => cursor.skip(5).map(|()| ChunkIndex::Extensible)?,
+                    5 => cursor.skip(6).map(|()| ChunkIndex::Tree2)?,
                     other => {
                         return refuse(format!(
                             "chunks with an index of kind {other}; read are 1 to 5"
@@ -98,10 +98,14 @@ impl<'a> Layout<'a> {
 }
 
 /// The last axis of the stored shape is the bytes of a value.
-fn chunked<'a>(shape: Read<Vec<u64>>, index: Index, address: Option<u64>) -> Read<Layout<'a>> {
+fn chunked<'a>(
+    shape: Hdf5Result<Vec<u64>>,
+    index: ChunkIndex,
+    address: Option<u64>,
+) -> Hdf5Result<StorageLayout<'a>> {
     let mut shape = shape?;
     shape.pop();
-    Ok(Layout::Chunked(Chunked {
+    Ok(StorageLayout::Chunked(ChunkedStorage {
         shape,
         index,
         address,

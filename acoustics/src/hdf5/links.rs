@@ -2,12 +2,12 @@
 
 use super::btree1;
 use super::btree2;
-use super::bytes::{Cursor, Read, Source, refuse};
+use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 use super::fractal_heap::FractalHeap;
-use super::header::{Header, as_size, kind};
+use super::header::{ObjectHeader, as_size, kind};
 
 /// What a name stands for.
-enum Link {
+enum LinkTarget {
     /// An object of this file, by its header's address.
     Object(u64),
     /// Another name in this file.
@@ -19,7 +19,11 @@ enum Link {
 }
 
 /// The address of the header that `name` stands for; none where the group has no such name.
-pub(super) fn find(source: &Source<'_>, group: &Header<'_>, name: &str) -> Read<Option<u64>> {
+pub(super) fn find(
+    source: &FileBytes<'_>,
+    group: &ObjectHeader<'_>,
+    name: &str,
+) -> Hdf5Result<Option<u64>> {
     let mut found = None;
     if let Some(table) = group.first(kind::SYMBOL_TABLE) {
         found = in_table(source, table.content()?, name)?;
@@ -36,17 +40,25 @@ pub(super) fn find(source: &Source<'_>, group: &Header<'_>, name: &str) -> Read<
     }
     match found {
         None => Ok(None),
-        Some(Link::Object(address)) => Ok(Some(address)),
-        Some(Link::Name) => {
+        Some(LinkTarget::Object(address)) => Ok(Some(address)),
+        Some(LinkTarget::Name) => {
             refuse("is a soft link; read is what the file holds under its own name")
         }
-        Some(Link::OtherFile) => refuse("is a link to another file; only the file itself is read"),
-        Some(Link::Unknown) => refuse("is a link of an unknown kind; only the file itself is read"),
+        Some(LinkTarget::OtherFile) => {
+            refuse("is a link to another file; only the file itself is read")
+        }
+        Some(LinkTarget::Unknown) => {
+            refuse("is a link of an unknown kind; only the file itself is read")
+        }
     }
 }
 
 /// Groups of older files: a tree of tables, with names in a heap.
-fn in_table(source: &Source<'_>, mut table: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+fn in_table(
+    source: &FileBytes<'_>,
+    mut table: Cursor<'_>,
+    name: &str,
+) -> Hdf5Result<Option<LinkTarget>> {
     let (tree, heap) = (table.place()?, table.place()?);
     let mut heap = source.at(heap)?;
     heap.signed(b"HEAP", 0)?;
@@ -74,9 +86,9 @@ fn in_table(source: &Source<'_>, mut table: Cursor<'_>, name: &str) -> Read<Opti
                 .is_some_and(|rest| rest.first() == Some(&0));
             if is_it {
                 found = Some(match (cache, object) {
-                    (0 | 1, Some(object)) => Link::Object(object),
-                    (2, _) => Link::Name,
-                    _ => Link::Unknown,
+                    (0 | 1, Some(object)) => LinkTarget::Object(object),
+                    (2, _) => LinkTarget::Name,
+                    _ => LinkTarget::Unknown,
                 });
             }
         }
@@ -86,7 +98,11 @@ fn in_table(source: &Source<'_>, mut table: Cursor<'_>, name: &str) -> Read<Opti
 }
 
 /// Groups with many links.
-fn in_heap(source: &Source<'_>, mut info: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+fn in_heap(
+    source: &FileBytes<'_>,
+    mut info: Cursor<'_>,
+    name: &str,
+) -> Hdf5Result<Option<LinkTarget>> {
     info.skip(1)?;
     if info.u8()? & 1 != 0 {
         info.skip(8)?;
@@ -111,7 +127,7 @@ fn in_heap(source: &Source<'_>, mut info: Cursor<'_>, name: &str) -> Read<Option
 }
 
 /// What a link message stands for if it has that name.
-fn link_of(mut cursor: Cursor<'_>, name: &str) -> Read<Option<Link>> {
+fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
     let version = cursor.u8()?;
     if version != 1 {
         return refuse(format!("a link of version {version}; read is version 1"));
@@ -129,9 +145,9 @@ fn link_of(mut cursor: Cursor<'_>, name: &str) -> Read<Option<Link>> {
         return Ok(None);
     }
     Ok(Some(match class {
-        0 => Link::Object(cursor.place()?),
-        1 => Link::Name,
-        64 => Link::OtherFile,
-        _ => Link::Unknown,
+        0 => LinkTarget::Object(cursor.place()?),
+        1 => LinkTarget::Name,
+        64 => LinkTarget::OtherFile,
+        _ => LinkTarget::Unknown,
     }))
 }

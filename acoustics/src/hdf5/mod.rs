@@ -25,12 +25,12 @@ mod shape;
 mod superblock;
 
 use crate::error::AcousticsError;
-use bytes::{Fault, Read, Source, refuse};
+use bytes::{FileBytes, Hdf5Fault, Hdf5Result, refuse};
 use datatype::Datatype;
-use filters::Filters;
-use header::{Header, kind};
-use layout::Layout;
-use shape::Shape;
+use filters::FilterPipeline;
+use header::{ObjectHeader, kind};
+use layout::StorageLayout;
+use shape::Dataspace;
 use superblock::Superblock;
 
 /// Most bytes of a file.
@@ -47,7 +47,7 @@ pub struct Hdf5 {
 
 /// The numbers of a variable.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Numbers {
+pub struct Hdf5Array {
     /// The lengths of its axes.
     pub shape: Vec<usize>,
     /// Its values, the last axis first.
@@ -61,7 +61,7 @@ impl Hdf5 {
     /// [`AcousticsError::Hdf5`] when they are none of an HDF5 file.
     pub fn open(bytes: Vec<u8>) -> Result<Self, AcousticsError> {
         let superblock =
-            superblock::read(&bytes).map_err(|Fault(why)| AcousticsError::Hdf5(why))?;
+            superblock::read(&bytes).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(why))?;
         Ok(Self { bytes, superblock })
     }
 
@@ -77,7 +77,7 @@ impl Hdf5 {
             let Some(space) = header.first(kind::DATASPACE) else {
                 return Ok(None);
             };
-            let shape = Shape::read(space.content()?)?;
+            let shape = Dataspace::read(space.content()?)?;
             Ok(shape.map(|shape| shape.lengths))
         })
     }
@@ -101,7 +101,7 @@ impl Hdf5 {
     /// # Errors
     /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or no numbers, its values stand elsewhere, or it has more
     /// than [`MOST_NUMBERS`].
-    pub fn numbers(&self, name: &str) -> Result<Numbers, AcousticsError> {
+    pub fn numbers(&self, name: &str) -> Result<Hdf5Array, AcousticsError> {
         self.told(name, |source| match self.variable(source, name)? {
             Some(header) => numbers(source, &header),
             None => refuse("missing"),
@@ -112,25 +112,29 @@ impl Hdf5 {
     fn told<T>(
         &self,
         at: &str,
-        work: impl FnOnce(&Source<'_>) -> Read<T>,
+        work: impl FnOnce(&FileBytes<'_>) -> Hdf5Result<T>,
     ) -> Result<T, AcousticsError> {
-        let source = Source::new(&self.bytes[self.superblock.start..], self.superblock.widths);
-        work(&source).map_err(|Fault(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
+        let source = FileBytes::new(&self.bytes[self.superblock.start..], self.superblock.widths);
+        work(&source).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(format!("{at}: {why}")))
     }
 
-    fn root<'s>(&self, source: &'s Source<'_>) -> Read<Header<'s>> {
-        Header::read(source, self.superblock.root)
+    fn root<'s>(&self, source: &'s FileBytes<'_>) -> Hdf5Result<ObjectHeader<'s>> {
+        ObjectHeader::read(source, self.superblock.root)
     }
 
-    fn variable<'s>(&self, source: &'s Source<'_>, name: &str) -> Read<Option<Header<'s>>> {
+    fn variable<'s>(
+        &self,
+        source: &'s FileBytes<'_>,
+        name: &str,
+    ) -> Hdf5Result<Option<ObjectHeader<'s>>> {
         let found = links::find(source, &self.root(source)?, name)?;
         found
-            .map(|address| Header::read(source, address))
+            .map(|address| ObjectHeader::read(source, address))
             .transpose()
     }
 }
 
-fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
+fn numbers(source: &FileBytes<'_>, header: &ObjectHeader<'_>) -> Hdf5Result<Hdf5Array> {
     let content = |kind, what: &str| match header.first(kind) {
         Some(message) => message.content(),
         None => refuse(format!("{what} is missing; it is no variable")),
@@ -138,7 +142,7 @@ fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
     if header.first(kind::EXTERNAL_FILES).is_some() {
         return refuse("its values stand in another file; only the file itself is read");
     }
-    let Some(shape) = Shape::read(content(kind::DATASPACE, "its dataspace")?)? else {
+    let Some(shape) = Dataspace::read(content(kind::DATASPACE, "its dataspace")?)? else {
         return refuse("has no values");
     };
     let count = shape.count().filter(|count| *count <= MOST_NUMBERS);
@@ -152,10 +156,10 @@ fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
     let Some(size) = datatype.number_size() else {
         return refuse("is text; expected numbers");
     };
-    let layout = Layout::read(content(kind::LAYOUT, "its layout")?)?;
+    let layout = StorageLayout::read(content(kind::LAYOUT, "its layout")?)?;
     let filters = match header.first(kind::FILTERS) {
-        Some(message) => Filters::read(message.content()?)?,
-        None => Filters::default(),
+        Some(message) => FilterPipeline::read(message.content()?)?,
+        None => FilterPipeline::default(),
     };
     let needed = count * size as u64;
     let plain = |bytes: &[u8], stated: u64| {
@@ -172,15 +176,15 @@ fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
     };
     let values = match layout {
         _ if count == 0 => Vec::new(),
-        Layout::Compact(mut bytes) => {
+        StorageLayout::Compact(mut bytes) => {
             let stated = bytes.remaining();
             plain(bytes.take(stated)?, stated as u64)?
         }
-        Layout::Contiguous(Some(address), stated) => {
+        StorageLayout::Contiguous(Some(address), stated) => {
             plain(source.values(address, stated)?, stated)?
         }
-        Layout::Contiguous(None, _) => return refuse("its values were never written"),
-        Layout::Chunked(chunked) => {
+        StorageLayout::Contiguous(None, _) => return refuse("its values were never written"),
+        StorageLayout::Chunked(chunked) => {
             grid::numbers(source, &shape, &chunked, &filters, datatype, size)?
         }
     };
@@ -189,5 +193,5 @@ fn numbers(source: &Source<'_>, header: &Header<'_>) -> Read<Numbers> {
         .iter()
         .map(|length| *length as usize)
         .collect();
-    Ok(Numbers { shape, values })
+    Ok(Hdf5Array { shape, values })
 }

@@ -1,22 +1,22 @@
 //! Dataspaces: how many values there are.
 
-use super::bytes::{Cursor, Read, refuse};
+use super::bytes::{Cursor, Hdf5Result, refuse};
 
 /// Most axes of a variable; SOFA's have at most 4.
 const MOST_AXES: u8 = 8;
 
 /// The axes of a variable; none for one value alone.
 #[derive(Debug, Clone)]
-pub(super) struct Shape {
+pub(super) struct Dataspace {
     /// Their lengths.
     pub(super) lengths: Vec<u64>,
     /// To what they may grow; none without an end.
     pub(super) longest: Vec<Option<u64>>,
 }
 
-impl Shape {
+impl Dataspace {
     /// The axes; none of what has no values at all.
-    pub(super) fn read(mut cursor: Cursor<'_>) -> Read<Option<Self>> {
+    pub(super) fn read(mut cursor: Cursor<'_>) -> Hdf5Result<Option<Self>> {
         let version = cursor.u8()?;
         let axes = cursor.u8()?;
         let flags = cursor.u8()?;
@@ -38,7 +38,7 @@ impl Shape {
         }
         let lengths = (0..axes)
             .map(|_| cursor.length())
-            .collect::<Read<Vec<_>>>()?;
+            .collect::<Hdf5Result<Vec<_>>>()?;
         let longest = if flags & 1 == 0 {
             lengths.iter().copied().map(Some).collect()
         } else {
@@ -46,7 +46,7 @@ impl Shape {
             let longest = (0..axes).map(|_| cursor.length());
             longest
                 .map(|found| Ok(Some(found?).filter(|found| *found != unlimited)))
-                .collect::<Read<_>>()?
+                .collect::<Hdf5Result<_>>()?
         };
         Ok(Some(Self { lengths, longest }))
     }

@@ -1,6 +1,6 @@
 //! Where a file begins: its widths and its root.
 
-use super::bytes::{Cursor, Read, Source, Widths, refuse};
+use super::bytes::{Cursor, FieldWidths, FileBytes, Hdf5Result, refuse};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Before the superblock there may be a block of the user's: 512 bytes, or a power of two above.
@@ -11,12 +11,12 @@ const LONGEST_USER_BLOCK: usize = 1 << 16;
 pub(super) struct Superblock {
     /// Where it begins; all addresses count from here.
     pub(super) start: usize,
-    pub(super) widths: Widths,
+    pub(super) widths: FieldWidths,
     /// The address of the root group's header.
     pub(super) root: u64,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Read<Superblock> {
+pub(super) fn read(bytes: &[u8]) -> Hdf5Result<Superblock> {
     let starts = std::iter::once(0).chain((9..).map(|k| 1 << k));
     let begins = |start: &usize| {
         bytes
@@ -31,7 +31,7 @@ pub(super) fn read(bytes: &[u8]) -> Read<Superblock> {
     };
     // Until the widths are known, none is asked for.
     let (address, length) = (8, 8);
-    let source = Source::new(&bytes[start..], Widths { address, length });
+    let source = FileBytes::new(&bytes[start..], FieldWidths { address, length });
     let mut cursor = source.at(SIGNATURE.len() as u64)?;
     let end = match cursor.u8()? {
         version @ (0 | 1) => {
@@ -77,7 +77,7 @@ pub(super) fn read(bytes: &[u8]) -> Read<Superblock> {
     })
 }
 
-fn read_widths(cursor: &mut Cursor<'_>) -> Read<()> {
+fn read_widths(cursor: &mut Cursor<'_>) -> Hdf5Result<()> {
     let (address, length) = (usize::from(cursor.u8()?), usize::from(cursor.u8()?));
     let allowed = [2, 4, 8];
     if !allowed.contains(&address) || !allowed.contains(&length) {
@@ -85,6 +85,6 @@ fn read_widths(cursor: &mut Cursor<'_>) -> Read<()> {
             "addresses of {address} and lengths of {length} bytes; allowed are 2, 4 and 8"
         ));
     }
-    cursor.widths = Widths { address, length };
+    cursor.widths = FieldWidths { address, length };
     Ok(())
 }

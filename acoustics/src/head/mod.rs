@@ -3,18 +3,18 @@
 //! A [`Head`] is a rigid sphere or what was measured on a person or a manikin. A scene has a built-in sphere, and every other head
 //! that was given to it by [`AcousticScene::add_head`](crate::AcousticScene::add_head); receivers name theirs by its [`HeadId`].
 
+mod head_set;
 mod measured;
 mod series;
 mod sphere;
-mod worn;
 
-pub use measured::{About, Measurement};
+pub(crate) use head_set::{HeadSet, PlacedEar};
+pub use measured::{HeadSummary, HrirMeasurement};
 pub(crate) use series::sphere_response;
 pub use sphere::woodworth_delay_s;
-pub(crate) use worn::{Heads, WornEar};
 
 use crate::error::{AcousticsError, range};
-use measured::{MeasuredHead, Responses};
+use measured::{HeadResponses, MeasuredHead};
 use serde::{Deserialize, Serialize};
 use sphere::SphericalHead;
 use std::collections::BTreeMap;
@@ -52,24 +52,24 @@ pub struct HeadId(pub u64);
 #[derive(Clone)]
 pub struct Head {
     id: HeadId,
-    shape: Shape,
+    shape: HeadModel,
 }
 
 #[derive(Clone)]
-enum Shape {
+enum HeadModel {
     Sphere { radius_m: f64 },
-    Measured(Arc<Measured>),
+    Measured(Arc<MeasuredTables>),
 }
 
 /// What was measured, and its tables by sample rate (Hz) and number of bins.
-struct Measured {
-    responses: Responses,
+struct MeasuredTables {
+    responses: HeadResponses,
     tables: Mutex<BTreeMap<(u64, usize), Arc<MeasuredHead>>>,
 }
 
 /// What a head does to sound, for one sample rate and one speed of sound.
 #[derive(Clone, Debug)]
-enum Tables {
+enum HeadTables {
     Sphere(Arc<SphericalHead>),
     Measured(Arc<MeasuredHead>),
 }
@@ -88,22 +88,22 @@ impl Head {
         bytes.extend_from_slice(&radius_m.to_le_bytes());
         Ok(Self {
             id: HeadId(xxh3_64(&bytes)),
-            shape: Shape::Sphere { radius_m },
+            shape: HeadModel::Sphere { radius_m },
         })
     }
 
-    /// A head as it was measured; [`Measurement`] says how it is heard.
+    /// A head as it was measured; [`HrirMeasurement`] says how it is heard.
     ///
     /// # Errors
     /// [`AcousticsError::Head`] says what is wrong with the measurement.
     ///
     /// # Determinism
     /// Equal measurements give equal bits.
-    pub fn measured(measurement: &Measurement) -> Result<Self, AcousticsError> {
-        let responses = Responses::new(measurement)?;
+    pub fn measured(measurement: &HrirMeasurement) -> Result<Self, AcousticsError> {
+        let responses = HeadResponses::new(measurement)?;
         Ok(Self {
             id: HeadId(measurement.hash()),
-            shape: Shape::Measured(Arc::new(Measured {
+            shape: HeadModel::Measured(Arc::new(MeasuredTables {
                 responses,
                 tables: Mutex::default(),
             })),
@@ -116,27 +116,27 @@ impl Head {
     }
 
     /// What was found in the measurement; `None` for a sphere.
-    pub fn about(&self) -> Option<&About> {
+    pub fn about(&self) -> Option<&HeadSummary> {
         match &self.shape {
-            Shape::Sphere { .. } => None,
-            Shape::Measured(measured) => Some(measured.responses.about()),
+            HeadModel::Sphere { .. } => None,
+            HeadModel::Measured(measured) => Some(measured.responses.about()),
         }
     }
 
     /// Tables for spectra of `bins` values up to half of `rate_hz`, in air with `speed_m_s`; those of a measurement are made once.
-    fn tables(&self, speed_m_s: f64, rate_hz: f64, bins: usize) -> Tables {
+    fn tables(&self, speed_m_s: f64, rate_hz: f64, bins: usize) -> HeadTables {
         match &self.shape {
-            Shape::Sphere { radius_m } => {
+            HeadModel::Sphere { radius_m } => {
                 let sphere = SphericalHead::new(*radius_m, speed_m_s, rate_hz, bins);
-                Tables::Sphere(Arc::new(sphere))
+                HeadTables::Sphere(Arc::new(sphere))
             }
-            Shape::Measured(measured) => {
+            HeadModel::Measured(measured) => {
                 let made = measured.tables.lock();
                 let mut made = made.unwrap_or_else(PoisonError::into_inner);
                 let tables = made
                     .entry((rate_hz.to_bits(), bins))
                     .or_insert_with(|| Arc::new(measured.responses.tables(rate_hz, bins)));
-                Tables::Measured(tables.clone())
+                HeadTables::Measured(tables.clone())
             }
         }
     }
@@ -153,8 +153,8 @@ impl fmt::Debug for Head {
         let mut name = f.debug_struct("Head");
         name.field("id", &self.id);
         match &self.shape {
-            Shape::Sphere { radius_m } => name.field("radius_m", radius_m),
-            Shape::Measured(measured) => name.field("about", measured.responses.about()),
+            HeadModel::Sphere { radius_m } => name.field("radius_m", radius_m),
+            HeadModel::Measured(measured) => name.field("about", measured.responses.about()),
         };
         name.finish_non_exhaustive()
     }

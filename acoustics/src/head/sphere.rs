@@ -1,7 +1,7 @@
 //! A head that is a rigid sphere.
 
 use super::series::sphere_response;
-use crate::bands::{self, BAND_COUNT, Banded};
+use crate::bands::{self, BAND_COUNT, BandValues};
 use realfft::num_complex::Complex;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -34,9 +34,9 @@ pub(crate) struct SphericalHead {
     /// The rest at each bin of the path filters. Shape (angle, bin).
     rest: Vec<Vec<Complex<f32>>>,
     /// Gain of amplitude in each band. Shape (angle, band).
-    gain: Vec<Banded>,
+    gain: Vec<BandValues>,
     /// Whole delay in each band, s. Shape (angle, band).
-    delay_s: Vec<Banded>,
+    delay_s: Vec<BandValues>,
 }
 
 fn angle_of(index: usize) -> f64 {
@@ -109,9 +109,9 @@ impl SphericalHead {
     }
 
     /// Gain of amplitude and delay against the head's centre (s) in each band.
-    pub(crate) fn banded(&self, cos_incidence: f64) -> (Banded, Banded) {
+    pub(crate) fn banded(&self, cos_incidence: f64) -> (BandValues, BandValues) {
         let (below, way) = Self::place(cos_incidence);
-        let mix = |table: &[Banded]| {
+        let mix = |table: &[BandValues]| {
             let (a, b) = (&table[below], &table[below + 1]);
             std::array::from_fn(|band| a[band] + (b[band] - a[band]) * way)
         };

@@ -1,11 +1,11 @@
 //! Recorders that turn themselves up and down.
 
-use super::stage::{Block, Memory, Stage};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "automatic_gain",
         version: 1,
@@ -64,14 +64,14 @@ pub(super) const LAW: Law = Law {
                                 a passage to its end, and lifts tails that were loud at first; a clip touches only peaks; absorption \
                                 and gains do not depend on the level",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
 /// Squares below this are silence, Pa².
 const SILENCE: f64 = 1e-24;
 
 #[derive(Debug)]
-struct Control {
+struct AutomaticGain {
     strength: f64,
     /// Pa².
     target: f64,
@@ -82,10 +82,10 @@ struct Control {
     square: f64,
 }
 
-fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let target = values.get("target_pa") * values.get("target_pa");
     let pace = |name| -libm::expm1(-1.0 / (values.get(name) * rate_hz));
-    Box::new(Control {
+    Box::new(AutomaticGain {
         strength: values.get("strength"),
         target,
         pace: [pace("attack_s"), pace("release_s")],
@@ -94,8 +94,8 @@ fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
     })
 }
 
-impl Stage for Control {
-    fn hear(&mut self, block: &mut Block<'_>) {
+impl MicrophoneStage for AutomaticGain {
+    fn hear(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         for n in 0..length {
             let at = |channel: usize| channel * length + n;
@@ -112,14 +112,14 @@ impl Stage for Control {
         }
     }
 
-    fn recall(&mut self, memory: &Memory) {
+    fn recall(&mut self, memory: &StageMemory) {
         if let Some(square) = memory.numbers.first() {
             self.square = *square;
         }
     }
 
-    fn memory(&self) -> Memory {
-        Memory {
+    fn memory(&self) -> StageMemory {
+        StageMemory {
             numbers: vec![self.square],
             samples: Vec::new(),
         }

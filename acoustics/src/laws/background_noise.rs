@@ -1,11 +1,11 @@
 //! The noise of the place itself: ventilation, traffic, the hum of mains.
 
-use super::stage::{Block, Listener, Memory, Stage};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use crate::bands::{self, BAND_COUNT};
 use crate::fft::RealFft;
 
-use crate::channel::Channel;
+use crate::receiver_channel::ReceiverChannel;
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
@@ -13,7 +13,7 @@ use glam::DVec3;
 use realfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "background_noise",
         version: 1,
@@ -68,7 +68,7 @@ pub(super) const LAW: Law = Law {
                                 in both at low frequencies, self-noise is not; play the same sound louder: a second slope of the decay \
                                 rises with it, noise does not",
     },
-    acts: Acts::Field(install),
+    acts: SignalStage::Field(install),
 };
 
 /// Time of half a frame, s, at least.
@@ -81,7 +81,7 @@ const LOWEST_HZ: f64 = 20.0;
 /// The field at one receiver, made of frames that overlap by half. Each is a sum of plane waves from directions and with phases
 /// of its own, under half a period of a sine: the powers of two neighbours add up to a constant.
 #[derive(Debug)]
-struct Field {
+struct NoiseField {
     rate_hz: f64,
     hum_pa: f64,
     hum_hz: f64,
@@ -97,7 +97,7 @@ struct Field {
     made: Vec<Vec<f32>>,
 }
 
-fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let hop = ((HOP_S * rate_hz) as usize).next_power_of_two();
     let fft = RealFft::new(2 * hop);
     let step_hz = rate_hz / fft.len() as f64;
@@ -122,7 +122,7 @@ fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
         let below = (place as usize).min(BAND_COUNT - 2);
         (below, (place - below as f64) as f32)
     };
-    Box::new(Field {
+    Box::new(NoiseField {
         rate_hz,
         hum_pa: values.get("hum_pa"),
         hum_hz: values.get("hum_hz"),
@@ -135,11 +135,11 @@ fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
     })
 }
 
-impl Field {
+impl NoiseField {
     /// A frame at every channel, under its window. Shape (channel, 2 hop).
-    fn frame(&mut self, number: u64, listener: &Listener<'_>) -> Vec<Vec<f32>> {
+    fn frame(&mut self, number: u64, listener: &StageContext<'_>) -> Vec<Vec<f32>> {
         let key = listener.room.child("background noise").child(number);
-        let channels = Channel::of(listener.receiver, listener.heads, listener.speed_m_s);
+        let channels = ReceiverChannel::of(listener.receiver, listener.heads, listener.speed_m_s);
         let bins = self.fft.bins();
         let mut spectra = vec![vec![Complex::new(0.0_f32, 0.0); bins]; channels.len()];
         let step = TAU * self.rate_hz / self.fft.len() as f64;
@@ -183,7 +183,7 @@ impl Field {
     }
 
     /// Makes the samples of the hop that begins now.
-    fn next_hop(&mut self, listener: &Listener<'_>) {
+    fn next_hop(&mut self, listener: &StageContext<'_>) {
         let number = self.time / self.hop as u64;
         if self.made.is_empty() {
             let first = self.frame(number, listener);
@@ -209,8 +209,8 @@ impl Field {
     }
 }
 
-impl Stage for Field {
-    fn hear(&mut self, block: &mut Block<'_>) {
+impl MicrophoneStage for NoiseField {
+    fn hear(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         if self.hum_pa != 0.0 {
             let room = block.listener.room;
@@ -239,7 +239,7 @@ impl Stage for Field {
         }
     }
 
-    fn recall(&mut self, memory: &Memory) {
+    fn recall(&mut self, memory: &StageMemory) {
         if let Some(time) = memory.numbers.first() {
             self.time = time.max(0.0) as u64;
         }
@@ -249,8 +249,8 @@ impl Stage for Field {
         }
     }
 
-    fn memory(&self) -> Memory {
-        Memory {
+    fn memory(&self) -> StageMemory {
+        StageMemory {
             numbers: vec![self.time as f64],
             samples: self.made.clone(),
         }
@@ -261,7 +261,7 @@ impl Stage for Field {
 mod tests {
     use super::super::testing::{RATE_HZ, law, recorded, with_listener};
     use super::*;
-    use crate::microphones::Microphones;
+    use crate::microphone_chain::MicrophoneChain;
     use crate::receiver::Receiver;
     use glam::Vec3;
 
@@ -331,7 +331,7 @@ mod tests {
         let laws = [law("background_noise", &[("level_pa", 0.02)])];
         with_listener(at, room, RandomKey::root(99), |listener| {
             let silence = vec![0.0; at.channels() * samples];
-            Microphones::record(&laws, RATE_HZ, listener, silence)
+            MicrophoneChain::record(&laws, RATE_HZ, listener, silence)
         })
     }
 

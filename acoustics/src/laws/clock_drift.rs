@@ -1,12 +1,12 @@
 //! Recorders whose clock goes fast or slow.
 
-use super::stage::{Block, Memory, Stage, fade, rise};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, fade, rise};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use std::sync::LazyLock;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "clock_drift",
         version: 1,
@@ -40,7 +40,7 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "measure the length or pitch of the excitation itself in the recording: a clock changes it as much as \
                                 the arrivals, warmth leaves it; by size: one kelvin is 1700 ppm, clocks are off by 10 to 100 ppm",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
 /// Taps on either side of a place between samples.
@@ -79,7 +79,7 @@ static SINC: LazyLock<Vec<[f32; 2 * HALF]>> = LazyLock::new(|| {
 });
 
 #[derive(Debug)]
-struct Clock {
+struct DriftingClock {
     /// By how much the lag grows in one sample.
     growth: f64,
     /// All below in samples.
@@ -98,10 +98,10 @@ struct Clock {
     history: Vec<Vec<f32>>,
 }
 
-fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let drift = 1e-6 * values.get("drift_ppm");
     let offset = values.get("offset_s") * rate_hz / (1.0 + drift);
-    Box::new(Clock {
+    Box::new(DriftingClock {
         growth: drift / (1.0 + drift),
         offset,
         back: (BACK_S * rate_hz).max(3.0 * HALF as f64),
@@ -115,7 +115,7 @@ fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
     })
 }
 
-impl Clock {
+impl DriftingClock {
     /// The lag of each sample of a block, that of before a skip, and the weight of the new one.
     fn lags(&mut self, length: usize, whole: bool) -> Vec<(f64, f64, f32)> {
         let weights: Vec<f32> = fade(self.fade).collect();
@@ -176,8 +176,8 @@ fn read(samples: &[f32], now: usize, lag: f64) -> f32 {
     weights.zip(samples).map(|(weight, x)| weight * x).sum()
 }
 
-impl Stage for Clock {
-    fn hear(&mut self, block: &mut Block<'_>) {
+impl MicrophoneStage for DriftingClock {
+    fn hear(&mut self, block: &mut SampleBlock<'_>) {
         let length = block.len();
         let lags = self.lags(length, block.whole);
         self.history.resize_with(block.channels, Vec::new);
@@ -203,7 +203,7 @@ impl Stage for Clock {
         }
     }
 
-    fn recall(&mut self, memory: &Memory) {
+    fn recall(&mut self, memory: &StageMemory) {
         let [lag, old_lag, fading, offset] = memory.numbers[..] else {
             return;
         };
@@ -221,8 +221,8 @@ impl Stage for Clock {
         }
     }
 
-    fn memory(&self) -> Memory {
-        Memory {
+    fn memory(&self) -> StageMemory {
+        StageMemory {
             numbers: vec![self.lag, self.old_lag, self.fading as f64, self.offset],
             samples: self.history.clone(),
         }

@@ -1,17 +1,17 @@
 //! Filters of finite length that remember the end of the last block.
 
-use super::stage::{Block, Memory, Stage, rise};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, rise};
 
 /// A filter: so many samples of delay, then taps.
 #[derive(Clone, Debug)]
-pub(super) struct Fir {
+pub(super) struct FirFilter {
     delay: usize,
     taps: Vec<f32>,
     /// What was heard last, the newest at the end. Shape (channel, delay + taps - 1).
     history: Vec<Vec<f32>>,
 }
 
-impl Fir {
+impl FirFilter {
     pub(super) fn new(delay: usize, taps: Vec<f32>) -> Self {
         Self {
             delay,
@@ -25,8 +25,8 @@ impl Fir {
     }
 }
 
-impl Stage for Fir {
-    fn hear(&mut self, block: &mut Block<'_>) {
+impl MicrophoneStage for FirFilter {
+    fn hear(&mut self, block: &mut SampleBlock<'_>) {
         let (reach, length) = (self.reach(), block.len());
         self.history.resize(block.channels, vec![0.0; reach]);
         let mut heard = Vec::with_capacity(reach + length);
@@ -46,7 +46,7 @@ impl Stage for Fir {
         }
     }
 
-    fn recall(&mut self, memory: &Memory) {
+    fn recall(&mut self, memory: &StageMemory) {
         let reach = self.reach();
         self.history = memory
             .samples
@@ -64,8 +64,8 @@ impl Stage for Fir {
             .collect();
     }
 
-    fn memory(&self) -> Memory {
-        Memory {
+    fn memory(&self) -> StageMemory {
+        StageMemory {
             numbers: Vec::new(),
             samples: self.history.clone(),
         }

@@ -1,11 +1,11 @@
 //! Microphones that give out no more than so much.
 
-use super::stage::{Block, Each, Stage};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_clipping",
         version: 1,
@@ -40,14 +40,14 @@ pub(super) const LAW: Law = Law {
                                 (of an exponential sweep they stand before time 0); automatic gain changes whole passages, all others \
                                 do not depend on the level",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
-fn install(values: Values<'_>, _rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let limit = values.get("limit_pa") as f32;
     let knee = limit * (1.0 - values.get("softness") as f32);
     let room = limit - knee;
-    Box::new(Each(move |block: &mut Block<'_>| {
+    Box::new(StatelessStage(move |block: &mut SampleBlock<'_>| {
         for x in block.samples.iter_mut() {
             let size = x.abs();
             if size > knee {

@@ -1,11 +1,11 @@
 //! Microphones that are more sensitive than they are said to be.
 
-use super::stage::{Block, Each, Stage};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_gain",
         version: 1,
@@ -27,12 +27,12 @@ pub(super) const LAW: Law = Law {
                                 the same number of decibels at all times, bands, places and levels; that of a microphone raises \
                                 background noise too, that of a source does not",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
-fn install(values: Values<'_>, _rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let gain = libm::pow(10.0, values.get("gain_db") / 20.0) as f32;
-    Box::new(Each(move |block: &mut Block<'_>| {
+    Box::new(StatelessStage(move |block: &mut SampleBlock<'_>| {
         for x in block.samples.iter_mut() {
             *x *= gain;
         }

@@ -1,11 +1,11 @@
 //! The noise that a microphone adds of itself.
 
-use super::stage::{Block, Each, Stage};
-use super::{Acts, Law, Values};
+use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_noise",
         version: 1,
@@ -28,12 +28,12 @@ pub(super) const LAW: Law = Law {
                                 unlike in two microphones, background noise is neither; play the same sound louder: a \
                                 second slope of the decay rises with it, noise does not",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
-fn install(values: Values<'_>, _rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let sigma = values.get("sigma_pa");
-    Box::new(Each(move |block: &mut Block<'_>| {
+    Box::new(StatelessStage(move |block: &mut SampleBlock<'_>| {
         let mut stream = block.key.stream();
         for sample in block.samples.iter_mut() {
             *sample += (sigma * stream.normal()) as f32;

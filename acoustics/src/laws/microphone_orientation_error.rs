@@ -1,10 +1,10 @@
 //! Microphones and heads that face elsewhere than they are said to.
 
-use super::{Acts, Effects, Law, Values, angle};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
 use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_orientation_error",
         version: 1,
@@ -27,10 +27,10 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "compare from where known sources on two sides are heard: all are turned by the same angles, while times \
                                 of arrival and what an omnidirectional microphone hears stay",
     },
-    acts: Acts::Way(turn),
+    acts: SignalStage::Propagation(turn),
 };
 
-fn turn(values: Values<'_>, effects: &mut Effects) {
+fn turn(values: LawNumbers<'_>, effects: &mut PathEffects) {
     let names = ["yaw_deg", "pitch_deg", "roll_deg"];
     for (sum, name) in effects.receiver_turn_deg.iter_mut().zip(names) {
         *sum += values.get(name) as f32;

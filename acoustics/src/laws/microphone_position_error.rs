@@ -1,6 +1,6 @@
 //! Microphones that are elsewhere than they are said to be.
 
-use super::{Acts, Effects, Law, Values};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
@@ -16,7 +16,7 @@ const fn offset(name: &'static str) -> ParamInfo {
     }
 }
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_position_error",
         version: 1,
@@ -32,10 +32,10 @@ pub(super) const LAW: Law = Law {
                                 and all reflections agree with one displacement; a delay is the same from all sides, warmth \
                                 proportional to the way",
     },
-    acts: Acts::Way(move_away),
+    acts: SignalStage::Propagation(apply_offset),
 };
 
-fn move_away(values: Values<'_>, effects: &mut Effects) {
+fn apply_offset(values: LawNumbers<'_>, effects: &mut PathEffects) {
     let names = ["right_m", "up_m", "back_m"];
     for (sum, name) in effects.receiver_offset_m.iter_mut().zip(names) {
         *sum += values.get(name) as f32;

@@ -1,8 +1,8 @@
 //! Microphones that do not hear all frequencies alike.
 
-use super::fir::Fir;
-use super::stage::Stage;
-use super::{Acts, BAND_DB, Law, Values};
+use super::fir::FirFilter;
+use super::microphone_stage::MicrophoneStage;
+use super::{AcousticLaw, BAND_DB, LawNumbers, SignalStage};
 use crate::synthesis::minimum_phase::PathFilters;
 use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
@@ -10,7 +10,7 @@ use dwell_scene::law::EngineKind;
 /// Time that the transform spans, s: the lowest band is as wide as one over this.
 const SPAN_S: f64 = 0.064;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "microphone_response",
         version: 1,
@@ -27,16 +27,16 @@ pub(super) const LAW: Law = Law {
                                 absorption grows with time; with all sources off, background noise bears the response of the \
                                 microphone and not that of a source",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
-fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let filters = PathFilters::spanning(rate_hz, SPAN_S);
     let energy = values.bands().map(|db| libm::powf(10.0, db / 10.0));
     let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
     let taps = filters.impulse_response(&mut filters.fft(), &mut spectrum);
     let taps = taps.into_iter().map(|x| amplitude * x).collect();
-    Box::new(Fir::new(0, taps))
+    Box::new(FirFilter::new(0, taps))
 }
 
 #[cfg(test)]

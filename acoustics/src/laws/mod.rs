@@ -1,13 +1,12 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
 //!
-//! Laws of air, of sources and of where microphones are change the energies between the two (`Effects`); other laws of microphones change
-//! pressure, block by block in a stream and at once in an impulse response (`Stage`). A law at its default is not installed, so
+//! Laws of air, of sources and of where microphones are change the energies between the two (`PathEffects`); other laws of microphones change
+//! pressure, block by block in a stream and at once in an impulse response (`MicrophoneStage`). A law at its default is not installed, so
 //! that no bit changes.
 
 mod automatic_gain;
 mod background_noise;
 mod clock_drift;
-mod effects;
 mod fir;
 mod microphone_clipping;
 mod microphone_gain;
@@ -15,42 +14,43 @@ mod microphone_noise;
 mod microphone_orientation_error;
 mod microphone_position_error;
 mod microphone_response;
+pub(crate) mod microphone_stage;
 mod no_air_absorption;
+mod path_effects;
 mod recording_delay;
 mod source_directivity_error;
 mod source_gain;
 mod source_response;
-pub(crate) mod stage;
 mod temperature_error;
 #[cfg(test)]
 mod testing;
 
-pub(crate) use effects::Effects;
+pub(crate) use path_effects::PathEffects;
 
-use crate::bands::{BAND_COUNT, Banded};
+use crate::bands::{BAND_COUNT, BandValues};
 use dwell_scene::law::ParamInfo;
 use dwell_scene::{LawInfo, LawSpec};
-use stage::Stage;
+use microphone_stage::MicrophoneStage;
 use std::sync::LazyLock;
 
 /// A law of this engine: what is known about it, and where it acts.
-struct Law {
+struct AcousticLaw {
     info: LawInfo,
-    acts: Acts,
+    acts: SignalStage,
 }
 
 /// Where a law acts.
-enum Acts {
+enum SignalStage {
     /// On air, on sources, and on where receivers are.
-    Way(fn(Values<'_>, &mut Effects)),
+    Propagation(fn(LawNumbers<'_>, &mut PathEffects)),
     /// On the pressure at microphones, before all laws of microphones, at so many samples a second.
-    Field(fn(Values<'_>, f64) -> Box<dyn Stage>),
+    Field(fn(LawNumbers<'_>, f64) -> Box<dyn MicrophoneStage>),
     /// On what microphones give out, in the order in which laws were installed.
-    Microphones(fn(Values<'_>, f64) -> Box<dyn Stage>),
+    Microphones(fn(LawNumbers<'_>, f64) -> Box<dyn MicrophoneStage>),
 }
 
 /// The laws of this engine.
-static LAWS: &[Law] = &[
+static LAWS: &[AcousticLaw] = &[
     temperature_error::LAW,
     no_air_absorption::LAW,
     source_gain::LAW,
@@ -81,18 +81,18 @@ pub fn all() -> &'static [LawInfo] {
 
 /// The numbers of an installed law.
 #[derive(Clone, Copy)]
-struct Values<'a> {
+struct LawNumbers<'a> {
     spec: &'a LawSpec,
     info: &'a LawInfo,
 }
 
-impl Values<'_> {
+impl LawNumbers<'_> {
     fn get(&self, name: &str) -> f64 {
         self.spec.value(self.info, name).unwrap_or(0.0)
     }
 
     /// The values of [`BAND_DB`].
-    fn bands(&self) -> Banded {
+    fn bands(&self) -> BandValues {
         std::array::from_fn(|band| self.get(BAND_DB[band].name) as f32)
     }
 }
@@ -134,17 +134,17 @@ static BAND_DB: [ParamInfo; BAND_COUNT] = [
 ];
 
 /// The law of a spec, unless it does nothing.
-fn acting(spec: &LawSpec) -> Option<(&'static Law, Values<'_>)> {
+fn acting(spec: &LawSpec) -> Option<(&'static AcousticLaw, LawNumbers<'_>)> {
     let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
     let info = &law.info;
-    (!spec.is_default(info)).then_some((law, Values { spec, info }))
+    (!spec.is_default(info)).then_some((law, LawNumbers { spec, info }))
 }
 
 /// What the installed laws do to air and sources.
-pub(crate) fn effects(installed: &[LawSpec]) -> Effects {
-    let mut effects = Effects::default();
+pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
+    let mut effects = PathEffects::default();
     for (law, values) in installed.iter().filter_map(acting) {
-        if let Acts::Way(change) = law.acts {
+        if let SignalStage::Propagation(change) = law.acts {
             change(values, &mut effects);
         }
     }
@@ -152,22 +152,24 @@ pub(crate) fn effects(installed: &[LawSpec]) -> Effects {
 }
 
 /// Puts a law to work if it acts on pressure and does something.
-pub(crate) fn stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn Stage>> {
+pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn MicrophoneStage>> {
     let (law, values) = acting(spec)?;
     match law.acts {
-        Acts::Way(_) => None,
-        Acts::Field(install) | Acts::Microphones(install) => Some(install(values, rate_hz)),
+        SignalStage::Propagation(_) => None,
+        SignalStage::Field(install) | SignalStage::Microphones(install) => {
+            Some(install(values, rate_hz))
+        }
     }
 }
 
 /// The laws that act on pressure and do something, with their places in the list, in the order in which they act.
 pub(crate) fn of_pressure(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
-    let those = move |wanted: fn(&Acts) -> bool| {
+    let those = move |wanted: fn(&SignalStage) -> bool| {
         let numbered = (0_u64..).zip(installed);
         numbered.filter(move |(_, spec)| acting(spec).is_some_and(|(law, _)| wanted(&law.acts)))
     };
-    let fields = those(|acts| matches!(acts, Acts::Field(_)));
-    fields.chain(those(|acts| matches!(acts, Acts::Microphones(_))))
+    let fields = those(|acts| matches!(acts, SignalStage::Field(_)));
+    fields.chain(those(|acts| matches!(acts, SignalStage::Microphones(_))))
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! Air that absorbs less than it should, or not at all.
 
-use super::{Acts, Effects, Law, Values};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "no_air_absorption",
         version: 1,
@@ -27,9 +27,9 @@ pub(super) const LAW: Law = Law {
                                 frequency, where surfaces take them for every reflection and responses take as many at any \
                                 distance; or record at two humidities",
     },
-    acts: Acts::Way(leave_out),
+    acts: SignalStage::Propagation(omit_air_absorption),
 };
 
-fn leave_out(values: Values<'_>, effects: &mut Effects) {
+fn omit_air_absorption(values: LawNumbers<'_>, effects: &mut PathEffects) {
     effects.air_absorption *= 1.0 - values.get("missing");
 }

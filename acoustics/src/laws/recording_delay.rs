@@ -1,15 +1,15 @@
 //! Recordings that begin early, so that all in them comes late.
 
-use super::fir::Fir;
-use super::stage::Stage;
-use super::{Acts, Law, Values};
+use super::fir::FirFilter;
+use super::microphone_stage::MicrophoneStage;
+use super::{AcousticLaw, LawNumbers, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
 /// Most taps on either side of a delay between samples.
 const HALF: usize = 32;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "recording_delay",
         version: 1,
@@ -35,16 +35,16 @@ pub(super) const LAW: Law = Law {
         separating_experiment: "record at two or more distances: a delay shifts all arrivals by the same time at all places, warmth and \
                                 clocks in proportion to the time, a wrong position each path by another",
     },
-    acts: Acts::Microphones(install),
+    acts: SignalStage::Microphones(install),
 };
 
-fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
+fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let delay = values.get("delay_s") * rate_hz;
     let whole = delay.floor();
     let fraction = delay - whole;
     let whole = whole as usize;
     if fraction < 1e-9 {
-        return Box::new(Fir::new(whole, vec![1.0]));
+        return Box::new(FirFilter::new(whole, vec![1.0]));
     }
     let half = (whole + 1).min(HALF);
     let taps = if half < HALF {
@@ -52,7 +52,7 @@ fn install(values: Values<'_>, rate_hz: f64) -> Box<dyn Stage> {
     } else {
         sinc(fraction, half)
     };
-    Box::new(Fir::new(whole + 1 - half, taps))
+    Box::new(FirFilter::new(whole + 1 - half, taps))
 }
 
 /// Weights of the samples around a place `fraction` after one of them, `half` on either side, that are exact for polynomials:

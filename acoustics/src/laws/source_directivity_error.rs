@@ -1,10 +1,10 @@
 //! Sources that face elsewhere, or radiate another pattern, than they are said to.
 
-use super::{Acts, Effects, Law, Values, angle};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "source_directivity_error",
         version: 1,
@@ -41,10 +41,10 @@ pub(super) const LAW: Law = Law {
                                 stated for each turn, high octaves most, late sound hardly; a gain or a response changes by the \
                                 same for all turns",
     },
-    acts: Acts::Way(turn),
+    acts: SignalStage::Propagation(turn),
 };
 
-fn turn(values: Values<'_>, effects: &mut Effects) {
+fn turn(values: LawNumbers<'_>, effects: &mut PathEffects) {
     effects.source_turn_deg[0] += values.get("yaw_deg") as f32;
     effects.source_turn_deg[1] += values.get("pitch_deg") as f32;
     effects.source_sharpness += values.get("sharpness") as f32;

@@ -1,10 +1,10 @@
 //! Sources that are louder than they are said to be.
 
-use super::{Acts, Effects, Law, Values};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "source_gain",
         version: 1,
@@ -26,10 +26,10 @@ pub(super) const LAW: Law = Law {
                                 at all times, bands and places, a wrong distance is not; the gain of a microphone raises background \
                                 noise too, that of a source does not",
     },
-    acts: Acts::Way(amplify),
+    acts: SignalStage::Propagation(apply_gain),
 };
 
-fn amplify(values: Values<'_>, effects: &mut Effects) {
+fn apply_gain(values: LawNumbers<'_>, effects: &mut PathEffects) {
     for db in &mut effects.source_db {
         *db += values.get("gain_db") as f32;
     }

@@ -1,10 +1,10 @@
 //! Sources whose spectrum is another than it is said to be.
 
-use super::{Acts, BAND_DB, Effects, Law, Values};
+use super::{AcousticLaw, BAND_DB, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "source_response",
         version: 1,
@@ -21,10 +21,10 @@ pub(super) const LAW: Law = Law {
                                 absorption grows with time; with all sources off, background noise bears the response of the \
                                 microphone and not that of a source",
     },
-    acts: Acts::Way(color),
+    acts: SignalStage::Propagation(apply_response),
 };
 
-fn color(values: Values<'_>, effects: &mut Effects) {
+fn apply_response(values: LawNumbers<'_>, effects: &mut PathEffects) {
     for (sum, db) in effects.source_db.iter_mut().zip(values.bands()) {
         *sum += db;
     }

@@ -1,10 +1,10 @@
 //! Air that is warmer than it is said to be.
 
-use super::{Acts, Effects, Law, Values};
+use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-pub(super) const LAW: Law = Law {
+pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
         id: "temperature_error",
         version: 1,
@@ -28,9 +28,9 @@ pub(super) const LAW: Law = Law {
                                 excitation keeps its length and pitch; a clock stretches both, a delay nothing; a known distance \
                                 tells warmth from a wrong size of the room",
     },
-    acts: Acts::Way(warm),
+    acts: SignalStage::Propagation(apply_temperature_error),
 };
 
-fn warm(values: Values<'_>, effects: &mut Effects) {
+fn apply_temperature_error(values: LawNumbers<'_>, effects: &mut PathEffects) {
     effects.warmer_k += values.get("offset_k");
 }

@@ -1,8 +1,8 @@
 //! What tests of laws share.
 
-use super::stage::Listener;
-use crate::head::Heads;
-use crate::microphones::Microphones;
+use super::microphone_stage::StageContext;
+use crate::head::HeadSet;
+use crate::microphone_chain::MicrophoneChain;
 use crate::receiver::Receiver;
 use dwell_scene::LawSpec;
 use dwell_scene::random::RandomKey;
@@ -26,12 +26,12 @@ pub(super) fn with_listener<T>(
     receiver: &Receiver,
     room: u64,
     own: RandomKey,
-    then: impl FnOnce(&Listener<'_>) -> T,
+    then: impl FnOnce(&StageContext<'_>) -> T,
 ) -> T {
-    static HEADS: std::sync::LazyLock<Heads> =
-        std::sync::LazyLock::new(|| Heads::with_bins(0.0875, 343.2, RATE_HZ, 9));
+    static HEADS: std::sync::LazyLock<HeadSet> =
+        std::sync::LazyLock::new(|| HeadSet::with_bins(0.0875, 343.2, RATE_HZ, 9));
     let (heads, room) = (&*HEADS, RandomKey::root(room));
-    then(&Listener {
+    then(&StageContext {
         receiver,
         heads,
         speed_m_s: 343.2,
@@ -44,13 +44,13 @@ pub(super) fn with_listener<T>(
 pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
     with_listener(&here, seed, RandomKey::root(seed), |listener| {
-        Microphones::record(laws, RATE_HZ, listener, pressure.to_vec())
+        MicrophoneChain::record(laws, RATE_HZ, listener, pressure.to_vec())
     })
 }
 
 /// The same block by block.
 pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<f32> {
-    let mut microphones = Microphones::new(RATE_HZ);
+    let mut microphones = MicrophoneChain::new(RATE_HZ);
     let here = Receiver::omni(glam::Vec3::ZERO);
     let mut out = pressure.to_vec();
     for (k, samples) in out.chunks_mut(block).enumerate() {

@@ -102,13 +102,13 @@ impl BandWidth {
 }
 
 /// Filters without delay for signals of one length.
-pub(super) struct Filters {
+pub(super) struct ZeroPhaseFilters {
     fft: RealFft,
     rate_hz: f64,
     width: BandWidth,
 }
 
-impl Filters {
+impl ZeroPhaseFilters {
     pub(super) fn new(width: BandWidth, rate_hz: f64, length: usize) -> Self {
         Self {
             fft: RealFft::at_least(length + (RING_S * rate_hz) as usize),
@@ -241,7 +241,7 @@ mod tests {
         let mut pulse = vec![0.0; 4000];
         pulse[1000] = 1.0;
         for width in BOTH {
-            let mut filters = Filters::new(width, rate_hz, pulse.len());
+            let mut filters = ZeroPhaseFilters::new(width, rate_hz, pulse.len());
             let spectrum = filters.spectrum(&pulse);
             for band in 0..width.count() {
                 let Some(found) = filters.band(band, &spectrum) else {

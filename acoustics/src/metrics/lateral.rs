@@ -106,11 +106,11 @@ fn mean_square(cell: usize, axis: Vec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::directions::{Directions, cell_of};
-    use crate::echogram::{Histogram, Path};
+    use crate::directions::{DirectionalEnergy, cell_of};
+    use crate::echogram::{EnergyHistogram, PropagationPath};
 
-    fn path(length_m: f64, energy: f32, arrival: Vec3) -> Path {
-        Path {
+    fn path(length_m: f64, energy: f32, arrival: Vec3) -> PropagationPath {
+        PropagationPath {
             planes: Vec::new(),
             bends: Vec::new(),
             length_m,
@@ -122,7 +122,7 @@ mod tests {
         }
     }
 
-    fn echogram(paths: Vec<Path>, tail: Histogram) -> Echogram {
+    fn echogram(paths: Vec<PropagationPath>, tail: EnergyHistogram) -> Echogram {
         Echogram {
             paths,
             tail,
@@ -135,7 +135,7 @@ mod tests {
     fn a_lateral_path_after_a_faint_direct_sound_is_all() {
         let found = echogram(
             vec![path(3.4, 1e-9, Vec3::NEG_Z), path(10.2, 1.0, Vec3::X)],
-            Histogram::default(),
+            EnergyHistogram::default(),
         );
         for lf in lateral_fraction(&found, Vec3::X) {
             assert!((lf.unwrap() - 1.0).abs() < 1e-8);
@@ -153,7 +153,7 @@ mod tests {
             path(3.4 + 340.0 * 0.020, 0.5, slanted),
             path(3.4 + 340.0 * 0.090, 7.0, Vec3::X),
         ];
-        let found = lateral_fraction(&echogram(paths, Histogram::default()), Vec3::X);
+        let found = lateral_fraction(&echogram(paths, EnergyHistogram::default()), Vec3::X);
         for lf in found {
             assert!((lf.unwrap() - 0.5 * 0.25 / 1.75).abs() < 1e-6, "{lf:?}");
         }
@@ -162,16 +162,16 @@ mod tests {
     /// A tail of constant power from all sides: 75 of 80 ms count, a third of each.
     #[test]
     fn sound_from_all_sides_gives_a_third() {
-        let even = Directions {
+        let even = DirectionalEnergy {
             energy: vec![[1.0; BAND_COUNT]; CELL_COUNT],
         };
         let one_sided = {
-            let mut directions = Directions::default();
+            let mut directions = DirectionalEnergy::default();
             directions.energy[cell_of(Vec3::new(1.0, 0.1, 0.1).normalize())] = [1.0; BAND_COUNT];
             directions
         };
-        let lf = |directions: Vec<Directions>| {
-            let tail = Histogram {
+        let lf = |directions: Vec<DirectionalEnergy>| {
+            let tail = EnergyHistogram {
                 bin_s: 0.004,
                 bins: vec![[1.0; BAND_COUNT]; 100],
                 bins_per_direction: 100,
@@ -181,7 +181,7 @@ mod tests {
         };
         for found in [
             lf(vec![even]),
-            lf(vec![Directions::default()]),
+            lf(vec![DirectionalEnergy::default()]),
             lf(Vec::new()),
         ] {
             assert!((found - 75.0 / 80.0 / 3.0).abs() < 1e-4, "{found}");

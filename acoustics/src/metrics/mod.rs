@@ -1,19 +1,19 @@
 //! Reverberation, clarity and kin, per band: from energies (no noise), or from an impulse response; what two ears make of it.
 
+mod binaural;
 mod decay;
-mod ears;
 mod filters;
 mod lateral;
 mod response;
 
+pub use binaural::{BinauralBandMetrics, BinauralMetrics, of_ears};
 pub use decay::{BandMetrics, EnergyCurve};
-pub use ears::{EarBand, EarMetrics, of_ears};
 pub use filters::BandWidth;
 pub use lateral::{lateral_axis, lateral_fraction};
 pub use response::of_impulse_response;
 
 use crate::bands::BAND_COUNT;
-use crate::echogram::{Echogram, Path};
+use crate::echogram::{Echogram, PropagationPath};
 
 /// The parameters of every band. Shape (band,).
 pub type Metrics = [BandMetrics; BAND_COUNT];
@@ -57,7 +57,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
 
 /// When the first sound of a band arrives, s; nothing in silence.
 fn first_arrival(echogram: &Echogram, band: usize) -> Option<f64> {
-    let heard = |path: &&Path| path.energy[band] > 0.0;
+    let heard = |path: &&PropagationPath| path.energy[band] > 0.0;
     let paths = echogram.paths.iter().filter(heard);
     let first = paths.map(|path| echogram.delay_s(path)).reduce(f64::min);
     first.or_else(|| {

@@ -1,7 +1,7 @@
 //! The parameters of an impulse response, however it was made.
 
 use super::decay::{BandMetrics, EnergyCurve};
-use super::filters::{BandWidth, Filters};
+use super::filters::{BandWidth, ZeroPhaseFilters};
 
 /// The direct sound is what arrives within this after the start, s.
 pub(super) const DIRECT_S: f64 = 0.0025;
@@ -23,7 +23,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
     let direct = (start + (DIRECT_S * rate_hz) as usize + 1).min(samples.len());
     let mut rest = samples.to_vec();
     rest[..direct].fill(0.0);
-    let mut filters = Filters::new(width, rate_hz, samples.len());
+    let mut filters = ZeroPhaseFilters::new(width, rate_hz, samples.len());
     // Cut before it is filtered: a narrow filter spreads the direct sound over far more than its 2.5 ms.
     let [all, direct, rest] =
         [samples, &samples[..direct], &rest[..]].map(|part| filters.spectrum(part));

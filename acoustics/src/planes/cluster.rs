@@ -65,7 +65,7 @@ pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
 
     let mut planes: Vec<Plane> = Vec::new();
     let mut of_triangle = vec![super::NO_PLANE; corners.len()];
-    let mut finder = Finder::default();
+    let mut finder = PlaneFinder::default();
     for (index, area_m2, normal) in order {
         pace.turn();
         // One of two opposite normals stands for both.
@@ -97,22 +97,22 @@ pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     (planes, of_triangle)
 }
 
-type Cell = [i32; 3];
+type NormalCell = [i32; 3];
 
 /// Planes of equal orientation, by offset.
 #[derive(Debug)]
-struct Bundle {
+struct ParallelPlanes {
     normal: DVec3,
     by_slot: BTreeMap<i64, Vec<usize>>,
 }
 
 /// Finds the plane of a triangle among those seen so far.
 #[derive(Debug, Default)]
-struct Finder {
-    cells: BTreeMap<Cell, Vec<Bundle>>,
+struct PlaneFinder {
+    cells: BTreeMap<NormalCell, Vec<ParallelPlanes>>,
 }
 
-fn cell(normal: DVec3) -> Cell {
+fn cell(normal: DVec3) -> NormalCell {
     normal.to_array().map(|x| (x / CELL).floor() as i32)
 }
 
@@ -120,7 +120,7 @@ fn slot(offset_m: f64) -> i64 {
     (offset_m / SLOT_M).floor() as i64
 }
 
-impl Finder {
+impl PlaneFinder {
     fn find(&self, planes: &[Plane], normal: DVec3, points: &[DVec3; 3]) -> Option<usize> {
         let middle = (points[0] + points[1] + points[2]) / 3.0;
         let fits = |id: usize| {
@@ -131,7 +131,7 @@ impl Finder {
         // A normal near the border of its cell may have its plane in the next one, or, near the edge of the half of the
         // directions that stand for both, on the other side.
         let mut best: Option<usize> = None;
-        let mut seen: Vec<Cell> = Vec::with_capacity(4);
+        let mut seen: Vec<NormalCell> = Vec::with_capacity(4);
         for sign in [1.0, -1.0] {
             for corner in 0..8 {
                 let near = |axis: usize| {
@@ -167,9 +167,9 @@ impl Finder {
         let plane = &planes[id];
         let bundles = self.cells.entry(cell(plane.normal)).or_default();
         // A bundle's normals agree so well that over 10 km the offsets differ by less than a slot.
-        let same = |bundle: &Bundle| (bundle.normal - plane.normal).length() < 1e-7;
+        let same = |bundle: &ParallelPlanes| (bundle.normal - plane.normal).length() < 1e-7;
         let place = bundles.iter().position(same).unwrap_or_else(|| {
-            bundles.push(Bundle {
+            bundles.push(ParallelPlanes {
                 normal: plane.normal,
                 by_slot: BTreeMap::new(),
             });

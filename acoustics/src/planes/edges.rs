@@ -5,7 +5,7 @@ use glam::Vec3;
 
 /// A straight edge with more air than matter around it: the rim of a sheet, or a convex corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Edge {
+pub struct DiffractionEdge {
     /// Its ends, m.
     pub ends: [Vec3; 2],
     /// Away from what it belongs to, in the middle of the air around it, unit length, square to the edge.
@@ -14,7 +14,7 @@ pub struct Edge {
     pub open_rad: f32,
 }
 
-impl Edge {
+impl DiffractionEdge {
     fn moved(&self, pose: &Pose) -> Self {
         Self {
             ends: self.ends.map(|end| pose.transform_point(end)),
@@ -26,42 +26,42 @@ impl Edge {
 
 /// The edges of one moving part.
 #[derive(Clone, Debug)]
-struct Moving {
+struct MovingEdges {
     part: PartId,
     /// In part space.
-    edges: Vec<Edge>,
+    edges: Vec<DiffractionEdge>,
 }
 
 /// All edges of a house.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeTable {
     /// Of everything that never moves.
-    pub(crate) fixed: Vec<Edge>,
+    pub(crate) fixed: Vec<DiffractionEdge>,
     /// Of the parts that have edges.
-    moving: Vec<Moving>,
+    moving: Vec<MovingEdges>,
 }
 
 impl EdgeTable {
-    pub(super) fn new(fixed: Vec<Edge>) -> Self {
+    pub(super) fn new(fixed: Vec<DiffractionEdge>) -> Self {
         Self {
             fixed,
             moving: Vec::new(),
         }
     }
 
-    pub(super) fn add_moving(&mut self, part: PartId, edges: Vec<Edge>) {
+    pub(super) fn add_moving(&mut self, part: PartId, edges: Vec<DiffractionEdge>) {
         if !edges.is_empty() {
-            self.moving.push(Moving { part, edges });
+            self.moving.push(MovingEdges { part, edges });
         }
     }
 
     /// The edges of the moving parts where they stand at the start.
-    pub(crate) fn at_start(&self, house: &House) -> Vec<Edge> {
+    pub(crate) fn at_start(&self, house: &House) -> Vec<DiffractionEdge> {
         self.moved(|part| house.parts[part].world_from_part)
     }
 
     /// The same in a state.
-    pub(crate) fn in_state(&self, house: &House, state: &State) -> Vec<Edge> {
+    pub(crate) fn in_state(&self, house: &House, state: &State) -> Vec<DiffractionEdge> {
         let start = |part| house.parts[part].world_from_part;
         self.moved(|part| {
             state
@@ -72,7 +72,7 @@ impl EdgeTable {
         })
     }
 
-    fn moved(&self, pose: impl Fn(PartId) -> Pose) -> Vec<Edge> {
+    fn moved(&self, pose: impl Fn(PartId) -> Pose) -> Vec<DiffractionEdge> {
         let mut edges = Vec::new();
         for moving in &self.moving {
             let pose = pose(moving.part);

@@ -1,14 +1,14 @@
 //! The planes and edges of a house: side tables over its triangles, made once and shared by all worlds.
 
 mod cluster;
+mod disjoint_sets;
+mod edge_detection;
 mod edges;
 mod panels;
-mod relief;
-mod sets;
-mod sharp;
+mod surface_relief;
 
 pub use cluster::Plane;
-pub use edges::Edge;
+pub use edges::DiffractionEdge;
 pub(crate) use edges::EdgeTable;
 
 use dwell_scene::bvh::Hit;
@@ -24,7 +24,7 @@ pub(crate) const WALL_M2: f32 = 4.0;
 
 /// The piece of a plane that a triangle belongs to.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Panel {
+pub(crate) struct ReflectorPanel {
     /// 0 for triangles without a plane.
     pub(crate) area_m2: f32,
     /// How far it stands out of a wall behind or around it, rms over both, m; infinite for what has no wall near, for walls and
@@ -32,7 +32,7 @@ pub(crate) struct Panel {
     pub(crate) relief_m: f32,
 }
 
-impl Panel {
+impl ReflectorPanel {
     const NONE: Self = Self {
         area_m2: 0.0,
         relief_m: f32::INFINITY,
@@ -41,7 +41,7 @@ impl Panel {
 
 /// The planes of one moving part.
 #[derive(Clone, Debug)]
-struct Moving {
+struct MovingPlanes {
     part: PartId,
     /// Its first plane among all; the others follow.
     first: usize,
@@ -60,8 +60,8 @@ pub struct PlaneTable {
     first_triangle: Vec<u32>,
     of_triangle: Vec<u32>,
     /// The panel that each triangle belongs to. As `of_triangle`.
-    panels: Vec<Panel>,
-    moving: Vec<Moving>,
+    panels: Vec<ReflectorPanel>,
+    moving: Vec<MovingPlanes>,
     /// Planes of everything that never moves, the largest first.
     largest: Vec<u32>,
     edges: EdgeTable,
@@ -89,14 +89,14 @@ impl PlaneTable {
             .collect();
         let (mut at_start, planes) = cluster::cluster(&fixed);
         let mut of_triangle = vec![NO_PLANE; total];
-        let mut panels = vec![Panel::NONE; total];
+        let mut panels = vec![ReflectorPanel::NONE; total];
         let pieces = panels::find(&fixed, &planes);
-        let reliefs = relief::reliefs(&fixed, &at_start, &planes, &pieces);
-        let mut edges = EdgeTable::new(sharp::find(&fixed, &planes));
+        let reliefs = surface_relief::reliefs(&fixed, &at_start, &planes, &pieces);
+        let mut edges = EdgeTable::new(edge_detection::find(&fixed, &planes));
         for (k, source) in geometry.static_triangles.iter().enumerate() {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
             of_triangle[place] = planes[k];
-            panels[place] = Panel {
+            panels[place] = ReflectorPanel {
                 area_m2: pieces.area_m2[k],
                 relief_m: reliefs[k],
             };
@@ -126,7 +126,7 @@ impl PlaneTable {
             for (panel, area_m2) in panels[base..].iter_mut().zip(pieces.area_m2) {
                 panel.area_m2 = area_m2;
             }
-            edges.add_moving(part, sharp::find(&corners, &of_part));
+            edges.add_moving(part, edge_detection::find(&corners, &of_part));
             for (k, plane) in of_part.into_iter().enumerate() {
                 if plane != NO_PLANE {
                     of_triangle[base + k] = at_start.len() as u32 + plane;
@@ -136,7 +136,7 @@ impl PlaneTable {
             let pose = house.parts[part].world_from_part;
             at_start.extend(planes.iter().map(|plane| moved(plane, &pose)));
             let bounds = Aabb::from_points(corners.into_iter().flatten());
-            moving.push(Moving {
+            moving.push(MovingPlanes {
                 part,
                 first,
                 planes,
@@ -180,9 +180,9 @@ impl PlaneTable {
     }
 
     /// The panel that a hit lies in.
-    pub(crate) fn panel(&self, house: &House, hit: &Hit) -> Panel {
+    pub(crate) fn panel(&self, house: &House, hit: &Hit) -> ReflectorPanel {
         let place = self.place_of(house, hit);
-        place.map_or(Panel::NONE, |place| self.panels[place])
+        place.map_or(ReflectorPanel::NONE, |place| self.panels[place])
     }
 
     /// Where the triangle of a hit stands in the tables.

@@ -1,6 +1,6 @@
 //! How large the pieces of a plane are: triangles that touch make one panel.
 
-use super::sets::Sets;
+use super::disjoint_sets::DisjointSets;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};
 use dwell_scene::Aabb;
 use dwell_scene::interrupt::PollEvery;
@@ -13,7 +13,7 @@ const GAP_M: f32 = 0.005;
 
 /// The panels of a set of triangles.
 #[derive(Debug)]
-pub(super) struct Panels {
+pub(super) struct PanelTable {
     /// The panel that each triangle belongs to, named by one of its triangles; triangles without a plane by themselves. Shape
     /// (triangle,).
     pub(super) of_triangle: Vec<usize>,
@@ -24,7 +24,7 @@ pub(super) struct Panels {
 /// Joins triangles to panels.
 ///
 /// Touching is judged by boxes along the world's axes: panels that stand askew and close together may count as one.
-pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
+pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
     let boxes: Vec<Aabb> = corners
         .iter()
         .map(|corners| Aabb::from_points(corners.iter().copied()).grown(0.5 * GAP_M))
@@ -38,7 +38,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
             .then(boxes[*a].min.x.total_cmp(&boxes[*b].min.x))
             .then(a.cmp(b))
     });
-    let mut sets = Sets::new(corners.len());
+    let mut sets = DisjointSets::new(corners.len());
     let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
     let apart = join_equal(&order, &boxes, of_triangle, &mut sets);
     for (place, &a) in apart.iter().enumerate() {
@@ -60,7 +60,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
     for &k in &order {
         total[roots[k]] += area_m2(&corners[k]);
     }
-    Panels {
+    PanelTable {
         area_m2: roots.iter().map(|root| total[*root] as f32).collect(),
         of_triangle: roots,
     }
@@ -68,7 +68,12 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Panels {
 
 /// Joins triangles of one plane whose boxes are equal, and returns one of each, in the order given: what touches one of them
 /// touches all, so that things that stand at one place are not compared with each other.
-fn join_equal(order: &[usize], boxes: &[Aabb], of_triangle: &[u32], sets: &mut Sets) -> Vec<usize> {
+fn join_equal(
+    order: &[usize],
+    boxes: &[Aabb],
+    of_triangle: &[u32],
+    sets: &mut DisjointSets,
+) -> Vec<usize> {
     let key = |k: usize| {
         let numbers = [boxes[k].min, boxes[k].max].map(|p| p.to_array().map(f32::to_bits));
         (of_triangle[k], numbers)

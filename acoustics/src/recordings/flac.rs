@@ -1,14 +1,14 @@
 //! FLAC, by `claxon`.
 
-use super::{Mix, damaged};
+use super::{MonoMix, damaged};
 use crate::error::AcousticsError;
 use std::io::Cursor;
 
-pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, AcousticsError> {
+pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, AcousticsError> {
     let broken = |error: claxon::Error| damaged(name, &error);
     let mut reader = claxon::FlacReader::new(Cursor::new(bytes)).map_err(broken)?;
     let info = reader.streaminfo();
-    let mut mix = Mix::new(name, info.sample_rate, info.channels)?;
+    let mut mix = MonoMix::new(name, info.sample_rate, info.channels)?;
     // The format allows 4 to 32 bits.
     let scale = libm::ldexp(1.0, 1 - info.bits_per_sample as i32);
     let mut blocks = reader.blocks();

@@ -34,7 +34,7 @@ pub struct Recording {
 }
 
 /// What is decoded so far: frames mixed to one channel.
-struct Mix<'a> {
+struct MonoMix<'a> {
     name: &'a str,
     rate_hz: u32,
     channels: u32,
@@ -44,7 +44,7 @@ struct Mix<'a> {
     taken: u32,
 }
 
-impl<'a> Mix<'a> {
+impl<'a> MonoMix<'a> {
     /// Checks what the header says.
     fn new(name: &'a str, rate_hz: u32, channels: u32) -> Result<Self, AcousticsError> {
         let (low, high) = RATES_HZ;

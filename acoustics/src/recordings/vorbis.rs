@@ -1,12 +1,12 @@
 //! Ogg Vorbis, by `lewton`.
 
-use super::{Mix, damaged, vorbis_headers};
+use super::{MonoMix, damaged, vorbis_headers};
 use crate::error::AcousticsError;
 use lewton::inside_ogg::OggStreamReader;
 use lewton::samples::InterleavedSamples;
 use std::io::Cursor;
 
-pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, AcousticsError> {
+pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, AcousticsError> {
     let Some(length) = length(bytes) else {
         return Err(damaged(name, &"it breaks off before its last page"));
     };
@@ -17,7 +17,7 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, Acousti
         reader.ident_hdr.audio_sample_rate,
         reader.ident_hdr.audio_channels,
     );
-    let mut mix = Mix::new(name, rate_hz, u32::from(channels))?;
+    let mut mix = MonoMix::new(name, rate_hz, u32::from(channels))?;
     while let Some(packet) = reader
         .read_dec_packet_generic::<InterleavedSamples<f32>>()
         .map_err(broken)?

@@ -54,7 +54,7 @@ fn comments(bytes: &[u8]) -> Option<()> {
 }
 
 fn codebooks(bytes: &[u8]) -> Result<(), String> {
-    let mut bits = Bits { bytes, at: 0 };
+    let mut bits = BitReader { bytes, at: 0 };
     let count = 1 + bits.take(8)?;
     let (mut words, mut numbers) = (0, 0);
     for _ in 0..count {
@@ -78,7 +78,7 @@ struct Codebook {
 
 impl Codebook {
     /// Reads to the end of a codebook.
-    fn read(bits: &mut Bits) -> Result<Self, String> {
+    fn read(bits: &mut BitReader) -> Result<Self, String> {
         let sync = bits.take(24)?;
         let dimensions = bits.take(16)?;
         let words = bits.take(24)?;
@@ -109,7 +109,7 @@ impl Codebook {
 }
 
 /// The lengths of code words, each by itself.
-fn skip_lengths(bits: &mut Bits, words: u64) -> Result<(), String> {
+fn skip_lengths(bits: &mut BitReader, words: u64) -> Result<(), String> {
     let sparse = bits.take(1)? == 1;
     for _ in 0..words {
         if !sparse || bits.take(1)? == 1 {
@@ -120,7 +120,7 @@ fn skip_lengths(bits: &mut Bits, words: u64) -> Result<(), String> {
 }
 
 /// The lengths of code words as runs: how many have the first length, how many the next.
-fn skip_runs(bits: &mut Bits, words: u64) -> Result<(), String> {
+fn skip_runs(bits: &mut BitReader, words: u64) -> Result<(), String> {
     let (mut done, mut length) = (0, 1 + bits.take(5)?);
     while done < words {
         done += bits.take(u64::BITS - (words - done).leading_zeros())?;
@@ -157,13 +157,13 @@ fn values_a_dimension(words: u64, dimensions: u64) -> u64 {
 }
 
 /// Bits of a packet, the lowest of each byte first (section 2).
-struct Bits<'a> {
+struct BitReader<'a> {
     bytes: &'a [u8],
     /// The next bit.
     at: u64,
 }
 
-impl Bits<'_> {
+impl BitReader<'_> {
     /// The next `count` bits, 32 at most.
     fn take(&mut self, count: u32) -> Result<u64, String> {
         let mut value = 0;
@@ -253,7 +253,7 @@ pub(super) mod tests {
         for (which, header) in packets.iter().enumerate().take(3) {
             check(&file_with(which, header.clone())).unwrap();
         }
-        let mut bits = Bits {
+        let mut bits = BitReader {
             bytes: &packets[2][SETUP.len()..],
             at: 0,
         };

@@ -1,15 +1,15 @@
 //! WAV, by `hound`.
 
-use super::{Mix, damaged, fault};
+use super::{MonoMix, damaged, fault};
 use crate::error::AcousticsError;
 use hound::SampleFormat::{Float, Int};
 use std::io::Cursor;
 
-pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<Mix<'a>, AcousticsError> {
+pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, AcousticsError> {
     let broken = |error: hound::Error| damaged(name, &error);
     let reader = hound::WavReader::new(Cursor::new(bytes)).map_err(broken)?;
     let spec = reader.spec();
-    let mut mix = Mix::new(name, spec.sample_rate, u32::from(spec.channels))?;
+    let mut mix = MonoMix::new(name, spec.sample_rate, u32::from(spec.channels))?;
     match (spec.sample_format, spec.bits_per_sample) {
         (Float, 32) => {
             for sample in reader.into_samples::<f32>() {

@@ -1,10 +1,10 @@
 //! More appliances, a doorbell, rain.
 
-use super::canvas::{Canvas, edges, peak, rise};
+use super::loop_builder::{LoopBuilder, edges, peak, rise};
 use std::f64::consts::TAU;
 
 /// Two tones a major third apart, struck bars with their first two overtones; once in six seconds.
-pub(super) fn doorbell(canvas: &mut Canvas) {
+pub(super) fn doorbell(canvas: &mut LoopBuilder) {
     for (start_s, frequency_hz) in [(0.1, 659.3), (0.75, 523.3)] {
         // A free bar's modes: 1, 2.76, 5.40.
         for (ratio, decay_s, amplitude) in [(1.0, 1.6, 1.0), (2.756, 0.7, 0.3), (5.404, 0.25, 0.15)]
@@ -15,7 +15,7 @@ pub(super) fn doorbell(canvas: &mut Canvas) {
 }
 
 /// The transformer's hum, the fan and the slow turning of the plate.
-pub(super) fn microwave(canvas: &mut Canvas) {
+pub(super) fn microwave(canvas: &mut LoopBuilder) {
     for (frequency_hz, amplitude) in [
         (100.0, 1.0),
         (200.0, 0.8),
@@ -33,7 +33,7 @@ pub(super) fn microwave(canvas: &mut Canvas) {
 }
 
 /// Drops that fall everywhere at once, and some that are heard one by one on a sill.
-pub(super) fn rain(canvas: &mut Canvas) {
+pub(super) fn rain(canvas: &mut LoopBuilder) {
     let wash = canvas.noise("wash", |f| {
         0.6 * peak(f, 900.0, 1500.0) + peak(f, 5000.0, 9000.0)
     });
@@ -48,7 +48,7 @@ pub(super) fn rain(canvas: &mut Canvas) {
 }
 
 /// A universal motor at 30,000 turns a minute with nine blades, and much air.
-pub(super) fn vacuum_cleaner(canvas: &mut Canvas) {
+pub(super) fn vacuum_cleaner(canvas: &mut LoopBuilder) {
     let (air, body) = (
         canvas.noise("air", |f| peak(f, 2200.0, 4500.0)),
         canvas.noise("body", |f| peak(f, 450.0, 500.0)),
@@ -61,7 +61,7 @@ pub(super) fn vacuum_cleaner(canvas: &mut Canvas) {
 }
 
 /// Air through a hot nozzle: noise with a strong blade tone.
-pub(super) fn hair_dryer(canvas: &mut Canvas) {
+pub(super) fn hair_dryer(canvas: &mut LoopBuilder) {
     let air = canvas.noise("air", |f| peak(f, 1500.0, 2500.0));
     canvas.lay(&air, 1.0);
     for (frequency_hz, amplitude) in [(250.0, 0.3), (1750.0, 0.5), (3500.0, 0.2)] {
@@ -70,7 +70,7 @@ pub(super) fn hair_dryer(canvas: &mut Canvas) {
 }
 
 /// Arms of water that sweep past, and a pump.
-pub(super) fn dishwasher(canvas: &mut Canvas) {
+pub(super) fn dishwasher(canvas: &mut LoopBuilder) {
     let (water, pump) = (
         canvas.noise("water", |f| peak(f, 700.0, 1200.0)),
         canvas.noise("pump", |f| peak(f, 180.0, 150.0)),

@@ -1,10 +1,10 @@
 //! Appliances, water, clocks, bells, steps.
 
-use super::canvas::{Canvas, Tone, edges, peak, rise};
+use super::loop_builder::{LoopBuilder, Tone, edges, peak, rise};
 use std::f64::consts::TAU;
 
 /// Three beeps of half a second and a pause (the temporal pattern of ISO 8201) at 3.1 kHz, as smoke alarms have it.
-pub(super) fn alarm(canvas: &mut Canvas) {
+pub(super) fn alarm(canvas: &mut LoopBuilder) {
     for beep in 0..3 {
         for (harmonic, amplitude) in [(1.0, 1.0), (2.0, 0.2)] {
             canvas.tone(Tone {
@@ -19,7 +19,7 @@ pub(super) fn alarm(canvas: &mut Canvas) {
 }
 
 /// A tick and a lower tock, each a few short resonances.
-pub(super) fn clock(canvas: &mut Canvas) {
+pub(super) fn clock(canvas: &mut LoopBuilder) {
     for (start_s, pitch) in [(0.1, 1.0), (1.1, 0.86)] {
         for (frequency_hz, amplitude) in
             [(1200.0, 0.4), (2400.0, 1.0), (3900.0, 0.8), (5600.0, 0.4)]
@@ -30,7 +30,7 @@ pub(super) fn clock(canvas: &mut Canvas) {
 }
 
 /// Broad noise that falls off above 500 Hz, and the tone of the blades.
-pub(super) fn fan(canvas: &mut Canvas) {
+pub(super) fn fan(canvas: &mut LoopBuilder) {
     let air = canvas.noise("air", |f| 1.0 / (1.0 + (f / 500.0) * (f / 500.0)).sqrt());
     canvas.lay(&air, 1.0);
     for (harmonic, amplitude) in [(1.0, 0.25), (2.0, 0.15), (3.0, 0.08)] {
@@ -39,7 +39,7 @@ pub(super) fn fan(canvas: &mut Canvas) {
 }
 
 /// Two steps a second: a dull thud of the heel, and the roll of the sole.
-pub(super) fn footsteps(canvas: &mut Canvas) {
+pub(super) fn footsteps(canvas: &mut LoopBuilder) {
     let sole = canvas.noise("sole", |f| peak(f, 900.0, 1200.0));
     let mut stream = canvas.key.child("steps").stream();
     for step in 0..8 {
@@ -58,7 +58,7 @@ pub(super) fn footsteps(canvas: &mut Canvas) {
 }
 
 /// A compressor on 50 Hz mains: even harmonics, and a little air.
-pub(super) fn fridge(canvas: &mut Canvas) {
+pub(super) fn fridge(canvas: &mut LoopBuilder) {
     for (frequency_hz, amplitude) in [
         (50.0, 0.5),
         (100.0, 1.0),
@@ -74,14 +74,14 @@ pub(super) fn fridge(canvas: &mut Canvas) {
 }
 
 /// Harmonics of 100 Hz, as a transformer on 50 Hz mains gives them.
-pub(super) fn hum(canvas: &mut Canvas) {
+pub(super) fn hum(canvas: &mut LoopBuilder) {
     for harmonic in 1..=8 {
         canvas.drone(100.0 * f64::from(harmonic), 1.0 / f64::from(harmonic));
     }
 }
 
 /// The rush of heating water, and bubbles that pop at random.
-pub(super) fn kettle(canvas: &mut Canvas) {
+pub(super) fn kettle(canvas: &mut LoopBuilder) {
     let rush = canvas.noise("rush", |f| {
         peak(f, 700.0, 900.0) + 0.3 * peak(f, 2500.0, 3000.0)
     });
@@ -90,13 +90,13 @@ pub(super) fn kettle(canvas: &mut Canvas) {
 }
 
 /// Equal power in every octave from 40 Hz up.
-pub(super) fn pink(canvas: &mut Canvas) {
+pub(super) fn pink(canvas: &mut LoopBuilder) {
     let noise = canvas.noise("pink", |f| if f < 40.0 { 0.0 } else { 1.0 / f.sqrt() });
     canvas.lay(&noise, 1.0);
 }
 
 /// 440 and 480 Hz, two seconds on and four off (ANSI/TIA's ringing tone), with the clatter of a bell above.
-pub(super) fn phone(canvas: &mut Canvas) {
+pub(super) fn phone(canvas: &mut LoopBuilder) {
     for (frequency_hz, amplitude) in [
         (440.0, 1.0),
         (480.0, 1.0),
@@ -112,7 +112,7 @@ pub(super) fn phone(canvas: &mut Canvas) {
 }
 
 /// A jet of water on steel: broad noise with a rise at high frequencies, and drops.
-pub(super) fn tap(canvas: &mut Canvas) {
+pub(super) fn tap(canvas: &mut LoopBuilder) {
     let jet = canvas.noise("jet", |f| {
         0.5 * peak(f, 400.0, 500.0) + peak(f, 3500.0, 5000.0)
     });
@@ -121,7 +121,7 @@ pub(super) fn tap(canvas: &mut Canvas) {
 }
 
 /// Four seconds of rushing water, then the hiss of the valve while the cistern fills.
-pub(super) fn toilet_flush(canvas: &mut Canvas) {
+pub(super) fn toilet_flush(canvas: &mut LoopBuilder) {
     let (rush, hiss) = (
         canvas.noise("rush", |f| {
             peak(f, 350.0, 500.0) + 0.4 * peak(f, 1500.0, 2000.0)
@@ -138,7 +138,7 @@ pub(super) fn toilet_flush(canvas: &mut Canvas) {
 }
 
 /// A drum that turns 0.8 times a second with wet clothes, a motor, and water.
-pub(super) fn washing_machine(canvas: &mut Canvas) {
+pub(super) fn washing_machine(canvas: &mut LoopBuilder) {
     let (motor, slosh) = (
         canvas.noise("motor", |f| peak(f, 120.0, 80.0)),
         canvas.noise("slosh", |f| peak(f, 500.0, 700.0)),
@@ -160,7 +160,7 @@ pub(super) fn washing_machine(canvas: &mut Canvas) {
 ///
 /// # Source
 /// K. van den Doel, ACM Trans. Appl. Percept. 2, 534 (2005): a bubble is a decaying sine whose pitch rises.
-fn bubbles(canvas: &mut Canvas, count: usize, (low_hz, high_hz): (f64, f64), amplitude: f64) {
+fn bubbles(canvas: &mut LoopBuilder, count: usize, (low_hz, high_hz): (f64, f64), amplitude: f64) {
     let mut stream = canvas.key.child("bubbles").stream();
     for _ in 0..count {
         let start_s = canvas.loop_s() * stream.uniform();

@@ -5,19 +5,19 @@
 //! blocks of any size give the same signal.
 
 mod appliances;
-mod canvas;
 mod household;
-mod measuring;
+mod loop_builder;
 mod music;
 mod speech;
 mod table;
+mod test_signals;
 
-pub use measuring::{Sweep, maximum_length_sequence};
+pub use test_signals::{Sweep, maximum_length_sequence};
 
 use crate::error::AcousticsError;
-use canvas::Canvas;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
+use loop_builder::LoopBuilder;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
@@ -34,7 +34,7 @@ pub struct SignalInfo {
     pub usual_level_db: f32,
     /// Where that level comes from.
     pub level_source: &'static str,
-    paint: fn(&mut Canvas),
+    paint: fn(&mut LoopBuilder),
 }
 
 /// All signals, by name.
@@ -60,11 +60,11 @@ pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
     crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
 }
 
-type Loop = Arc<OnceLock<Arc<[f32]>>>;
+type SharedLoop = Arc<OnceLock<Arc<[f32]>>>;
 
 /// Where a loop is, or will be.
-fn made(info: &SignalInfo, rate_hz: u32) -> Loop {
-    static LOOPS: Mutex<BTreeMap<(&'static str, u32), Loop>> = Mutex::new(BTreeMap::new());
+fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
+    static LOOPS: Mutex<BTreeMap<(&'static str, u32), SharedLoop>> = Mutex::new(BTreeMap::new());
     let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
     loops.entry((info.name, rate_hz)).or_default().clone()
 }
@@ -97,7 +97,7 @@ impl Signal {
         // Not under the lock, so that several are made at once.
         let samples = made.get_or_init(|| {
             let key = RandomKey::root(0).child("signals").child(info.name);
-            let mut canvas = Canvas::new(f64::from(rate_hz), info.loop_s, key);
+            let mut canvas = LoopBuilder::new(f64::from(rate_hz), info.loop_s, key);
             (info.paint)(&mut canvas);
             canvas.normalized().into()
         });
@@ -214,7 +214,7 @@ mod tests {
         let opened = Signal::open("television", RATE_HZ).unwrap();
         let info = info("television").unwrap();
         let key = RandomKey::root(0).child("signals").child("television");
-        let mut alone = Canvas::new(f64::from(RATE_HZ), info.loop_s, key);
+        let mut alone = LoopBuilder::new(f64::from(RATE_HZ), info.loop_s, key);
         (info.paint)(&mut alone);
         assert_eq!(opened.samples(), alone.normalized());
     }

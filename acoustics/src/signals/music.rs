@@ -1,6 +1,6 @@
 //! Music enough for a radio: chords, a bass, a tune, a beat.
 
-use super::canvas::{Canvas, edges, peak};
+use super::loop_builder::{LoopBuilder, edges, peak};
 use std::f64::consts::TAU;
 
 /// Frequency of a key of the piano, A4 = 69 = 440 Hz.
@@ -9,7 +9,7 @@ fn pitch_hz(key: i32) -> f64 {
 }
 
 /// Adds a plucked string: partials that fade the sooner the higher they are.
-fn pluck(canvas: &mut Canvas, start_s: f64, key: i32, amplitude: f64, decay_s: f64) {
+fn pluck(canvas: &mut LoopBuilder, start_s: f64, key: i32, amplitude: f64, decay_s: f64) {
     let frequency_hz = pitch_hz(key);
     for partial in 1..=8 {
         let n = f64::from(partial);
@@ -18,7 +18,7 @@ fn pluck(canvas: &mut Canvas, start_s: f64, key: i32, amplitude: f64, decay_s: f
 }
 
 /// Adds a held note: few partials, with a slow vibrato.
-fn hold(canvas: &mut Canvas, start_s: f64, duration_s: f64, key: i32, amplitude: f64) {
+fn hold(canvas: &mut LoopBuilder, start_s: f64, duration_s: f64, key: i32, amplitude: f64) {
     for partial in 1..=5 {
         let n = f64::from(partial);
         let frequency_hz = n * pitch_hz(key);
@@ -34,7 +34,7 @@ fn hold(canvas: &mut Canvas, start_s: f64, duration_s: f64, key: i32, amplitude:
 }
 
 /// Adds the four chords of so many songs (I, vi, IV, V in C), over and over, with bass, drums and a tune that wanders.
-pub(super) fn band(canvas: &mut Canvas, amplitude: f64) {
+pub(super) fn band(canvas: &mut LoopBuilder, amplitude: f64) {
     const CHORDS: [[i32; 3]; 4] = [[60, 64, 67], [57, 60, 64], [53, 57, 60], [55, 59, 62]];
     const SCALE: [i32; 6] = [72, 74, 76, 79, 81, 84];
     let bars = (canvas.loop_s() / 2.0).floor() as usize;
@@ -79,6 +79,6 @@ pub(super) fn band(canvas: &mut Canvas, amplitude: f64) {
 }
 
 /// Music with a beat.
-pub(super) fn radio(canvas: &mut Canvas) {
+pub(super) fn radio(canvas: &mut LoopBuilder) {
     band(canvas, 1.0);
 }

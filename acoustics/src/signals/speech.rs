@@ -1,11 +1,11 @@
 //! Voices without words: the spectrum, rhythm and pitch of speech.
 
-use super::canvas::{Canvas, edges, peak};
+use super::loop_builder::{LoopBuilder, edges, peak};
 use super::music;
 use std::f64::consts::TAU;
 
 /// A voice.
-struct Voice {
+struct SpeechVoice {
     /// Mean pitch, Hz.
     pitch_hz: f64,
     /// Formants in relation to those of a man.
@@ -22,7 +22,7 @@ const VOWELS_HZ: [[f64; 3]; 5] = [
 ];
 
 /// Adds a voice that speaks from `start_s` to `end_s` in syllables of about a quarter of a second, with pauses.
-fn talk(canvas: &mut Canvas, voice: &Voice, name: &str, (start_s, end_s): (f64, f64)) {
+fn talk(canvas: &mut LoopBuilder, voice: &SpeechVoice, name: &str, (start_s, end_s): (f64, f64)) {
     let hiss = canvas.noise(name, |f| peak(f, 4500.0, 3000.0));
     let mut stream = canvas.key.child(name).stream();
     let mut now_s = start_s;
@@ -55,8 +55,8 @@ fn talk(canvas: &mut Canvas, voice: &Voice, name: &str, (start_s, end_s): (f64, 
 
 /// Adds harmonics of the pitch that are strong near the formants.
 fn vowel_sound(
-    canvas: &mut Canvas,
-    voice: &Voice,
+    canvas: &mut LoopBuilder,
+    voice: &SpeechVoice,
     vowel: &[f64; 3],
     start_s: f64,
     duration_s: f64,
@@ -93,8 +93,8 @@ fn vowel_sound(
 }
 
 /// One voice without words.
-pub(super) fn speech(canvas: &mut Canvas) {
-    let voice = Voice {
+pub(super) fn speech(canvas: &mut LoopBuilder) {
+    let voice = SpeechVoice {
         pitch_hz: 118.0,
         size: 1.0,
     };
@@ -103,13 +103,13 @@ pub(super) fn speech(canvas: &mut Canvas) {
 }
 
 /// Two voices in turn over quiet music.
-pub(super) fn television(canvas: &mut Canvas) {
+pub(super) fn television(canvas: &mut LoopBuilder) {
     let (man, woman) = (
-        Voice {
+        SpeechVoice {
             pitch_hz: 112.0,
             size: 1.0,
         },
-        Voice {
+        SpeechVoice {
             pitch_hz: 205.0,
             size: 1.17,
         },
@@ -135,7 +135,7 @@ pub(super) fn television(canvas: &mut Canvas) {
 }
 
 /// Six voices at once: a room full of people.
-pub(super) fn babble(canvas: &mut Canvas) {
+pub(super) fn babble(canvas: &mut LoopBuilder) {
     let end_s = canvas.loop_s();
     for (k, (pitch_hz, size)) in [
         (104.0, 1.0),
@@ -148,7 +148,7 @@ pub(super) fn babble(canvas: &mut Canvas) {
     .into_iter()
     .enumerate()
     {
-        let voice = Voice { pitch_hz, size };
+        let voice = SpeechVoice { pitch_hz, size };
         // They begin in turn, so that pauses do not fall together.
         let start_s = 0.21 * k as f64;
         talk(

@@ -1,14 +1,14 @@
 //! All signals, by name.
 
-use super::canvas::Canvas;
-use super::{SignalInfo, appliances, household, measuring, music, speech};
+use super::loop_builder::LoopBuilder;
+use super::{SignalInfo, appliances, household, music, speech, test_signals};
 
 const fn signal(
     name: &'static str,
     description: &'static str,
     loop_s: f64,
     (usual_level_db, level_source): (f32, &'static str),
-    paint: fn(&mut Canvas),
+    paint: fn(&mut LoopBuilder),
 ) -> SignalInfo {
     SignalInfo {
         name,
@@ -109,7 +109,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         "one sample a second, for measuring",
         1.0,
         (70.0, "as is asked for"),
-        measuring::impulse,
+        test_signals::impulse,
     ),
     signal(
         "kettle",
@@ -164,7 +164,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         "a tone of 1 kHz, for measuring",
         1.0,
         (70.0, "as is asked for"),
-        measuring::sine,
+        test_signals::sine,
     ),
     signal(
         "speech",
@@ -178,7 +178,7 @@ pub(super) const ALL: [SignalInfo; 26] = [
         "an exponential sweep and a pause, for measuring",
         4.0,
         (70.0, "as is asked for"),
-        measuring::sweep,
+        test_signals::sweep,
     ),
     signal(
         "tap",
@@ -229,6 +229,6 @@ pub(super) const ALL: [SignalInfo; 26] = [
         "white noise, for measuring",
         4.0,
         (70.0, "as is asked for"),
-        measuring::white,
+        test_signals::white,
     ),
 ];

@@ -7,12 +7,12 @@ type Spectrum = Vec<Complex<f32>>;
 
 /// An impulse response as spectra of its partitions.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Filter {
+pub(super) struct PartitionedFilter {
     /// Shape (channel, partition, bin).
     channels: Vec<Vec<Spectrum>>,
 }
 
-impl Filter {
+impl PartitionedFilter {
     /// `samples`: shape (channel, sample), flat, cut to `partitions` blocks.
     pub(super) fn new(
         fft: &mut RealFft,
@@ -37,7 +37,7 @@ impl Filter {
 
 /// The input of one source as spectra, newest first.
 #[derive(Clone, Debug)]
-pub(super) struct Input {
+pub(super) struct ConvolverInput {
     /// Samples of the last blocks, oldest first: one more block than a filter has partitions.
     history: Vec<f32>,
     /// Spectrum of each block with the one before it, a ring; `None` for silence.
@@ -45,7 +45,7 @@ pub(super) struct Input {
     newest: usize,
 }
 
-impl Input {
+impl ConvolverInput {
     pub(super) fn new(block: usize, partitions: usize) -> Self {
         Self {
             history: vec![0.0; block * (partitions + 1)],
@@ -89,7 +89,7 @@ impl Input {
     }
 
     /// The newest block of the convolution with `filter`. `out`: shape (channel, sample), flat; overwritten.
-    pub(super) fn convolve(&self, fft: &mut RealFft, filter: &Filter, out: &mut [f32]) {
+    pub(super) fn convolve(&self, fft: &mut RealFft, filter: &PartitionedFilter, out: &mut [f32]) {
         let block = fft.len() / 2;
         let mut sum = vec![Complex::default(); fft.bins()];
         for (partitions, channel) in filter.channels.iter().zip(out.chunks_exact_mut(block)) {
@@ -132,12 +132,12 @@ mod tests {
             let (ir, signal) = (noise(2 * taps), noise(block * 8));
             let partitions = taps.div_ceil(block);
             let mut fft = RealFft::new(2 * block);
-            let filter = Filter::new(&mut fft, &ir, 2, partitions);
-            let mut input = Input::new(block, partitions);
+            let filter = PartitionedFilter::new(&mut fft, &ir, 2, partitions);
+            let mut input = ConvolverInput::new(block, partitions);
             let mut found = [Vec::new(), Vec::new()];
             for piece in signal.chunks(block) {
                 input.push(&mut fft, piece);
-                let again = Input::restore(&mut fft, input.history(), partitions);
+                let again = ConvolverInput::restore(&mut fft, input.history(), partitions);
                 let (mut out, mut other) = (vec![0.0; 2 * block], vec![0.0; 2 * block]);
                 input.convolve(&mut fft, &filter, &mut out);
                 again.convolve(&mut fft, &filter, &mut other);

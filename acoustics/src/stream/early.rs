@@ -1,7 +1,7 @@
 //! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
 
-use super::passage::Passage;
-use crate::echogram::Path;
+use super::delay_line::DelayedSegment;
+use crate::echogram::PropagationPath;
 use crate::synthesis::{Wavelet, strongest};
 use serde::{Deserialize, Serialize};
 
@@ -12,14 +12,14 @@ const SAME_EDGE_M: f32 = 0.4;
 
 /// A path at the end of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Followed {
-    pub(super) path: Path,
+pub(super) struct TrackedPath {
+    pub(super) path: PropagationPath,
     /// As each channel hears it. Shape (channel,).
     pub(super) wavelets: Vec<Wavelet>,
 }
 
 /// How unlike two paths are, before and after a movement: how far their bends have slid, m; nothing where they are not one.
-fn slid_m(a: &Path, b: &Path) -> Option<f32> {
+fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
     if a.planes != b.planes || a.bends.len() != b.bends.len() {
         return None;
     }
@@ -29,11 +29,11 @@ fn slid_m(a: &Path, b: &Path) -> Option<f32> {
 }
 
 /// The paths of a response that are followed: all straight ways, then the strongest reflections up to `most` in all.
-pub(super) fn choose(paths: &[Path], most: usize) -> Vec<Path> {
-    let (mut chosen, mut others): (Vec<&Path>, Vec<&Path>) = strongest(paths)
+pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationPath> {
+    let (mut chosen, mut others): (Vec<&PropagationPath>, Vec<&PropagationPath>) = strongest(paths)
         .into_iter()
         .partition(|path| path.planes.is_empty());
-    let power = |path: &Path| path.energy.iter().sum::<f32>();
+    let power = |path: &PropagationPath| path.energy.iter().sum::<f32>();
     others.sort_by(|a, b| power(b).total_cmp(&power(a)));
     let left = most.saturating_sub(chosen.len());
     chosen.extend(others.into_iter().take(left));
@@ -41,7 +41,7 @@ pub(super) fn choose(paths: &[Path], most: usize) -> Vec<Path> {
 }
 
 /// Moves the paths of a source for one block.
-pub(super) struct Glide<'a> {
+pub(super) struct DelayGlide<'a> {
     /// What the source has played; the last samples are the block's.
     pub(super) history: &'a [f32],
     pub(super) rate_hz: f64,
@@ -49,14 +49,14 @@ pub(super) struct Glide<'a> {
     pub(super) fade: &'a [f32],
 }
 
-impl Glide<'_> {
+impl DelayGlide<'_> {
     /// Adds to `out` what is heard over `old` paths as they become `new` ones. `out`: shape (channel, sample), flat.
     ///
     /// A path's delay goes from one block's end to the next's in a straight line, its filter is crossfaded; a path that is only
     /// in one of the two fades.
-    pub(super) fn add(&self, old: &[Followed], new: &[Followed], out: &mut [f32]) {
+    pub(super) fn add(&self, old: &[TrackedPath], new: &[TrackedPath], out: &mut [f32]) {
         let size = self.fade.len();
-        let mut left: Vec<&Followed> = old.iter().collect();
+        let mut left: Vec<&TrackedPath> = old.iter().collect();
         for path in new {
             let before = (0..left.len())
                 .filter_map(|k| Some((k, slid_m(&left[k].path, &path.path)?)))
@@ -99,7 +99,7 @@ impl Glide<'_> {
             (None, Some(b)) => (late(b), late(b)),
             (None, None) => return,
         };
-        let passage = Passage::new(self.history, size, (from, to));
+        let passage = DelayedSegment::new(self.history, size, (from, to));
         let filtered = |wavelet: &Wavelet| {
             let skip = skip.min(wavelet.lead);
             passage.filtered(&wavelet.response[skip..], wavelet.amplitude)
@@ -113,9 +113,9 @@ impl Glide<'_> {
 mod tests {
     use super::*;
 
-    fn followed(delay_s: f64) -> Followed {
-        Followed {
-            path: Path {
+    fn followed(delay_s: f64) -> TrackedPath {
+        TrackedPath {
+            path: PropagationPath {
                 planes: Vec::new(),
                 bends: Vec::new(),
                 length_m: 1.0,
@@ -144,7 +144,7 @@ mod tests {
             let history: Vec<f32> = (0..4 * size)
                 .map(|k| (omega * k as f64).sin() as f32)
                 .collect();
-            let glide = Glide {
+            let glide = DelayGlide {
                 history: &history,
                 rate_hz,
                 fade: &fade,
@@ -173,7 +173,7 @@ mod tests {
         let mut history = vec![0.0; 300];
         history[250] = 1.0;
         let fade = vec![1.0; 100];
-        let glide = Glide {
+        let glide = DelayGlide {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,
@@ -196,7 +196,7 @@ mod tests {
     fn each_path_goes_on_as_one() {
         let history = vec![1.0; 300];
         let fade = vec![0.5; 100];
-        let glide = Glide {
+        let glide = DelayGlide {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,
@@ -228,7 +228,7 @@ mod tests {
     fn the_shortest_delays_play() {
         let history: Vec<f32> = (0..300).map(|k| (0.05 * k as f32).sin()).collect();
         let fade = vec![1.0; 100];
-        let glide = Glide {
+        let glide = DelayGlide {
             history: &history,
             rate_hz: 16_000.0,
             fade: &fade,

@@ -1,35 +1,35 @@
 //! Sound in step with a world: blocks of pressure at one receiver while sources, listener and doors move.
 
+mod block_plan;
 mod config;
 mod convolver;
+mod delay_line;
 mod early;
-mod memory;
-mod passage;
-mod plan;
-mod remembered;
-mod turns;
-mod voice;
-mod way;
+mod response_update;
+mod snapshot_check;
+mod source_state;
+mod tail_update;
+mod update_queue;
 
 pub use config::StreamConfig;
 
 use crate::echogram::Echogram;
 use crate::error::{AcousticsError, finite};
 use crate::fft::RealFft;
-use crate::microphones::{self, Microphones};
+use crate::microphone_chain::{self, MicrophoneChain};
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
+use block_plan::PlannedSource;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{PartId, Pose, State};
-use early::{Followed, Glide};
+use early::{DelayGlide, TrackedPath};
 use glam::Vec3;
-use plan::Planned;
 use serde::{Deserialize, Serialize};
-use turns::Pieces;
-use voice::{Situation, Voice};
+use source_state::{ListeningSituation, SourceState};
+use update_queue::PartialTrace;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
@@ -86,21 +86,21 @@ pub struct Stream {
     fade: Vec<f32>,
     block: u64,
     /// By id.
-    voices: Vec<Voice>,
+    voices: Vec<SourceState>,
     /// Where the large parts were at the end of the last block. Shape (large part,); empty before the first.
     parts: Vec<Pose>,
-    microphones: Microphones,
+    microphones: MicrophoneChain,
 }
 
 #[derive(Serialize, Deserialize)]
-struct Snapshot {
+struct StreamSnapshot {
     version: u32,
     block_samples: u64,
     partitions: u64,
     block: u64,
-    voices: Vec<voice::Memory>,
+    voices: Vec<source_state::SourceMemory>,
     parts: Vec<Pose>,
-    microphones: microphones::Memory,
+    microphones: microphone_chain::ChainMemory,
 }
 
 impl Stream {
@@ -124,7 +124,7 @@ impl Stream {
             fft: RealFft::new(2 * config.block_samples),
             fade: fade(config.block_samples),
             large_parts,
-            microphones: Microphones::new(f64::from(settings.rate_hz)),
+            microphones: MicrophoneChain::new(f64::from(settings.rate_hz)),
             scene,
             config,
             room: key.child("room"),
@@ -217,7 +217,7 @@ impl Stream {
         out.fill(0.0);
         let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
         let mut signal = vec![0.0; size];
-        for Planned {
+        for PlannedSource {
             id,
             named,
             place,
@@ -229,7 +229,7 @@ impl Stream {
         {
             let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
             let at = at.unwrap_or_else(|at| {
-                let voice = Voice::new(id, size, self.partitions);
+                let voice = SourceState::new(id, size, self.partitions);
                 self.voices.insert(at, voice);
                 at
             });
@@ -244,13 +244,13 @@ impl Stream {
             }
             let fresh = voice.input.is_silent() || voice.heard.is_none();
             voice.input.push(&mut self.fft, &signal);
-            let channels = |heard: &Option<(Situation, ImpulseResponse)>| {
+            let channels = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
                 heard.as_ref().map(|(_, response)| response.channels)
             };
             let channels_before = channels(&voice.heard);
             let before = voice.moved.followed.take();
             // Other air or another microphone does not glide.
-            let effects = |heard: &Option<(Situation, ImpulseResponse)>| {
+            let effects = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
                 heard.as_ref().map(|(situation, _)| situation.effects)
             };
             let effects_before = effects(&voice.heard);
@@ -284,8 +284,8 @@ impl Stream {
                 let speed_m_s = self.scene.config().air.speed_of_sound_m_s();
                 let wavelets = self.scene.wavelets(speed_m_s, &paths, receiver);
                 let pairs = paths.into_iter().zip(wavelets);
-                let now: Vec<Followed> = pairs
-                    .map(|(path, wavelets)| Followed { path, wavelets })
+                let now: Vec<TrackedPath> = pairs
+                    .map(|(path, wavelets)| TrackedPath { path, wavelets })
                     .collect();
                 let before = before.filter(|_| same_channels).unwrap_or_default();
                 let glide = glide(&self.scene, &self.fade, voice);
@@ -304,9 +304,9 @@ impl Stream {
             voice.moved.last = Some(place);
             voice.waiting.since = since;
             match job {
-                Pieces::AsBefore => {}
-                Pieces::None => voice.waiting.job = None,
-                Pieces::Now(job) => voice.waiting.job = Some(job),
+                PartialTrace::Unchanged => {}
+                PartialTrace::None => voice.waiting.job = None,
+                PartialTrace::Advanced(job) => voice.waiting.job = Some(job),
             }
         }
         self.voices.retain(|voice| {
@@ -327,12 +327,12 @@ impl Stream {
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let snapshot = Snapshot {
+        let snapshot = StreamSnapshot {
             version: VERSION,
             block_samples: self.config.block_samples as u64,
             partitions: self.partitions as u64,
             block: self.block,
-            voices: self.voices.iter().map(Voice::memory).collect(),
+            voices: self.voices.iter().map(SourceState::memory).collect(),
             parts: self.parts.clone(),
             microphones: self.microphones.memory(),
         };
@@ -361,7 +361,7 @@ impl Stream {
         if u64::from_le_bytes(*sum) != xxh3_64(body) {
             return refuse("its check sum does not fit: it is damaged".to_owned());
         }
-        let snapshot: Snapshot = match postcard::from_bytes(body) {
+        let snapshot: StreamSnapshot = match postcard::from_bytes(body) {
             Ok(snapshot) => snapshot,
             Err(error) => return refuse(error.to_string()),
         };
@@ -378,11 +378,11 @@ impl Stream {
                 snapshot.partitions, snapshot.block_samples
             ));
         }
-        if let Err(what) = remembered::check(&self.scene, &snapshot.voices) {
+        if let Err(what) = snapshot_check::check(&self.scene, &snapshot.voices) {
             return refuse(what);
         }
         let rate_hz = f64::from(self.scene.config().rate_hz);
-        self.microphones = Microphones::restore(rate_hz, snapshot.microphones)?;
+        self.microphones = MicrophoneChain::restore(rate_hz, snapshot.microphones)?;
         let voices = snapshot.voices.into_iter();
         self.voices = voices.map(|memory| self.voice(memory)).collect();
         self.parts = snapshot.parts;
@@ -391,8 +391,8 @@ impl Stream {
     }
 
     /// A voice as it was remembered.
-    fn voice(&mut self, memory: voice::Memory) -> Voice {
-        let mut voice = Voice::restore(&mut self.fft, memory, self.partitions);
+    fn voice(&mut self, memory: source_state::SourceMemory) -> SourceState {
+        let mut voice = SourceState::restore(&mut self.fft, memory, self.partitions);
         let Some((situation, mut response)) = voice.heard.take() else {
             return voice;
         };
@@ -421,8 +421,8 @@ impl Stream {
 }
 
 /// What moves the early paths of a voice through its block.
-fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a Voice) -> Glide<'a> {
-    Glide {
+fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a SourceState) -> DelayGlide<'a> {
+    DelayGlide {
         history: voice.input.history(),
         rate_hz: f64::from(scene.config().rate_hz),
         fade,
@@ -432,7 +432,7 @@ fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a Voice) -> Glide<
 /// The samples of a response, without the paths that are followed when at `most` so many are.
 fn without_followed(
     scene: &AcousticScene,
-    situation: &Situation,
+    situation: &ListeningSituation,
     response: &ImpulseResponse,
     most: Option<usize>,
 ) -> Vec<f32> {

@@ -1,6 +1,6 @@
 //! Short causal filters with given energies per band.
 
-use crate::bands::{self, BAND_COUNT, Banded};
+use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::fft::RealFft;
 use realfft::num_complex::Complex;
 
@@ -82,7 +82,7 @@ impl PathFilters {
     /// times it is added.
     pub(crate) fn spectrum(
         &self,
-        energy: &Banded,
+        energy: &BandValues,
         more: Option<(&[Complex<f32>], f32)>,
     ) -> (Vec<Complex<f32>>, f32) {
         let strongest = energy.iter().copied().fold(0.0, f32::max);

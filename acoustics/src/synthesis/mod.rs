@@ -1,27 +1,27 @@
 //! From energies to pressure.
 
-mod fractional;
-mod level;
+mod fractional_delay;
 pub(crate) mod minimum_phase;
-mod noise;
+mod noise_gains;
 mod smooth;
+mod tail_noise;
 mod upper_air;
 
-use crate::bands::{BAND_COUNT, Banded, FilterBank};
-use crate::channel::Channel;
+use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::config::AcousticConfig;
-use crate::echogram::{Echogram, Path};
+use crate::echogram::{Echogram, PropagationPath};
 use crate::fft::RealFft;
-use crate::head::Heads;
+use crate::head::HeadSet;
 use crate::receiver::Receiver;
+use crate::receiver_channel::ReceiverChannel;
 use dwell_scene::random::RandomKey;
-use fractional::Taps;
-pub(crate) use level::KnownLevels;
+use fractional_delay::FractionalDelay;
 use minimum_phase::{EAR_LEAD_S, PathFilters};
+pub(crate) use noise_gains::CachedGains;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 pub(crate) use upper_air::UpperAir;
-use upper_air::UpperParts;
+use upper_air::UpperBands;
 
 /// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
@@ -52,20 +52,20 @@ pub(crate) struct Synthesizer {
     fade: Vec<f32>,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
-    banks: [OnceLock<Bank>; 3],
+    banks: [OnceLock<FilterBankSet>; 3],
 }
 
 /// Filters for one length of responses.
 #[derive(Debug)]
-struct Bank {
+struct FilterBankSet {
     bands: FilterBank,
-    upper: UpperParts,
+    upper: UpperBands,
 }
 
 /// Who listens, in which air.
-pub(crate) struct Hearing<'a> {
+pub(crate) struct HearingContext<'a> {
     pub(crate) receiver: &'a Receiver,
-    pub(crate) heads: &'a Heads,
+    pub(crate) heads: &'a HeadSet,
     /// What it takes above the highest band, where that can be heard.
     pub(crate) air: Option<&'a UpperAir>,
 }
@@ -122,16 +122,16 @@ impl Synthesizer {
         UpperAir::new(config, share, &self.filters)
     }
 
-    fn bank(&self, length: usize) -> &Bank {
+    fn bank(&self, length: usize) -> &FilterBankSet {
         let quarters = (4 * length).div_ceil(self.longest.max(1));
         let (place, span) = match quarters {
             0 | 1 => (0, self.longest.div_ceil(4)),
             2 => (1, self.longest.div_ceil(2)),
             _ => (2, self.longest),
         };
-        self.banks[place].get_or_init(|| Bank {
+        self.banks[place].get_or_init(|| FilterBankSet {
             bands: FilterBank::new(self.rate_hz, span, OVERLAP),
-            upper: UpperParts::new(self.rate_hz, span),
+            upper: UpperBands::new(self.rate_hz, span),
         })
     }
 
@@ -170,12 +170,12 @@ impl Synthesizer {
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
-        hearing: &Hearing<'_>,
-        early: Option<&[Vec<Path>]>,
-        levels: &mut KnownLevels,
+        hearing: &HearingContext<'_>,
+        early: Option<&[Vec<PropagationPath>]>,
+        levels: &mut CachedGains,
         key: RandomKey,
     ) -> Vec<f32> {
-        let Hearing {
+        let HearingContext {
             receiver,
             heads,
             air,
@@ -185,13 +185,13 @@ impl Synthesizer {
         if out.is_empty() {
             return out;
         }
-        let channels = Channel::of(receiver, heads, echogram.speed_m_s);
+        let channels = ReceiverChannel::of(receiver, heads, echogram.speed_m_s);
         // Nothing may be heard before the straight way is over.
         let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
         let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
         let bank = self.bank(length);
-        let noise = noise::Noise {
+        let noise = tail_noise::TailNoise {
             echogram,
             energy: smooth::smooth(&echogram.tail),
             rate_hz: self.rate_hz,
@@ -206,8 +206,8 @@ impl Synthesizer {
             let levels = levels.or_find(|| {
                 let mut paths = vec![0.0; length];
                 // Bands are known at their centres: levels are those before air takes more of what lies above.
-                let omni = Listening {
-                    channels: &[Channel::Omni],
+                let omni = PathListening {
+                    channels: &[ReceiverChannel::Omni],
                     there: true,
                     air: None,
                 };
@@ -216,7 +216,7 @@ impl Synthesizer {
             });
             noise.add(&arrivals, levels, &channels, &mut out);
         }
-        let listening = |channels, there| Listening {
+        let listening = |channels, there| PathListening {
             channels,
             there,
             air,
@@ -241,8 +241,8 @@ impl Synthesizer {
     fn add_paths(
         &self,
         echogram: &Echogram,
-        paths: &[Path],
-        listening: &Listening<'_>,
+        paths: &[PropagationPath],
+        listening: &PathListening<'_>,
         out: &mut [f32],
     ) {
         let length = out.len() / listening.channels.len();
@@ -250,7 +250,7 @@ impl Synthesizer {
         for path in strongest(paths) {
             let wavelets = self.heard(&mut fft, echogram.speed_m_s, path, listening);
             for (wavelet, out) in wavelets.zip(out.chunks_exact_mut(length)) {
-                let taps = Taps::new(wavelet.delay_s * self.rate_hz);
+                let taps = FractionalDelay::new(wavelet.delay_s * self.rate_hz);
                 taps.add(out, &wavelet.response, wavelet.lead, wavelet.amplitude);
             }
         }
@@ -261,10 +261,10 @@ impl Synthesizer {
         &'a self,
         fft: &'a mut RealFft,
         speed_m_s: f64,
-        path: &'a Path,
-        listening: &Listening<'a>,
+        path: &'a PropagationPath,
+        listening: &PathListening<'a>,
     ) -> impl Iterator<Item = Wavelet> + 'a {
-        let Listening {
+        let PathListening {
             channels,
             there,
             air,
@@ -274,7 +274,7 @@ impl Synthesizer {
         let (mut last, mut found) = ([f32::NAN; BAND_COUNT], (Vec::new(), 0.0));
         channels.iter().map(move |channel| {
             let gain = channel.path_gain(path.arrival);
-            let energy: Banded = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
+            let energy: BandValues = std::array::from_fn(|b| path.energy[b] * gain[b] * gain[b]);
             if energy != last {
                 (last, found) = (energy, self.filters.spectrum(&energy, air));
             }
@@ -298,7 +298,7 @@ impl Synthesizer {
                     0
                 },
                 amplitude,
-                delay_s: delay_s + path.length_m.max(crate::images::NEAREST_M) / speed_m_s,
+                delay_s: delay_s + path.length_m.max(crate::image_sources::NEAREST_M) / speed_m_s,
             }
         })
     }
@@ -307,17 +307,17 @@ impl Synthesizer {
     pub(crate) fn wavelets(
         &self,
         speed_m_s: f64,
-        paths: &[Path],
-        hearing: &Hearing<'_>,
+        paths: &[PropagationPath],
+        hearing: &HearingContext<'_>,
     ) -> Vec<Vec<Wavelet>> {
-        let channels = Channel::of(hearing.receiver, hearing.heads, speed_m_s);
-        let listening = Listening {
+        let channels = ReceiverChannel::of(hearing.receiver, hearing.heads, speed_m_s);
+        let listening = PathListening {
             channels: &channels,
             there: false,
             air: hearing.air,
         };
         let mut fft = self.filters.fft();
-        let mut hear = |path: &Path| -> Vec<Wavelet> {
+        let mut hear = |path: &PropagationPath| -> Vec<Wavelet> {
             let wavelets = self.heard(&mut fft, speed_m_s, path, &listening);
             wavelets.map(|wavelet| self.shorten(wavelet)).collect()
         };
@@ -335,14 +335,14 @@ impl Synthesizer {
     }
 
     /// Takes wavelets out of a response again. Shapes: (path, channel) and (channel, sample), flat.
-    pub(crate) fn take_out(&self, wavelets: &[Vec<Wavelet>], samples: &mut [f32]) {
+    pub(crate) fn subtract_wavelets(&self, wavelets: &[Vec<Wavelet>], samples: &mut [f32]) {
         let Some(channels) = wavelets.first().map(Vec::len) else {
             return;
         };
         let length = samples.len() / channels.max(1);
         for path in wavelets {
             for (wavelet, out) in path.iter().zip(samples.chunks_exact_mut(length.max(1))) {
-                let taps = Taps::new(wavelet.delay_s * self.rate_hz);
+                let taps = FractionalDelay::new(wavelet.delay_s * self.rate_hz);
                 taps.add(out, &wavelet.response, wavelet.lead, -wavelet.amplitude);
             }
         }
@@ -350,18 +350,18 @@ impl Synthesizer {
 }
 
 /// The channels that hear paths, in which air.
-struct Listening<'a> {
-    channels: &'a [Channel],
+struct PathListening<'a> {
+    channels: &'a [ReceiverChannel],
     /// Whether paths end at the channel itself rather than at the centre.
     there: bool,
     air: Option<&'a UpperAir>,
 }
 
 /// The paths that are heard one by one, the strongest first where there are too many.
-pub(crate) fn strongest(paths: &[Path]) -> Vec<&Path> {
-    let mut strongest: Vec<&Path> = paths.iter().collect();
+pub(crate) fn strongest(paths: &[PropagationPath]) -> Vec<&PropagationPath> {
+    let mut strongest: Vec<&PropagationPath> = paths.iter().collect();
     if strongest.len() > MOST_PATHS {
-        let power = |path: &Path| path.energy.iter().sum::<f32>();
+        let power = |path: &PropagationPath| path.energy.iter().sum::<f32>();
         strongest.sort_by(|a, b| power(b).total_cmp(&power(a)));
         strongest.truncate(MOST_PATHS);
     }

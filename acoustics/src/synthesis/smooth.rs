@@ -1,7 +1,7 @@
 //! Less of the rays' grain in the tail.
 
 use crate::bands::BAND_COUNT;
-use crate::echogram::Histogram;
+use crate::echogram::EnergyHistogram;
 
 /// Half of a pass's window over the time since the impulse.
 const SPREAD: f64 = 0.04;
@@ -13,7 +13,7 @@ const PASSES: usize = 2;
 ///
 /// Late bins hold the energy of few rays; heard as they are, they flutter. An exponential decay that is averaged so keeps its
 /// slope.
-pub(super) fn smooth(histogram: &Histogram) -> Vec<[f64; BAND_COUNT]> {
+pub(super) fn smooth(histogram: &EnergyHistogram) -> Vec<[f64; BAND_COUNT]> {
     let mut smoothed = histogram.bins.clone();
     for _ in 0..PASSES {
         smoothed = pass(&smoothed);
@@ -64,16 +64,16 @@ mod tests {
     use super::*;
     use dwell_scene::random::RandomKey;
 
-    fn decay(grain: f64) -> Histogram {
+    fn decay(grain: f64) -> EnergyHistogram {
         let mut stream = RandomKey::root(1).stream();
         let bins = (0..250).map(|k| {
             let level = libm::exp(-0.1 * f64::from(k)) * (1.0 + grain * (stream.uniform() - 0.5));
             [level; BAND_COUNT]
         });
-        Histogram {
+        EnergyHistogram {
             bin_s: 0.004,
             bins: bins.collect(),
-            ..Histogram::default()
+            ..EnergyHistogram::default()
         }
     }
 

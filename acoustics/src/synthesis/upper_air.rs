@@ -68,13 +68,13 @@ impl UpperAir {
 
 /// Filters that part what lies above the highest band, for one length of signals.
 #[derive(Debug)]
-pub(super) struct UpperParts {
+pub(super) struct UpperBands {
     fft: RealFft,
     /// The first bin of each part and the shares from there on. Shape (part,).
     shares: Vec<(usize, Vec<f32>)>,
 }
 
-impl UpperParts {
+impl UpperBands {
     /// Filters for signals of at most `length` samples.
     pub(super) fn new(rate_hz: f64, length: usize) -> Self {
         let fft = RealFft::at_least(length + (WRAP_S * rate_hz) as usize);
@@ -140,7 +140,7 @@ mod tests {
         };
         let air = UpperAir::new(&config, 1.0, &PathFilters::new(48_000.0)).unwrap();
         let n = 48_000;
-        let parts = UpperParts::new(48_000.0, n);
+        let parts = UpperBands::new(48_000.0, n);
         let more_db = |frequency_hz| {
             config.air.attenuation_db_per_m(frequency_hz)
                 - config.air.attenuation_db_per_m(highest_hz())

@@ -1,29 +1,29 @@
 //! Late sound: rays from the source whose energy is counted at the receivers.
 //!
 //! Every path is counted by exactly one technique: purely specular paths up to the order of the images by
-//! [`images`](crate::images); paths whose last reflection scatters by a shadow ray from that reflection to the receiver;
+//! [`images`](crate::image_sources); paths whose last reflection scatters by a shadow ray from that reflection to the receiver;
 //! all others (last reflection specular, after a scattering one or beyond the order of the images) where they cross a ball
 //! around the receiver.
 
-mod listener;
+mod ray_tracer;
+mod receiver_volume;
 pub(crate) mod spans;
-mod walk;
 
-use crate::bands::{BAND_COUNT, Banded};
+use crate::bands::{BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
-use crate::directions::{CELL_COUNT, Directions};
-use crate::echogram::{Histogram, SPAN_COUNT, TraceStatistics};
-use crate::receiver::Source;
+use crate::directions::{CELL_COUNT, DirectionalEnergy};
+use crate::echogram::{EnergyHistogram, RayStatistics, SPAN_COUNT};
+use crate::receiver::SoundSourcePose;
 use crate::scene::AcousticScene;
 use dwell_scene::math::sin_cos;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::rays::RayScene;
 use glam::{Quat, Vec3};
-use listener::Listener;
+use ray_tracer::RayTracer;
+use receiver_volume::TailReceiver;
 use serde::{Deserialize, Serialize};
-use spans::Scatter;
-use walk::Walk;
+use spans::SpanVariance;
 
 /// Rays that are traced and summed together, and split and end among themselves; a constant, so that sums do not depend on threads.
 const RAYS_PER_CHUNK: usize = 64;
@@ -93,17 +93,17 @@ fn random_rotation(stream: &mut RandomStream) -> Quat {
 }
 
 /// The energy tail at one receiver, and how it was found.
-pub(crate) struct Late {
-    pub(crate) histogram: Histogram,
-    pub(crate) statistics: TraceStatistics,
+pub(crate) struct LateReverberation {
+    pub(crate) histogram: EnergyHistogram,
+    pub(crate) statistics: RayStatistics,
 }
 
 /// What a chunk of rays brings, each ray of power 1.
-struct Chunk {
+struct RayChunk {
     /// Shape (receiver, bin), flat.
-    energy: Vec<Banded>,
+    energy: Vec<BandValues>,
     /// Shape (receiver, time, cell), flat.
-    directions: Vec<Banded>,
+    directions: Vec<BandValues>,
     /// What each ray brings over time, with all that it splits into. Shape (receiver, ray of a chunk, span), flat but for the last.
     by_ray: Vec<[f32; SPAN_COUNT]>,
     segments: u64,
@@ -113,15 +113,15 @@ struct Chunk {
 
 /// Sums over chunks at one receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Sums {
+struct ReceiverSums {
     energy: Vec<[f64; BAND_COUNT]>,
-    directions: Vec<Banded>,
+    directions: Vec<BandValues>,
     /// Sum and sum of squares of the chunks' energies.
     moments: [[f64; BAND_COUNT]; 2],
-    scatter: Scatter,
+    scatter: SpanVariance,
 }
 
-impl Sums {
+impl ReceiverSums {
     /// Standard error of the mean over the mean. Shape (band,).
     fn relative_error(&self, chunks: usize) -> [f64; BAND_COUNT] {
         let n = chunks as f64;
@@ -135,9 +135,9 @@ impl Sums {
     }
 }
 
-/// What the rays of a [`Trace`] have brought so far.
+/// What the rays of a [`TailTrace`] have brought so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Progress {
+pub(crate) struct TraceProgress {
     /// Those that are done.
     chunks: usize,
     /// Whether the error is small enough already.
@@ -146,17 +146,17 @@ pub(crate) struct Progress {
     escaped: u64,
     length_m: f64,
     /// Shape (receiver,).
-    sums: Vec<Sums>,
+    sums: Vec<ReceiverSums>,
 }
 
-impl Progress {
+impl TraceProgress {
     /// No ray yet.
     pub(crate) fn new(config: &AcousticConfig, receivers: usize) -> Self {
-        let sums = Sums {
+        let sums = ReceiverSums {
             energy: vec![[0.0; BAND_COUNT]; config.bin_count()],
             directions: vec![[0.0; BAND_COUNT]; times(config) * CELL_COUNT],
             moments: [[0.0; BAND_COUNT]; 2],
-            scatter: Scatter::default(),
+            scatter: SpanVariance::default(),
         };
         Self {
             chunks: 0,
@@ -176,7 +176,7 @@ impl Progress {
     /// Whether it can be that of one receiver: whatever a snapshot says, going on with it must not panic.
     pub(crate) fn is_sound(&self, config: &AcousticConfig) -> bool {
         let energy = |e: &f64| e.is_finite() && *e >= 0.0;
-        let sums = |sums: &Sums| {
+        let sums = |sums: &ReceiverSums| {
             let directions = sums.directions.iter().flatten();
             sums.energy.len() == config.bin_count()
                 && sums.directions.len() == times(config) * CELL_COUNT
@@ -206,11 +206,11 @@ fn times(config: &AcousticConfig) -> usize {
 }
 
 /// The tails from one source to some receivers, all by the same rays.
-pub(crate) struct Trace<'a> {
+pub(crate) struct TailTrace<'a> {
     scene: &'a AcousticScene,
     rays: &'a RayScene,
-    source: &'a Source,
-    listeners: Vec<Listener>,
+    source: &'a SoundSourcePose,
+    listeners: Vec<TailReceiver>,
     /// Rays.
     count: usize,
     key: RandomKey,
@@ -221,24 +221,24 @@ pub(crate) struct Trace<'a> {
 pub(crate) fn trace(
     scene: &AcousticScene,
     rays: &RayScene,
-    source: &Source,
+    source: &SoundSourcePose,
     receivers: &[Vec3],
     count: usize,
     key: RandomKey,
     threads: Threads,
-) -> Vec<Late> {
-    let trace = Trace::new(scene, rays, source, receivers, count, key, threads);
-    let mut progress = Progress::new(scene.config(), receivers.len());
-    trace.go_on(&mut progress, usize::MAX);
+) -> Vec<LateReverberation> {
+    let trace = TailTrace::new(scene, rays, source, receivers, count, key, threads);
+    let mut progress = TraceProgress::new(scene.config(), receivers.len());
+    trace.advance(&mut progress, usize::MAX);
     trace.end(progress)
 }
 
-impl<'a> Trace<'a> {
+impl<'a> TailTrace<'a> {
     /// Looks around from the receivers.
     pub(crate) fn new(
         scene: &'a AcousticScene,
         rays: &'a RayScene,
-        source: &'a Source,
+        source: &'a SoundSourcePose,
         receivers: &[Vec3],
         count: usize,
         key: RandomKey,
@@ -248,7 +248,7 @@ impl<'a> Trace<'a> {
         let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
         let listeners = threads.map(receivers.len(), |k| {
             let (radius_m, source) = (config.receiver_radius_m, source.position());
-            Listener::new(rays, source, receivers[k], radius_m, probes)
+            TailReceiver::new(rays, source, receivers[k], radius_m, probes)
         });
         Self {
             scene,
@@ -267,14 +267,14 @@ impl<'a> Trace<'a> {
     /// # Source
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
     /// chapter 5 (diffuse rain), here in the limit of a small receiver.
-    pub(crate) fn go_on(&self, progress: &mut Progress, most: usize) -> bool {
+    pub(crate) fn advance(&self, progress: &mut TraceProgress, most: usize) -> bool {
         let (config, key) = (self.scene.config(), self.key);
         let speed = config.air.speed_of_sound_m_s();
         let (bin_count, times) = (config.bin_count(), times(config));
         let hidden = self.listeners.iter().any(|listener| listener.hidden);
         let mut start = key.child("turn").stream();
         let (axis, pattern) = self.scene.effects().radiation(self.source, speed);
-        let walk = Walk {
+        let walk = RayTracer {
             scene: self.scene,
             rays: self.rays,
             source: self.source.position(),
@@ -290,7 +290,7 @@ impl<'a> Trace<'a> {
             bins_per_direction: bins_per_direction(config),
             times,
             roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
-            through: if config.transmission && hidden {
+            wall_chance: if config.transmission && hidden {
                 THROUGH
             } else {
                 0.0
@@ -299,7 +299,8 @@ impl<'a> Trace<'a> {
         let chunks = self.count.div_ceil(RAYS_PER_CHUNK);
         let more = (most / RAYS_PER_CHUNK).max(1);
         let end = chunks.min(progress.chunks.saturating_add(more));
-        let bytes = self.listeners.len() * (bin_count + times * CELL_COUNT) * size_of::<Banded>();
+        let bytes =
+            self.listeners.len() * (bin_count + times * CELL_COUNT) * size_of::<BandValues>();
         let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
         while progress.chunks < end && !progress.enough {
             let first = progress.chunks;
@@ -330,17 +331,17 @@ impl<'a> Trace<'a> {
     }
 
     /// What all rays so far tell. Shape (receiver,).
-    pub(crate) fn end(&self, progress: Progress) -> Vec<Late> {
+    pub(crate) fn end(&self, progress: TraceProgress) -> Vec<LateReverberation> {
         let config = self.scene.config();
         let speed = config.air.speed_of_sound_m_s();
         let chunks = progress.chunks;
         let traced = chunks.saturating_mul(RAYS_PER_CHUNK).min(self.count);
-        let statistics = TraceStatistics {
+        let statistics = RayStatistics {
             rays: traced as u64,
             segments: progress.segments,
             escaped: progress.escaped,
             mean_free_path_m: progress.length_m / (progress.segments.max(1)) as f64,
-            ..TraceStatistics::default()
+            ..RayStatistics::default()
         };
         let decay = self.scene.air_decay_per_m();
         let both = progress.sums.into_iter().zip(&self.listeners);
@@ -356,18 +357,18 @@ impl<'a> Trace<'a> {
                 }
             }
             let cells = sums.directions.chunks_exact(CELL_COUNT);
-            Late {
-                histogram: Histogram {
+            LateReverberation {
+                histogram: EnergyHistogram {
                     bin_s: config.bin_s,
                     bins,
                     bins_per_direction: bins_per_direction(config),
                     directions: cells
-                        .map(|cells| Directions {
+                        .map(|cells| DirectionalEnergy {
                             energy: cells.to_vec(),
                         })
                         .collect(),
                 },
-                statistics: TraceStatistics {
+                statistics: RayStatistics {
                     relative_error,
                     error_over_time,
                     receiver_radius_m: listener.largest_m(),
@@ -380,9 +381,9 @@ impl<'a> Trace<'a> {
     }
 }
 
-impl Sums {
+impl ReceiverSums {
     /// Adds what a chunk brought to receiver `receiver`.
-    fn add(&mut self, chunk: &Chunk, receiver: usize, bins: usize, times: usize) {
+    fn add(&mut self, chunk: &RayChunk, receiver: usize, bins: usize, times: usize) {
         let mut all = [0.0; BAND_COUNT];
         let energy = &chunk.energy[receiver * bins..(receiver + 1) * bins];
         for (sum, bin) in self.energy.iter_mut().zip(energy) {

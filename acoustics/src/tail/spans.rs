@@ -1,6 +1,6 @@
 //! Spans of time, each twice as long as the one before, for which the tail's error is told.
 
-use crate::echogram::{Histogram, SPAN_COUNT};
+use crate::echogram::{EnergyHistogram, SPAN_COUNT};
 use serde::{Deserialize, Serialize};
 
 /// Where the first span ends, s.
@@ -29,7 +29,7 @@ pub(super) fn of_bins(count: usize, bin_s: f64) -> Vec<usize> {
 }
 
 /// Energy in each span, all bands together. Shape (span,).
-pub(crate) fn energies(tail: &Histogram) -> [f64; SPAN_COUNT] {
+pub(crate) fn energies(tail: &EnergyHistogram) -> [f64; SPAN_COUNT] {
     let mut sums = [0.0; SPAN_COUNT];
     let spans = of_bins(tail.bins.len(), tail.bin_s);
     for (bin, span) in tail.bins.iter().zip(spans) {
@@ -40,12 +40,12 @@ pub(crate) fn energies(tail: &Histogram) -> [f64; SPAN_COUNT] {
 
 /// Sums over rays of what each brings in each span, of which the error of their mean follows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Scatter {
+pub(super) struct SpanVariance {
     sums: [f64; SPAN_COUNT],
     squares: [f64; SPAN_COUNT],
 }
 
-impl Scatter {
+impl SpanVariance {
     /// Whether these are sums of numbers from 0.
     pub(super) fn is_sound(&self) -> bool {
         let mut all = self.sums.iter().chain(&self.squares);
@@ -102,7 +102,7 @@ mod tests {
     /// Ten rays of 1 and ten of 3: mean 2, standard deviation 1 (with 19 for 20: 1.026), so that the error is 0.229 of 2.
     #[test]
     fn the_error_is_that_of_a_mean() {
-        let mut all = Scatter::default();
+        let mut all = SpanVariance::default();
         for energy in [1.0, 3.0] {
             let mut ray = [0.0; SPAN_COUNT];
             ray[2] = energy;

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 #![allow(dead_code, reason = "every test file uses another part of this")]
 
-use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, Source};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Echogram, SoundSourcePose};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
@@ -74,7 +74,7 @@ impl Hall {
     }
 
     pub(crate) fn echogram(&self, source: Vec3, receiver: Vec3, key: RandomKey) -> Echogram {
-        let source = Source::at(source);
+        let source = SoundSourcePose::at(source);
         let threads = Threads::exactly(2);
         self.scene
             .echogram(&self.rays, &source, receiver, key, threads)

@@ -179,7 +179,7 @@ pub(super) fn chance_db(band: usize, window: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_acoustics::Path;
+    use dwell_acoustics::PropagationPath;
     use glam::Vec3;
 
     /// Two echoes far enough apart not to interfere: the levels of their samples equal those of their energies.
@@ -196,7 +196,7 @@ mod tests {
             samples,
         };
         let speed = 343.2;
-        let path = |delay_s: f64, energy: f32| Path {
+        let path = |delay_s: f64, energy: f32| PropagationPath {
             planes: vec![],
             bends: Vec::new(),
             length_m: delay_s * speed,

@@ -7,7 +7,7 @@ use crate::bundle::{Bundle, SIDES};
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
-use dwell_acoustics::{AcousticConfig, AcousticScene, Air, Source};
+use dwell_acoustics::{AcousticConfig, AcousticScene, Air, SoundSourcePose};
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -192,7 +192,7 @@ impl RoomTwin {
             let echogram = scene
                 .echogram(
                     &self.rays,
-                    &Source::at(*source),
+                    &SoundSourcePose::at(*source),
                     *receiver,
                     key,
                     Threads::ONE,

@@ -1,6 +1,6 @@
 //! The sphere that a measured head resembles.
 
-use super::spectra::Waves;
+use super::spectra::ComplexExponentials;
 use crate::head::{Ear, sphere_response, woodworth_delay_s};
 use glam::DVec3;
 use realfft::num_complex::Complex;
@@ -20,7 +20,7 @@ const NEIGHBOURS: usize = 6;
 const CLOSE_COSINE: f64 = 0.984_807_753;
 
 /// What a sphere has in common with a head.
-pub(super) struct Fit {
+pub(super) struct SphereFit {
     pub(super) radius_m: f64,
     /// How much later all responses are than at the sphere, s.
     pub(super) late_s: f64,
@@ -29,9 +29,9 @@ pub(super) struct Fit {
 }
 
 /// Measured directions and how much they count.
-pub(super) struct Weighed(pub(super) Vec<(usize, f64)>);
+pub(super) struct WeightedDirections(pub(super) Vec<(usize, f64)>);
 
-impl Weighed {
+impl WeightedDirections {
     /// Those next to a direction, by one over the square of the distance; they sum to 1.
     pub(super) fn near(directions: &[DVec3], towards: DVec3) -> Self {
         let mut all: Vec<(usize, f64)> = directions
@@ -57,7 +57,7 @@ pub(super) fn cosine(direction: DVec3, ear: usize) -> f64 {
     direction.dot(Ear::BOTH[ear].axis_in_head().as_dvec3())
 }
 
-impl Fit {
+impl SphereFit {
     /// The radius and the common delay with the least squares between all delays and Woodworth's.
     pub(super) fn new(directions: &[DVec3], delay_s: &[[f64; 2]]) -> Self {
         let crowd = |d: &DVec3| {
@@ -108,7 +108,7 @@ impl Fit {
         rate_hz: f64,
         samples: usize,
     ) -> f64 {
-        let waves = Waves::new(&LEVELS_HZ, rate_hz, samples);
+        let waves = ComplexExponentials::new(&LEVELS_HZ, rate_hz, samples);
         let (mut sphere, mut head) = (0.0, 0.0);
         for ((direction, pair), weight) in directions.iter().zip(responses).zip(&self.weights) {
             for (ear, response) in pair.iter().enumerate() {
@@ -132,7 +132,7 @@ impl Fit {
         &self,
         directions: &[DVec3],
         delay_s: &[[f64; 2]],
-        near: &Weighed,
+        near: &WeightedDirections,
         towards: DVec3,
     ) -> [f64; 2] {
         [0, 1].map(|ear| {

@@ -10,13 +10,13 @@ const CELLS: usize = 16;
 /// Triangles that cover the sphere, each seen anticlockwise from outside.
 #[derive(Debug)]
 pub(super) struct Triangulation {
-    triangles: Vec<Triangle>,
+    triangles: Vec<HullTriangle>,
     /// A triangle near each cell of a cube around the sphere. Shape (side, cell, cell), flat.
     near: Vec<u32>,
 }
 
 #[derive(Debug)]
-struct Triangle {
+struct HullTriangle {
     corners: [u32; 3],
     /// Beyond the edge opposite to each corner.
     neighbours: [u32; 3],
@@ -26,7 +26,7 @@ struct Triangle {
 
 /// A face of the growing hull.
 #[derive(Clone, Copy)]
-struct Face {
+struct HullFace {
     corners: [u32; 3],
     neighbours: [u32; 3],
     alive: bool,
@@ -62,7 +62,7 @@ impl Triangulation {
                 return None;
             }
             let weighers = [b.cross(c), c.cross(a), a.cross(b)];
-            triangles.push(Triangle {
+            triangles.push(HullTriangle {
                 corners: face.corners,
                 neighbours: face.neighbours.map(|k| number[k as usize]),
                 weighers: weighers.map(|w| (w / volume).as_vec3()),
@@ -161,7 +161,7 @@ fn first_four(points: &[DVec3]) -> Option<[u32; 4]> {
 }
 
 /// The hull's faces, with dead ones between.
-fn hull(points: &[DVec3]) -> Option<Vec<Face>> {
+fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
     let [a, b, c, d] = first_four(points)?;
     // Turned so that d lies behind a, b, c.
     let (b, c) = if beyond(points, [a, b, c], d) > 0.0 {
@@ -169,7 +169,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<Face>> {
     } else {
         (b, c)
     };
-    let face = |corners, neighbours| Face {
+    let face = |corners, neighbours| HullFace {
         corners,
         neighbours,
         alive: true,
@@ -201,7 +201,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<Face>> {
         // The rim of what is visible, edge by edge: from u to v, with the face behind it.
         let mut rim = Vec::new();
         for k in &visible {
-            let Face {
+            let HullFace {
                 corners,
                 neighbours,
                 ..

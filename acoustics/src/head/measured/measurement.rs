@@ -35,7 +35,7 @@ pub(super) const SAME: f64 = 8.7e-4;
 ///   and delay by which the nearest measured directions differ from it.
 /// - **Above half of its sample rate** modulus and phase stay as they are at 0.46 of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Measurement {
+pub struct HrirMeasurement {
     /// Where the sources were in head space (forward -Z, left -X, up +Y), m. Shape (direction,); 4 to 20,000.
     pub sources: Vec<DVec3>,
     /// The responses, Pa. Shape (direction, ear, sample), flat; 16 to 65,536 samples.
@@ -47,7 +47,7 @@ pub struct Measurement {
 }
 
 /// What stands in a measurement of one direction.
-pub(super) struct Row<'a> {
+pub(super) struct MeasuredDirection<'a> {
     /// Unit length.
     pub(super) direction: DVec3,
     /// Shape (ear,).
@@ -64,7 +64,7 @@ fn refuse<T>(why: String) -> Result<T, AcousticsError> {
     Err(AcousticsError::Head(why))
 }
 
-impl Measurement {
+impl HrirMeasurement {
     fn samples(&self) -> usize {
         self.responses.len() / (2 * self.sources.len()).max(1)
     }
@@ -94,10 +94,10 @@ impl Measurement {
     }
 
     /// One row for each direction, in the order of the sources.
-    pub(super) fn rows(&self) -> Result<Vec<Row<'_>>, AcousticsError> {
+    pub(super) fn rows(&self) -> Result<Vec<MeasuredDirection<'_>>, AcousticsError> {
         self.check()?;
         let samples = self.samples();
-        let mut kept: Vec<(f64, Row<'_>)> = Vec::new();
+        let mut kept: Vec<(f64, MeasuredDirection<'_>)> = Vec::new();
         // By cells as wide as directions must be apart, so that only neighbouring cells need a look.
         let cell = |d: DVec3| (d / SAME).floor().as_i64vec3().to_array();
         let mut known: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
@@ -112,7 +112,7 @@ impl Measurement {
                 let delay = self.delays_samples.get(2 * k + ear);
                 delay.copied().unwrap_or(0.0) / self.rate_hz
             };
-            let row = Row {
+            let row = MeasuredDirection {
                 direction,
                 responses: [response(0), response(1)],
                 delay_s: [delay_s(0), delay_s(1)],
@@ -128,7 +128,7 @@ impl Measurement {
                     let place = kept[j].1.direction;
                     kept[j] = (
                         distance_m,
-                        Row {
+                        MeasuredDirection {
                             direction: place,
                             ..row
                         },

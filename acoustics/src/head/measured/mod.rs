@@ -11,15 +11,15 @@ mod onset;
 mod spectra;
 mod tables;
 
-pub use measurement::Measurement;
+pub use measurement::HrirMeasurement;
 pub(crate) use tables::MeasuredHead;
 
 use crate::error::AcousticsError;
-use fit::{Fit, Weighed};
+use fit::{SphereFit, WeightedDirections};
 use glam::DVec3;
 use hull::Triangulation;
 use measurement::SAME;
-use onset::Onsets;
+use onset::OnsetDetector;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ const FILLERS: usize = 240;
 
 /// What was found in a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct About {
+pub struct HeadSummary {
     /// Different directions.
     pub directions: usize,
     /// Directions that were filled in because nothing was measured within 25 degrees.
@@ -48,8 +48,8 @@ pub struct About {
 }
 
 /// A measurement ready to be tabulated at any rate.
-pub(crate) struct Responses {
-    about: About,
+pub(crate) struct HeadResponses {
+    about: HeadSummary,
     rate_hz: f64,
     samples: usize,
     /// Unit vectors in head space, first those that were measured, then those filled in.
@@ -63,11 +63,11 @@ pub(crate) struct Responses {
     delay_s: Vec<[f64; 2]>,
 }
 
-impl Responses {
-    pub(super) fn new(measurement: &Measurement) -> Result<Self, AcousticsError> {
+impl HeadResponses {
+    pub(super) fn new(measurement: &HrirMeasurement) -> Result<Self, AcousticsError> {
         let rows = measurement.rows()?;
         let rate_hz = measurement.rate_hz;
-        let mut onsets = Onsets::new(rate_hz);
+        let mut onsets = OnsetDetector::new(rate_hz);
         let mut responses = Vec::with_capacity(rows.len());
         let (mut begins_s, mut delay_s) = (Vec::new(), Vec::new());
         for row in &rows {
@@ -77,7 +77,7 @@ impl Responses {
             begins_s.push(begin_s);
         }
         let mut directions: Vec<DVec3> = rows.iter().map(|row| row.direction).collect();
-        let fit = Fit::new(&directions, &delay_s);
+        let fit = SphereFit::new(&directions, &delay_s);
         for late_s in delay_s.iter_mut().flatten() {
             *late_s -= fit.late_s;
         }
@@ -92,7 +92,7 @@ impl Responses {
             let direction = direction / direction.length();
             let nearest = directions[..measured].iter().map(|d| d.dot(direction));
             if nearest.fold(-1.0, f64::max) < GAP_COSINE {
-                let near = Weighed::near(&directions[..measured], direction);
+                let near = WeightedDirections::near(&directions[..measured], direction);
                 delay_s.push(fit.filled_delay_s(&directions, &delay_s, &near, direction));
                 directions.push(direction);
             }
@@ -105,7 +105,7 @@ impl Responses {
         };
         tracing::debug!(measured, triangles = mesh.len(), "measured head read");
         Ok(Self {
-            about: About {
+            about: HeadSummary {
                 directions: measured,
                 filled: directions.len() - measured,
                 radius_m: fit.radius_m,
@@ -122,7 +122,7 @@ impl Responses {
         })
     }
 
-    pub(super) fn about(&self) -> &About {
+    pub(super) fn about(&self) -> &HeadSummary {
         &self.about
     }
 }

@@ -12,12 +12,12 @@ const BAND_HZ: (f64, f64) = (100.0, 16_000.0);
 const FLOOR: f32 = 1e-4;
 
 /// Finds delays of responses at one sample rate.
-pub(super) struct Onsets {
+pub(super) struct OnsetDetector {
     fft: RealFft,
     rate_hz: f64,
 }
 
-impl Onsets {
+impl OnsetDetector {
     pub(super) fn new(rate_hz: f64) -> Self {
         let length = ((SPAN_S * rate_hz) as usize).next_power_of_two();
         Self {
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn delays_between_samples_are_found() {
         let rate_hz = 48_000.0;
-        let mut onsets = Onsets::new(rate_hz);
+        let mut onsets = OnsetDetector::new(rate_hz);
         let made = |delay: f64, gain: f64| {
             let mut response = vec![0.0_f32; 400];
             for (k, x) in response.iter_mut().enumerate() {

@@ -9,14 +9,14 @@ pub(super) fn modulus(value: Complex<f32>) -> f32 {
 }
 
 /// Waves at some frequencies, sample by sample.
-pub(super) struct Waves {
+pub(super) struct ComplexExponentials {
     /// Shape (sample, frequency), flat.
     cosine: Vec<f32>,
     sine: Vec<f32>,
     count: usize,
 }
 
-impl Waves {
+impl ComplexExponentials {
     /// For responses of up to `samples` at `rate_hz`.
     pub(super) fn new(frequencies_hz: &[f64], rate_hz: f64, samples: usize) -> Self {
         let count = frequencies_hz.len();

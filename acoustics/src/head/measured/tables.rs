@@ -1,10 +1,10 @@
 //! What is heard from any direction.
 
-use super::Responses;
-use super::fit::{Weighed, cosine, response_of, undelayed};
+use super::HeadResponses;
+use super::fit::{WeightedDirections, cosine, response_of, undelayed};
 use super::hull::Triangulation;
-use super::spectra::{Waves, modulus};
-use crate::bands::{self, BAND_COUNT, Banded};
+use super::spectra::{ComplexExponentials, modulus};
+use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::fft::RealFft;
 use crate::head::Ear;
 use glam::{DVec3, Vec3};
@@ -26,29 +26,29 @@ const HIGHEST: f64 = 0.46;
 pub(crate) struct MeasuredHead {
     mesh: Arc<Triangulation>,
     /// Shape (direction, ear).
-    rows: Vec<[Row; 2]>,
+    rows: Vec<[DirectionRow; 2]>,
 }
 
 /// What an ear hears from a direction of the table.
 #[derive(Debug)]
-struct Row {
+struct DirectionRow {
     /// Against the head's centre, s.
     delay_s: f64,
     /// What the delay leaves over. Shape (bin,).
     rest: Vec<Complex<f32>>,
     /// Gain of amplitude and whole delay (s) in each band.
-    gain: Banded,
-    late_s: Banded,
+    gain: BandValues,
+    late_s: BandValues,
 }
 
-impl Responses {
+impl HeadResponses {
     /// Tables for spectra of `bins` values up to half of `rate_hz`.
     pub(in crate::head) fn tables(&self, rate_hz: f64, bins: usize) -> MeasuredHead {
         let step_hz = 0.5 * rate_hz / (bins - 1).max(1) as f64;
         let frequencies: Vec<f64> = (0..bins).map(|bin| bin as f64 * step_hz).collect();
         let highest_hz = HIGHEST * self.rate_hz;
         let heard: Vec<f64> = frequencies.iter().map(|f| f.min(highest_hz)).collect();
-        let waves = Waves::new(&heard, self.rate_hz, self.samples);
+        let waves = ComplexExponentials::new(&heard, self.rate_hz, self.samples);
         let shares: Vec<[f64; BAND_COUNT]> = frequencies
             .iter()
             .map(|f| bands::power_shares(*f, 1.0))
@@ -56,7 +56,7 @@ impl Responses {
         let finish = |delay_s: f64, rest: Vec<Complex<f32>>, per_hz: f64| {
             let gain = band_gains(&rest, &shares);
             let late_s = band_delays(&rest, step_hz, delay_s, per_hz);
-            Row {
+            DirectionRow {
                 delay_s,
                 rest,
                 gain,
@@ -78,7 +78,7 @@ impl Responses {
         }
         let bass = bass(&rests, &frequencies);
         let common = common_phase(&rests, &bass);
-        let mut rows: Vec<[Row; 2]> = Vec::with_capacity(self.directions.len());
+        let mut rows: Vec<[DirectionRow; 2]> = Vec::with_capacity(self.directions.len());
         for ([left, right], delay_s) in rests.into_iter().zip(&self.delay_s) {
             let whole = |delay_s: f64, mut rest: Vec<Complex<f32>>| {
                 for (value, bass) in rest.iter_mut().zip(&bass) {
@@ -93,7 +93,7 @@ impl Responses {
         let radius_m = self.about.radius_m;
         let none = vec![0.0; bins];
         for (k, direction) in self.directions.iter().enumerate().skip(measured) {
-            let near = Weighed::near(&self.directions[..measured], *direction);
+            let near = WeightedDirections::near(&self.directions[..measured], *direction);
             let pair = [0, 1].map(|ear| {
                 let like = |k: &usize| &rows[*k][ear].rest;
                 let rest = filled(
@@ -120,7 +120,7 @@ impl Responses {
 /// The rest of a sphere towards a direction, with the levels by which those nearby differ from theirs.
 fn filled<'a>(
     directions: &[DVec3],
-    near: &Weighed,
+    near: &WeightedDirections,
     rest_of: impl Fn(&usize) -> &'a Vec<Complex<f32>>,
     towards: DVec3,
     ear: usize,
@@ -235,7 +235,7 @@ fn without_noise(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64],
 }
 
 /// The root of the mean energy in each band.
-fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> Banded {
+fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> BandValues {
     std::array::from_fn(|band| {
         let (mut sum, mut all) = (0.0, 0.0);
         for (value, share) in rest.iter().zip(shares) {
@@ -252,7 +252,7 @@ fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> Banded {
 
 /// The delay of a wave at each band's centre, s: that of the whole, and that of the phase of the rest; in the bass, where the phase
 /// is the loudspeaker's, by its slope against that (rad/Hz).
-fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -> Banded {
+fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -> BandValues {
     // The phase without jumps, from where it is a head's on.
     let first = (BASS_HZ.1 / step_hz).ceil() as usize;
     let mut phase = vec![0.0; first.min(rest.len())];
@@ -281,7 +281,7 @@ fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -
 
 impl MeasuredHead {
     /// The rows around a direction of an ear, and their weights.
-    fn around(&self, ear: Ear, towards: Vec3) -> ([&Row; 3], [f32; 3]) {
+    fn around(&self, ear: Ear, towards: Vec3) -> ([&DirectionRow; 3], [f32; 3]) {
         let (corners, weights) = self.mesh.locate(towards);
         let ear = match ear {
             Ear::Left => 0,
@@ -291,9 +291,9 @@ impl MeasuredHead {
     }
 
     /// Gain of amplitude and delay against the head's centre (s) in each band, from `towards` in head space.
-    pub(in crate::head) fn banded(&self, ear: Ear, towards: Vec3) -> (Banded, Banded) {
+    pub(in crate::head) fn banded(&self, ear: Ear, towards: Vec3) -> (BandValues, BandValues) {
         let ([a, b, c], [u, v, w]) = self.around(ear, towards);
-        let mix = |of: fn(&Row) -> &Banded| {
+        let mix = |of: fn(&DirectionRow) -> &BandValues| {
             let (a, b, c) = (of(a), of(b), of(c));
             std::array::from_fn(|band| u * a[band] + v * b[band] + w * c[band])
         };

@@ -5,7 +5,7 @@ use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
 use dwell_acoustics::metrics::{self, BandMetrics, Metrics};
-use dwell_acoustics::{ActiveSource, Receiver, Source, Stream, StreamConfig, signals};
+use dwell_acoustics::{ActiveSource, Receiver, SoundSourcePose, Stream, StreamConfig, signals};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -34,7 +34,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
                 let receiver = Receiver::binaural(Pose::from_position(ear));
                 scene.impulse_response(
                     &rays,
-                    &Source::at(*source),
+                    &SoundSourcePose::at(*source),
                     &receiver,
                     RandomKey::root(k as u64),
                     threads,
@@ -176,7 +176,7 @@ fn wanted(
 ) -> Result<Metrics, WorldError> {
     let (position, head) = figure.place(BLOCKS - 1);
     let scene = engines.acoustics("reference", 16_000)?;
-    let source = Source::at(position);
+    let source = SoundSourcePose::at(position);
     let echogram = scene.echogram(rays, &source, head.position, RandomKey::root(1), threads)?;
     Ok(metrics::of_echogram(&echogram))
 }

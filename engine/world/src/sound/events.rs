@@ -4,7 +4,8 @@ use super::Sound;
 use super::clear::clear_of_surfaces;
 use super::gait::{Stride, mass_kg};
 use dwell_acoustics::contact::{
-    ContactSound, CreakSound, FootstepSound, ImpactSound, Partner, RubKind, RubSound,
+    ContactPartner, ContactSound, CreakSound, FootstepSound, FrictionSound, FrictionSoundKind,
+    ImpactSound,
 };
 use dwell_physics::{ContactEntity, ContactEvent, ContactKind, ContactPhase};
 use dwell_scene::bvh::{Ray, RayMask};
@@ -147,13 +148,16 @@ impl Sound {
         });
         for event in hardest(rubs, MOST_RUBS) {
             let (kind, speed_m_s) = match event.kind {
-                ContactKind::Roll => (RubKind::Roll, event.rolling_speed_m_s),
-                _ => (RubKind::Slide, event.relative_tangential_speed_m_s),
+                ContactKind::Roll => (FrictionSoundKind::Roll, event.rolling_speed_m_s),
+                _ => (
+                    FrictionSoundKind::Slide,
+                    event.relative_tangential_speed_m_s,
+                ),
             };
             let [a, b] = [event.a, event.b].map(number);
             let place = step.key.child("rub").child(a).child(b);
             // The mean over the step: what touched for half of it sounds half as loud as what touched all along.
-            let sound = RubSound {
+            let sound = FrictionSound {
                 position: event.position,
                 kind,
                 force_n: event.impulse_n_s / step.length_s as f32,
@@ -182,7 +186,7 @@ impl Sound {
         let leaf = part(house, state, of.child);
         let frame = match of.parent {
             Some(parent) => part(house, state, parent),
-            None => Partner::leaf("wood", FRAME_KG_M2),
+            None => ContactPartner::leaf("wood", FRAME_KG_M2),
         };
         let parent = of
             .parent
@@ -201,9 +205,9 @@ impl Sound {
                 partners: partners.clone(),
                 place,
             }),
-            JointKind::Slide => ContactSound::Rub(RubSound {
+            JointKind::Slide => ContactSound::Rub(FrictionSound {
                 position: middle,
-                kind: RubKind::Slide,
+                kind: FrictionSoundKind::Slide,
                 force_n: friction / library().pair("wood", "wood").friction.max(0.1),
                 speed_m_s: speed,
                 length_s: 2.0 * step.length_s as f32,
@@ -240,7 +244,7 @@ impl Sound {
             key: place.child(label).child(self.blocks),
         };
         let blow = slam(impulse_n_s, speed_m_s, partners, "slam");
-        let tongue = Partner::body("steel", LATCH_KG, LATCH_M);
+        let tongue = ContactPartner::body("steel", LATCH_KG, LATCH_M);
         let latch = slam(LATCH_KG * LATCH_M_S, LATCH_M_S, [tongue, leaf], "latch");
         self.add_blow(step, 0.0, blow);
         if of.kind == JointKind::Hinge && of.parent.is_none() {
@@ -289,9 +293,9 @@ impl Sound {
                 ),
                 Stride::Wheels { speed_m_s } => (
                     0.0,
-                    ContactSound::Rub(RubSound {
+                    ContactSound::Rub(FrictionSound {
                         position: foot,
-                        kind: RubKind::Roll,
+                        kind: FrictionSoundKind::Roll,
                         force_n: mass_kg(agent.body.height_m) * 9.8,
                         speed_m_s,
                         length_s: 2.0 * step.length_s as f32,
@@ -333,7 +337,7 @@ fn number(toucher: ContactEntity) -> u64 {
     }
 }
 
-fn partners(step: &Step<'_>, event: &ContactEvent) -> [Partner; 2] {
+fn partners(step: &Step<'_>, event: &ContactEvent) -> [ContactPartner; 2] {
     let partner = |toucher, substance: &str| match toucher {
         ContactEntity::Structure(id) => {
             let floor = matches!(
@@ -344,7 +348,7 @@ fn partners(step: &Step<'_>, event: &ContactEvent) -> [Partner; 2] {
         }
         ContactEntity::Part(id) => {
             let size = part_size_m(step.house, id);
-            Partner::body(substance, part_mass_kg(step.house, step.state, id), size)
+            ContactPartner::body(substance, part_mass_kg(step.house, step.state, id), size)
         }
         ContactEntity::Agent(id) => agent(step.state, id, substance),
     };
@@ -354,13 +358,13 @@ fn partners(step: &Step<'_>, event: &ContactEvent) -> [Partner; 2] {
     ]
 }
 
-fn leaf(substance: &str, floor: bool) -> Partner {
+fn leaf(substance: &str, floor: bool) -> ContactPartner {
     let own = library().get_or_default(substance).surface_density_kg_m2;
     let least = if floor { FLOOR_KG_M2 } else { WALL_KG_M2 };
-    Partner::leaf(substance, own.max(least))
+    ContactPartner::leaf(substance, own.max(least))
 }
 
-fn agent(state: &State, id: AgentId, substance: &str) -> Partner {
+fn agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {
     let height_m = state
         .agents
         .get(id)
@@ -368,15 +372,15 @@ fn agent(state: &State, id: AgentId, substance: &str) -> Partner {
     agent_partner(height_m, substance)
 }
 
-fn agent_partner(height_m: f32, substance: &str) -> Partner {
-    Partner::body(substance, mass_kg(height_m), [0.4, 0.25, height_m])
+fn agent_partner(height_m: f32, substance: &str) -> ContactPartner {
+    ContactPartner::body(substance, mass_kg(height_m), [0.4, 0.25, height_m])
 }
 
 /// A part with the substance of its first material.
-fn part(house: &House, state: &State, id: PartId) -> Partner {
+fn part(house: &House, state: &State, id: PartId) -> ContactPartner {
     let material = house.parts[id].materials.first();
     let substance = material.map_or("wood", |id| house.materials[*id].substance.as_str());
-    Partner::body(
+    ContactPartner::body(
         substance,
         part_mass_kg(house, state, id),
         part_size_m(house, id),
@@ -409,7 +413,7 @@ fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
 }
 
 /// What is under a foot.
-fn floor_at(step: &Step<'_>, foot: Vec3) -> Option<Partner> {
+fn floor_at(step: &Step<'_>, foot: Vec3) -> Option<ContactPartner> {
     let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;
     let material = step.rays.surface(&hit).material;

@@ -1,0 +1,198 @@
+//! Ways around one edge and around two.
+
+use super::insertion_loss;
+use crate::bands::BAND_COUNT;
+use crate::planes::DiffractionEdge;
+use glam::{DVec2, DVec3, Vec3};
+
+/// Two edges whose directions differ by less bend sound like parallel ones: the cosine of 11 degrees.
+const PARALLEL: f64 = 0.98;
+
+/// What still counts as lying in a face, as a difference of cosines.
+const AT_FACE: f64 = 0.01;
+
+/// An edge with axes of its own.
+pub(super) struct EdgeFrame {
+    start: DVec3,
+    along: DVec3,
+    length_m: f64,
+    /// Square to the edge: away from matter, and beside that.
+    outward: DVec3,
+    beside: DVec3,
+    /// Cosine of half the angle of the air around it.
+    open_cosine: f64,
+}
+
+/// A point as an edge sees it.
+#[derive(Clone, Copy)]
+struct EdgeCoordinates {
+    /// Along the edge from its start, m.
+    along_m: f64,
+    /// Outward and beside, m.
+    across: DVec2,
+}
+
+/// The shortest way from one point to another over the line of an edge.
+pub(super) struct EdgePath {
+    /// Where it touches the edge, m.
+    pub(super) at: DVec3,
+    /// How much longer it is than the straight line, m.
+    pub(super) detour_m: f64,
+    /// Whether the straight line passes behind the edge, through what it belongs to.
+    pub(super) hidden: bool,
+    /// How much the edge stands in the way of a line in sight: 1 where the way around it goes straight on, 0 where it turns back.
+    pub(super) facing: f64,
+    /// Whether the points are in the air around the edge: the first and the second.
+    pub(super) open: [bool; 2],
+    /// Detours over the edge's ends against that over `at`, m; negative for an end that the way does not reach.
+    pub(super) ends_m: [f64; 2],
+}
+
+/// The shortest way over two edges.
+pub(super) struct DoubleEdgePath {
+    pub(super) at: [DVec3; 2],
+    pub(super) detour_m: f64,
+    /// Detours at each edge alone, m.
+    local_m: [f64; 2],
+    ends_m: [f64; 2],
+}
+
+impl EdgeFrame {
+    pub(super) fn new(edge: &DiffractionEdge) -> Self {
+        let [a, b] = edge.ends.map(Vec3::as_dvec3);
+        let along = (b - a).normalize_or_zero();
+        let outward = edge.outward.as_dvec3();
+        Self {
+            start: a,
+            along,
+            length_m: a.distance(b),
+            outward,
+            beside: along.cross(outward),
+            open_cosine: libm::cos(0.5 * f64::from(edge.open_rad)),
+        }
+    }
+
+    fn see(&self, point: DVec3) -> EdgeCoordinates {
+        let from_start = point - self.start;
+        EdgeCoordinates {
+            along_m: from_start.dot(self.along),
+            across: DVec2::new(from_start.dot(self.outward), from_start.dot(self.beside)),
+        }
+    }
+
+    fn at(&self, along_m: f64) -> DVec3 {
+        self.start + self.along * along_m.clamp(0.0, self.length_m)
+    }
+
+    /// A point on the line of the edge, or on it.
+    fn on_line(&self, along_m: f64) -> DVec3 {
+        self.start + self.along * along_m
+    }
+
+    pub(super) fn is_parallel(&self, other: &Self) -> bool {
+        self.along.dot(other.along).abs() > PARALLEL
+    }
+
+    pub(super) fn along(&self) -> DVec3 {
+        self.along
+    }
+
+    pub(super) fn outward(&self) -> DVec3 {
+        self.outward
+    }
+
+    /// The way from `a` to `b` over this edge. Points on its line have none.
+    pub(super) fn bend(&self, a: DVec3, b: DVec3) -> Option<EdgePath> {
+        let (p, q) = (self.see(a), self.see(b));
+        let (r, s) = (p.across.length(), q.across.length());
+        if r < 1e-6 || s < 1e-6 {
+            return None;
+        }
+        let along_m = p.along_m + (q.along_m - p.along_m) * (r / (r + s));
+        let straight_m = a.distance(b);
+        let over = |point: DVec3| a.distance(point) + point.distance(b);
+        let least_m = over(self.on_line(along_m));
+        // Faces themselves count as air: waves run along them.
+        let open =
+            |seen: &EdgeCoordinates, far: f64| seen.across.x >= far * (self.open_cosine - AT_FACE);
+        // Where the straight line crosses the plane through the edge that points outward: behind the edge or before it.
+        let crossing = p.across.x * q.across.y.abs() + q.across.x * p.across.y.abs();
+        let ends = [
+            (self.start, along_m),
+            (self.on_line(self.length_m), self.length_m - along_m),
+        ];
+        Some(EdgePath {
+            at: self.at(along_m),
+            detour_m: (least_m - straight_m).max(0.0),
+            hidden: p.across.y * q.across.y < 0.0 && crossing < 0.0,
+            facing: (-p.across.dot(q.across) / (r * s)).max(0.0),
+            open: [open(&p, r), open(&q, s)],
+            ends_m: ends.map(|(end, before_m)| {
+                let detour_m = (over(end) - least_m).max(0.0);
+                if before_m < 0.0 { -detour_m } else { detour_m }
+            }),
+        })
+    }
+
+    /// The way from `a` over this edge and then over `other`, which is parallel to it, to `b`; `None` where it does not bend
+    /// around matter at both.
+    pub(super) fn bend_twice(&self, other: &Self, a: DVec3, b: DVec3) -> Option<DoubleEdgePath> {
+        let (p, q) = (self.see(a), self.see(b));
+        let there = self.see(other.start);
+        let (r, m, s) = (
+            p.across.length(),
+            there.across.length(),
+            q.across.distance(there.across),
+        );
+        if r < 1e-6 || m < 1e-3 || s < 1e-6 {
+            return None;
+        }
+        let rise = (q.along_m - p.along_m) / (r + m + s);
+        let first = self.at(p.along_m + rise * r);
+        let on_other = self.on_line(p.along_m + rise * (r + m));
+        let second = other.at(other.see(on_other).along_m);
+        let (here, then) = (self.bend(a, second)?, other.bend(first, b)?);
+        if !(here.hidden && then.hidden && here.open == [true; 2] && then.open == [true; 2]) {
+            return None;
+        }
+        let length_m = a.distance(first) + first.distance(second) + second.distance(b);
+        Some(DoubleEdgePath {
+            at: [first, second],
+            detour_m: (length_m - a.distance(b)).max(0.0),
+            local_m: [here.detour_m, then.detour_m],
+            ends_m: [0, 1].map(|k| here.ends_m[k].min(then.ends_m[k])),
+        })
+    }
+}
+
+impl EdgePath {
+    /// What an edge of this length stands for against an endless one. `n_per_m`: Fresnel number of a metre.
+    pub(super) fn reach(&self, n_per_m: f64) -> f64 {
+        reach(self.ends_m, n_per_m)
+    }
+
+    /// The fraction of a free path's energy that gets around. Shape (band,).
+    pub(super) fn passed(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
+        n_per_m.map(|n_per_m| insertion_loss::passed(n_per_m * self.detour_m) * self.reach(n_per_m))
+    }
+}
+
+impl DoubleEdgePath {
+    /// As [`EdgePath::passed`].
+    pub(super) fn passed(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
+        let apart_m = self.at[0].distance(self.at[1]);
+        n_per_m.map(|n_per_m| {
+            let n = n_per_m * self.detour_m;
+            let bends = self.local_m.map(|detour_m| n_per_m * detour_m);
+            let thick = insertion_loss::second_edge(n, 2.0 / n_per_m, apart_m, bends);
+            insertion_loss::passed(n) * thick * reach(self.ends_m, n_per_m)
+        })
+    }
+}
+
+/// An edge's end is to the way around it as a screen: where the way passes far from the end, nothing is lost. The power makes the
+/// four sides of a plate that is small against the wave let all of it pass together.
+fn reach(ends_m: [f64; 2], n_per_m: f64) -> f64 {
+    let [a, b] = ends_m.map(|end_m| insertion_loss::passed(-end_m * n_per_m));
+    libm::pow(a * b, 0.7)
+}

@@ -1,0 +1,128 @@
+//! Heads in a scene, and ears on receivers.
+
+use super::{Ear, Head, HeadId, HeadTables, SphericalHead};
+use crate::bands::BandValues;
+use crate::config::AcousticConfig;
+use crate::error::AcousticsError;
+use crate::receiver::{Receiver, ReceiverKind};
+use crate::synthesis::minimum_phase::PathFilters;
+use glam::{Quat, Vec3};
+use realfft::num_complex::Complex;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The heads of a scene, ready for its sample rate and its air.
+#[derive(Clone, Debug)]
+pub(crate) struct HeadSet {
+    rate_hz: f64,
+    speed_m_s: f64,
+    bins: usize,
+    built_in: HeadTables,
+    others: BTreeMap<HeadId, (Head, HeadTables)>,
+}
+
+impl HeadSet {
+    /// The built-in head alone.
+    pub(crate) fn new(config: &AcousticConfig) -> Self {
+        let rate_hz = f64::from(config.rate_hz);
+        let speed_m_s = config.air.speed_of_sound_m_s();
+        Self::with_bins(
+            config.head_radius_m,
+            speed_m_s,
+            rate_hz,
+            PathFilters::bins_at(rate_hz),
+        )
+    }
+
+    /// A sphere alone, for spectra of `bins` values.
+    pub(crate) fn with_bins(radius_m: f64, speed_m_s: f64, rate_hz: f64, bins: usize) -> Self {
+        let sphere = SphericalHead::new(radius_m, speed_m_s, rate_hz, bins);
+        Self {
+            rate_hz,
+            speed_m_s,
+            bins,
+            built_in: HeadTables::Sphere(Arc::new(sphere)),
+            others: BTreeMap::new(),
+        }
+    }
+
+    /// One more head that receivers may wear.
+    pub(crate) fn add(&mut self, head: &Head) {
+        if !self.knows(head.id()) {
+            let tables = head.tables(self.speed_m_s, self.rate_hz, self.bins);
+            self.others.insert(head.id(), (head.clone(), tables));
+        }
+    }
+
+    /// Whether a head is here.
+    pub(crate) fn knows(&self, id: HeadId) -> bool {
+        self.others.contains_key(&id)
+    }
+
+    /// The same heads in other air.
+    pub(crate) fn in_air(&self, config: &AcousticConfig) -> Self {
+        let mut heads = Self::new(config);
+        for (head, _) in self.others.values() {
+            heads.add(head);
+        }
+        heads
+    }
+
+    /// Whether a receiver's head is here.
+    pub(crate) fn check(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
+        match receiver.kind {
+            ReceiverKind::Head(id) if !self.knows(id) => {
+                Err(AcousticsError::UnknownHead { id: id.0 })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The ears of a head that is turned by `rotation`: left, right. `None`: the built-in head, as for one that is not here.
+    pub(crate) fn ears(&self, id: Option<HeadId>, rotation: Quat) -> [PlacedEar; 2] {
+        let known = id.and_then(|id| self.others.get(&id));
+        let head = known.map_or(&self.built_in, |(_, tables)| tables);
+        Ear::BOTH.map(|ear| PlacedEar {
+            ear,
+            axis: rotation * ear.axis_in_head(),
+            head_from_world: rotation.inverse(),
+            head: head.clone(),
+        })
+    }
+}
+
+/// One ear of a head in the world.
+#[derive(Clone, Debug)]
+pub(crate) struct PlacedEar {
+    ear: Ear,
+    /// Where it points, world.
+    axis: Vec3,
+    head_from_world: Quat,
+    head: HeadTables,
+}
+
+impl PlacedEar {
+    /// Gain of amplitude and delay against the head's centre (s) in each band, of a wave from `towards`, unit length, world.
+    pub(crate) fn banded(&self, towards: Vec3) -> (BandValues, BandValues) {
+        match &self.head {
+            HeadTables::Sphere(sphere) => sphere.banded(f64::from(self.axis.dot(towards))),
+            HeadTables::Measured(measured) => {
+                measured.banded(self.ear, self.head_from_world * towards)
+            }
+        }
+    }
+
+    /// Multiplies a path's spectrum by what the delay leaves over, and returns the delay against the head's centre, s.
+    pub(crate) fn shade(&self, towards: Vec3, spectrum: &mut [Complex<f32>]) -> f64 {
+        match &self.head {
+            HeadTables::Sphere(sphere) => {
+                let cosine = f64::from(self.axis.dot(towards));
+                sphere.shade(cosine, spectrum);
+                sphere.delay_s(cosine)
+            }
+            HeadTables::Measured(measured) => {
+                measured.shade(self.ear, self.head_from_world * towards, spectrum)
+            }
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Early sound: the direct path or the ways around what hides it, and mirror images up to a low order, each checked against the
+//! geometry.
+
+mod direct;
+mod early_paths;
+mod sequences;
+mod visibility;
+
+use crate::bands::BAND_COUNT;
+use crate::diffraction;
+use crate::echogram::PropagationPath;
+use crate::receiver::SoundSourcePose;
+use crate::scene::AcousticScene;
+use dwell_scene::rays::RayScene;
+pub use early_paths::EarlyPath;
+use glam::{DVec3, Vec3};
+use visibility::ImageValidator;
+
+/// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.
+pub const NEAREST_M: f64 = 0.1;
+
+/// All audible paths of order 0 to the configured order, by length.
+pub(crate) fn find(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: &SoundSourcePose,
+    receiver: Vec3,
+) -> Vec<PropagationPath> {
+    let mut paths = find_omnidirectional(scene, rays, source.position(), receiver);
+    radiate(scene, source, &mut paths);
+    paths
+}
+
+/// Gives paths of a source that radiates equally in all directions what it radiates into each.
+fn radiate(scene: &AcousticScene, source: &SoundSourcePose, paths: &mut Vec<PropagationPath>) {
+    let speed_m_s = scene.config().air.speed_of_sound_m_s();
+    let (axis, pattern) = scene.effects().radiation(source, speed_m_s);
+    if !pattern.is_omni() {
+        for path in paths.iter_mut() {
+            let gain = pattern.gain(axis.dot(path.departure));
+            path.inverted = gain.iter().sum::<f32>() < 0.0;
+            for (e, g) in path.energy.iter_mut().zip(gain) {
+                *e *= g * g;
+            }
+        }
+        paths.retain(|path| path.energy.iter().any(|e| *e > 0.0));
+    }
+}
+
+/// The same for a source that radiates equally in all directions.
+fn find_omnidirectional(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+) -> Vec<PropagationPath> {
+    let validator = ImageValidator::new(scene, rays, source, receiver);
+    let mut paths: Vec<(PropagationPath, DVec3)> = Vec::new();
+    for path in straight(scene, rays, source, receiver) {
+        let from = path.bends.first().copied().unwrap_or(source);
+        paths.push((path, from.as_dvec3()));
+    }
+    sequences::for_each(scene, rays, source, receiver, |planes, images| {
+        if let Some(path) = validator.path(planes, images) {
+            paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
+        }
+    });
+    paths.sort_by(|(a, _), (b, _)| {
+        let order = a.length_m.total_cmp(&b.length_m);
+        order.then_with(|| a.planes.cmp(&b.planes))
+    });
+    // Two orders of the same mirrors have one image; both pass the check only where the path meets the very edge.
+    let mut kept: Vec<(PropagationPath, DVec3)> = Vec::with_capacity(paths.len());
+    for (path, image) in paths {
+        let same = |other: &(PropagationPath, DVec3)| {
+            other.0.order() == path.order() && other.1.distance_squared(image) < 1e-10
+        };
+        let near = kept.iter().rev();
+        let mut near = near.take_while(|other| path.length_m - other.0.length_m < 1e-4);
+        if !near.any(same) {
+            kept.push((path, image));
+        }
+    }
+    kept.into_iter().map(|(path, _)| path).collect()
+}
+
+/// The straight way, in sight or through walls, and where it is not in sight, those around what hides it.
+fn straight(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+) -> Vec<PropagationPath> {
+    let mut direct = direct::direct(scene, rays, source, receiver);
+    let mut paths = Vec::new();
+    if scene.config().diffraction {
+        match &mut direct {
+            Some(path) if path.walls == 0 => {
+                let kept = diffraction::in_sight(scene, rays, source, receiver);
+                for (e, kept) in path.energy.iter_mut().zip(kept) {
+                    *e *= kept as f32;
+                }
+            }
+            _ => {
+                paths = diffraction::around_edges(scene, rays, source, receiver);
+                if let Some(wall_chance) = &direct {
+                    subtract_transmitted(scene, wall_chance, &mut paths);
+                }
+            }
+        }
+    }
+    paths.extend(direct);
+    paths
+}
+
+/// Takes what comes `wall_chance` a screen off the paths around it: it is not missing behind it (Babinet's principle).
+fn subtract_transmitted(
+    scene: &AcousticScene,
+    wall_chance: &PropagationPath,
+    around: &mut Vec<PropagationPath>,
+) {
+    let whole = spread(scene, wall_chance.length_m);
+    let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
+        // Over a long way air leaves nothing at all of high notes.
+        let passed = f64::from(wall_chance.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
+        let left = 1.0 - passed.min(1.0).sqrt();
+        (left * left) as f32
+    });
+    for path in around.iter_mut() {
+        for (e, kept) in path.energy.iter_mut().zip(kept) {
+            *e *= kept;
+        }
+    }
+    around.retain(|path| path.energy.iter().any(|e| *e > 0.0));
+}
+
+/// What becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
+/// reflections that are still there.
+pub(crate) fn follow(
+    scene: &AcousticScene,
+    rays: &RayScene,
+    source: Vec3,
+    receiver: Vec3,
+    known: &[PropagationPath],
+) -> Vec<PropagationPath> {
+    let validator = ImageValidator::new(scene, rays, source, receiver);
+    let mut paths = straight(scene, rays, source, receiver);
+    let mut images = Vec::new();
+    for path in known.iter().filter(|path| !path.planes.is_empty()) {
+        if sequences::mirror(scene.planes(), source.as_dvec3(), &path.planes, &mut images) {
+            paths.extend(validator.path(&path.planes, &images));
+        }
+    }
+    radiate(scene, &SoundSourcePose::at(source), &mut paths);
+    paths
+}
+
+/// Energy of a free path: 1/d² and what air leaves of it.
+pub(crate) fn spread(scene: &AcousticScene, length_m: f64) -> [f64; BAND_COUNT] {
+    let distance = length_m.max(NEAREST_M);
+    scene
+        .air_decay_per_m()
+        .map(|m| libm::exp(-m * length_m) / (distance * distance))
+}

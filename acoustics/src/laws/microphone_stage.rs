@@ -1,0 +1,112 @@
+//! What a law of microphones does to pressure, block by block.
+
+use crate::head::HeadSet;
+use crate::receiver::Receiver;
+use dwell_scene::random::RandomKey;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Who listens, and where.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StageContext<'a> {
+    pub(crate) receiver: &'a Receiver,
+    /// What heads do to sound, if the receiver is one.
+    pub(crate) heads: &'a HeadSet,
+    /// Of sound, m/s.
+    pub(crate) speed_m_s: f64,
+    /// What is random in the place, for all who listen there.
+    pub(crate) room: RandomKey,
+    /// What is random in the microphones themselves.
+    pub(crate) own: RandomKey,
+}
+
+/// A block of pressure and where it stands.
+#[derive(Debug)]
+pub(crate) struct SampleBlock<'a> {
+    pub(crate) listener: &'a StageContext<'a>,
+    /// The pressure, Pa. Shape (channel, sample), one channel after the other.
+    pub(crate) samples: &'a mut [f32],
+    /// How many channels there are, at least 1.
+    pub(crate) channels: usize,
+    /// What is random in this block for this law.
+    pub(crate) key: RandomKey,
+    /// Whether this is all there is: nothing comes after it but silence. Else what comes is not known yet.
+    pub(crate) whole: bool,
+}
+
+impl SampleBlock<'_> {
+    /// Samples of a channel.
+    pub(crate) fn len(&self) -> usize {
+        self.samples.len() / self.channels.max(1)
+    }
+
+    /// The channels, one after the other.
+    pub(crate) fn channels_mut(&mut self) -> std::slice::ChunksExactMut<'_, f32> {
+        let length = self.len().max(1);
+        self.samples.chunks_exact_mut(length)
+    }
+}
+
+/// What a stage must remember to go on bit for bit.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StageMemory {
+    /// Few numbers, by the stage's own order.
+    pub(crate) numbers: Vec<f64>,
+    /// Samples of each channel, the newest last. Shape (channel, any).
+    pub(crate) samples: Vec<Vec<f32>>,
+}
+
+/// The weight of what begins over `length` samples: a raised cosine, so that neither level nor slope has a step.
+pub(crate) fn fade(length: usize) -> impl Iterator<Item = f32> {
+    (1..=length).map(move |k| {
+        let turn = std::f64::consts::PI * k as f64 / length as f64;
+        (0.5 - 0.5 * libm::cos(turn)) as f32
+    })
+}
+
+/// Fades all samples in.
+pub(crate) fn rise(samples: &mut [f32]) {
+    let weights = fade(samples.len());
+    for (x, weight) in samples.iter_mut().zip(weights) {
+        *x *= weight;
+    }
+}
+
+/// One installed law of microphones at work.
+pub(crate) trait MicrophoneStage: fmt::Debug + Send + Sync {
+    /// Changes a block.
+    fn hear(&mut self, block: &mut SampleBlock<'_>);
+
+    /// Goes on from what another stage of the same law remembered, possibly with other numbers.
+    fn recall(&mut self, _memory: &StageMemory) {}
+
+    /// What it remembers.
+    fn memory(&self) -> StageMemory {
+        StageMemory::default()
+    }
+
+    /// How many samples what it gives out is longer than what it is given, for `length` samples.
+    fn longer(&self, _length: usize) -> usize {
+        0
+    }
+
+    /// Whether the first block it hears must fade in when it is put to work amid sound: what comes late would begin with a step.
+    fn starts_softly(&self) -> bool {
+        false
+    }
+}
+
+/// A stage without memory.
+pub(crate) struct StatelessStage<F>(pub(crate) F);
+
+impl<F> fmt::Debug for StatelessStage<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Each")
+    }
+}
+
+impl<F: Fn(&mut SampleBlock<'_>) + Send + Sync> MicrophoneStage for StatelessStage<F> {
+    fn hear(&mut self, block: &mut SampleBlock<'_>) {
+        (self.0)(block);
+    }
+}

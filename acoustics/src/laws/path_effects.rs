@@ -1,0 +1,159 @@
+//! What laws change of the way from a source to a microphone.
+
+use crate::air::Air;
+use crate::bands::{self, BAND_COUNT, BandValues};
+use crate::config::AcousticConfig;
+use crate::directivity::TabulatedPattern;
+use crate::echogram::{Echogram, PropagationPath};
+use crate::receiver::{Receiver, SoundSourcePose};
+use dwell_scene::math::sin_cos;
+use glam::{Quat, Vec3};
+use serde::{Deserialize, Serialize};
+
+/// All that laws do to air and sources; the default changes nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct PathEffects {
+    /// How much warmer the air is than it is said to be, K.
+    pub(super) warmer_k: f64,
+    /// The share of the air's absorption that there is, 0 to 1.
+    pub(super) air_absorption: f64,
+    /// Level of all sources above what it is said to be, dB. Shape (band,).
+    pub(super) source_db: BandValues,
+    /// How sources are turned against what is said, degrees: yaw (to the left), pitch (up), in their own axes.
+    pub(super) source_turn_deg: [f32; 2],
+    /// Exponent of their patterns above 1.
+    pub(super) source_sharpness: f32,
+    /// How much fainter they are behind than in front at 1 kHz, beside their patterns, dB.
+    pub(super) source_beam_db: f32,
+    /// Where receivers are against what is said, m, in their own axes.
+    pub(super) receiver_offset_m: [f32; 3],
+    /// How they are turned, degrees: yaw (to the left), pitch (up), roll (to the left), in their own axes.
+    pub(super) receiver_turn_deg: [f32; 3],
+}
+
+/// A turn about the vertical (to the left), then about the sideways axis (up), then about the axis to the back.
+fn turn([yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Quat {
+    let about = |axis: Vec3, degrees: f32| {
+        let (s, c) = sin_cos(0.5 * degrees.to_radians());
+        Quat::from_xyzw(axis.x * s, axis.y * s, axis.z * s, c)
+    };
+    about(Vec3::Y, yaw_deg) * about(Vec3::X, pitch_deg) * about(Vec3::Z, roll_deg)
+}
+
+impl Default for PathEffects {
+    fn default() -> Self {
+        Self {
+            warmer_k: 0.0,
+            air_absorption: 1.0,
+            source_db: [0.0; BAND_COUNT],
+            source_turn_deg: [0.0; 2],
+            source_sharpness: 0.0,
+            source_beam_db: 0.0,
+            receiver_offset_m: [0.0; 3],
+            receiver_turn_deg: [0.0; 3],
+        }
+    }
+}
+
+impl PathEffects {
+    /// The settings with the air as it is, kept within what [`Air::check`] allows.
+    pub(crate) fn config(&self, stated: &AcousticConfig) -> AcousticConfig {
+        let temperature_c = stated.air.temperature_c + self.warmer_k;
+        AcousticConfig {
+            air: Air {
+                temperature_c: temperature_c.clamp(-40.0, 60.0),
+                ..stated.air
+            },
+            ..*stated
+        }
+    }
+
+    /// Energy decay in air, 1/m, as far as there is any. Shape (band,).
+    pub(crate) fn air_decay_per_m(&self, whole: [f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
+        whole.map(|m| self.air_absorption * m)
+    }
+
+    /// The share of the air's absorption that there is, 0 to 1.
+    pub(crate) fn air_absorption(&self) -> f64 {
+        self.air_absorption
+    }
+
+    /// Where a source's axis points, unit length, and its gains around that, in air with `speed_m_s`.
+    pub(crate) fn radiation(
+        &self,
+        source: &SoundSourcePose,
+        speed_m_s: f64,
+    ) -> (Vec3, TabulatedPattern) {
+        let pattern = source.directivity.pattern(speed_m_s);
+        let axis = match self.source_turn_deg {
+            [0.0, 0.0] => source.axis(),
+            [yaw_deg, pitch_deg] => {
+                source.pose.rotation * (turn([yaw_deg, pitch_deg, 0.0]) * Vec3::NEG_Z)
+            }
+        };
+        if self.source_sharpness == 0.0 && self.source_beam_db == 0.0 {
+            return (axis, pattern);
+        }
+        let behind_db: BandValues = std::array::from_fn(|band| {
+            let ratio = bands::exact_centre_hz(band) / 1000.0;
+            self.source_beam_db * (2.0 * ratio / (1.0 + ratio)) as f32
+        });
+        let pattern = pattern.reshaped(|cosine, gain| {
+            std::array::from_fn(|band| {
+                let own = gain[band];
+                let sharp = if self.source_sharpness == 0.0 || own == 0.0 {
+                    own
+                } else {
+                    own * libm::powf(own.abs(), self.source_sharpness)
+                };
+                let down_db = 0.5 * (1.0 - cosine) * behind_db[band];
+                sharp * libm::powf(10.0, -down_db / 20.0)
+            })
+        });
+        (axis, pattern)
+    }
+
+    /// A receiver where it is, as it is turned.
+    pub(crate) fn placed(&self, receiver: &Receiver) -> Receiver {
+        let mut placed = receiver.clone();
+        let rotation = receiver.pose.rotation;
+        if self.receiver_offset_m != [0.0; 3] {
+            placed.pose.position += rotation * Vec3::from_array(self.receiver_offset_m);
+        }
+        if self.receiver_turn_deg != [0.0; 3] {
+            placed.pose.rotation = rotation * turn(self.receiver_turn_deg);
+        }
+        placed
+    }
+
+    /// The energies of sources as they are.
+    pub(crate) fn at_source(&self, echogram: &mut Echogram) {
+        if self.source_db == [0.0; BAND_COUNT] {
+            return;
+        }
+        self.on_paths(&mut echogram.paths);
+        let gain = self.source_gain();
+        for bin in &mut echogram.tail.bins {
+            for (energy, gain) in bin.iter_mut().zip(gain) {
+                *energy *= f64::from(gain);
+            }
+        }
+    }
+
+    /// The energies of early paths from sources as they are.
+    pub(crate) fn on_paths(&self, paths: &mut [PropagationPath]) {
+        if self.source_db == [0.0; BAND_COUNT] {
+            return;
+        }
+        let gain = self.source_gain();
+        for path in paths {
+            for (energy, gain) in path.energy.iter_mut().zip(gain) {
+                *energy *= gain;
+            }
+        }
+    }
+
+    fn source_gain(&self) -> BandValues {
+        self.source_db.map(|db| libm::powf(10.0, db / 10.0))
+    }
+}

@@ -1,0 +1,201 @@
+//! The microphones of one receiver, as laws have them: what they give out of the pressure that reaches them.
+
+use crate::error::AcousticsError;
+use crate::laws::{
+    self,
+    microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory, fade, rise},
+};
+use dwell_scene::LawSpec;
+use serde::{Deserialize, Serialize};
+
+/// The installed laws of microphones at work, one after the other.
+///
+/// When laws come, go or change their numbers, what the old and what the new ones give out are crossfaded over one block; a law
+/// of the same id and target goes on from what it remembered.
+#[derive(Debug)]
+pub(crate) struct MicrophoneChain {
+    rate_hz: f64,
+    /// Channels of the last block; 0 before the first.
+    channels: usize,
+    chain: Vec<ChainStage>,
+}
+
+/// One law at work.
+#[derive(Debug)]
+struct ChainStage {
+    /// Its place in the state's list.
+    place: u64,
+    spec: LawSpec,
+    stage: Box<dyn MicrophoneStage>,
+}
+
+/// What must be remembered of microphones so that they go on bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct ChainMemory {
+    channels: u64,
+    chain: Vec<(u64, LawSpec, StageMemory)>,
+}
+
+impl ChainStage {
+    /// `None` for a law of something else, and for one that does nothing.
+    fn new(place: u64, spec: &LawSpec, rate_hz: f64) -> Option<Self> {
+        Some(Self {
+            place,
+            stage: laws::microphone_stage(spec, rate_hz)?,
+            spec: spec.clone(),
+        })
+    }
+
+    fn hear(&mut self, listener: &StageContext<'_>, whole: bool, samples: &mut [f32]) {
+        self.stage.hear(&mut SampleBlock {
+            listener,
+            samples,
+            channels: listener.receiver.channels(),
+            key: listener.own.child(self.place),
+            whole,
+        });
+    }
+}
+
+impl MicrophoneChain {
+    pub(crate) fn new(rate_hz: f64) -> Self {
+        Self {
+            rate_hz,
+            channels: 0,
+            chain: Vec::new(),
+        }
+    }
+
+    /// They have never heard anything.
+    pub(crate) fn reset(&mut self) {
+        self.channels = 0;
+        self.chain.clear();
+    }
+
+    /// Changes the next block of pressure to what the microphones give out of it. `samples`: shape (channel, sample), flat.
+    pub(crate) fn hear(
+        &mut self,
+        installed: &[LawSpec],
+        listener: &StageContext<'_>,
+        samples: &mut [f32],
+    ) {
+        let channels = listener.receiver.channels();
+        if channels != self.channels {
+            // Another receiver has other microphones.
+            self.reset();
+        }
+        let amid = self.channels > 0;
+        self.channels = channels;
+        let acting = || laws::of_pressure(installed);
+        let there = self.chain.iter().map(|link| (link.place, &link.spec));
+        let same = there.eq(acting());
+        if same {
+            for link in &mut self.chain {
+                link.hear(listener, false, samples);
+            }
+            return;
+        }
+        let link = |(place, spec)| ChainStage::new(place, spec, self.rate_hz);
+        let chain = acting().filter_map(link).collect();
+        let mut before = std::mem::replace(&mut self.chain, chain);
+        if !amid {
+            for link in &mut self.chain {
+                link.hear(listener, false, samples);
+            }
+            return;
+        }
+        let size = samples.len() / channels.max(1);
+        let mut old = samples.to_vec();
+        let mut known: Vec<(&LawSpec, StageMemory)> = Vec::with_capacity(before.len());
+        for link in &mut before {
+            let memory = link.stage.memory();
+            link.hear(listener, false, &mut old);
+            known.push((&link.spec, memory));
+        }
+        for link in &mut self.chain {
+            // Two laws of one kind on one target are told apart by their order.
+            let same = |(spec, _): &(&LawSpec, StageMemory)| {
+                spec.id == link.spec.id && spec.target == link.spec.target
+            };
+            if let Some(place) = known.iter().position(same) {
+                link.stage.recall(&known.remove(place).1);
+            } else if link.stage.starts_softly() {
+                samples.chunks_exact_mut(size.max(1)).for_each(rise);
+            }
+            link.hear(listener, false, samples);
+        }
+        for (old, new) in old.chunks_exact(size).zip(samples.chunks_exact_mut(size)) {
+            for ((old, new), weight) in old.iter().zip(new).zip(fade(size)) {
+                *new = old + (*new - old) * weight;
+            }
+        }
+    }
+
+    /// What microphones that have heard nothing before give out of `samples` and the silence after it, until they have fallen
+    /// silent themselves. Shape (channel, sample), flat.
+    pub(crate) fn record(
+        installed: &[LawSpec],
+        rate_hz: f64,
+        listener: &StageContext<'_>,
+        mut samples: Vec<f32>,
+    ) -> Vec<f32> {
+        let channels = listener.receiver.channels().max(1);
+        for (place, spec) in laws::of_pressure(installed) {
+            let Some(mut link) = ChainStage::new(place, spec, rate_hz) else {
+                continue;
+            };
+            let length = samples.len() / channels;
+            if length == 0 {
+                return samples;
+            }
+            let longer = length + link.stage.longer(length);
+            let mut out = vec![0.0; channels * longer];
+            for (out, channel) in out
+                .chunks_exact_mut(longer)
+                .zip(samples.chunks_exact(length))
+            {
+                out[..length].copy_from_slice(channel);
+            }
+            link.hear(listener, true, &mut out);
+            samples = out;
+        }
+        samples
+    }
+
+    pub(crate) fn memory(&self) -> ChainMemory {
+        let links = self.chain.iter();
+        ChainMemory {
+            channels: self.channels as u64,
+            chain: links
+                .map(|link| (link.place, link.spec.clone(), link.stage.memory()))
+                .collect(),
+        }
+    }
+
+    /// Microphones that remember what [`Self::memory`] wrote.
+    ///
+    /// # Errors
+    /// [`AcousticsError::Snapshot`] for a law that this build does not know or with other numbers than it allows.
+    pub(crate) fn restore(rate_hz: f64, memory: ChainMemory) -> Result<Self, AcousticsError> {
+        let mut chain = Vec::with_capacity(memory.chain.len());
+        for (place, spec, stage) in memory.chain {
+            let info = laws::all().iter().find(|info| info.id == spec.id);
+            let sound = info.is_some_and(|info| spec.check(info).is_ok());
+            let link = sound
+                .then(|| ChainStage::new(place, &spec, rate_hz))
+                .flatten();
+            let Some(mut link) = link else {
+                let why = format!("law {:?} is not one of this build's microphones", spec.id);
+                return Err(AcousticsError::Snapshot(why));
+            };
+            link.stage.recall(&stage);
+            chain.push(link);
+        }
+        let channels = memory.channels as usize;
+        Ok(Self {
+            rate_hz,
+            channels,
+            chain,
+        })
+    }
+}

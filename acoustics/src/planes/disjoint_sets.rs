@@ -1,0 +1,28 @@
+//! Disjoint sets.
+
+/// Sets of numbers from 0 on; at first each is alone. The least of a set stands for it.
+pub(super) struct DisjointSets {
+    parent: Vec<usize>,
+}
+
+impl DisjointSets {
+    pub(super) fn new(count: usize) -> Self {
+        Self {
+            parent: (0..count).collect(),
+        }
+    }
+
+    /// Which number stands for the set of `k`.
+    pub(super) fn root(&mut self, mut k: usize) -> usize {
+        while self.parent[k] != k {
+            self.parent[k] = self.parent[self.parent[k]];
+            k = self.parent[k];
+        }
+        k
+    }
+
+    pub(super) fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.parent[a.max(b)] = a.min(b);
+    }
+}

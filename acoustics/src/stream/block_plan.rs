@@ -1,0 +1,244 @@
+//! What is heard in a block: which sources, and which of them need new impulse responses.
+
+use super::source_state::{self, ListeningSituation, SituationChange, UpdateThreshold};
+use super::update_queue::{PartialTrace, UpdateRequest};
+use super::{ActiveSource, BlockReport, Stream, early};
+use crate::echogram::PropagationPath;
+use crate::error::AcousticsError;
+use crate::receiver::Receiver;
+use crate::response::ImpulseResponse;
+use crate::scene::between;
+use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Pose, State};
+use glam::Vec3;
+
+/// What does not glide is computed anew after movements so many times smaller.
+const STIFF: f32 = 5.0;
+/// A source that begins so close to another, counted with the listener's way since, begins with its tail, m.
+const BESIDE_M: f64 = 2.0;
+/// Large parts that move less than this in a block stand still, m.
+const STILL_M: f32 = 5e-3;
+
+/// What a voice does in one block.
+pub(super) struct PlannedSource {
+    pub(super) id: u64,
+    /// Whether its source is heard; else it only rings out.
+    pub(super) named: bool,
+    /// Where source and receiver are.
+    pub(super) place: (Vec3, Pose),
+    /// The impulse response from now on, and the situation it belongs to; `None`: as before.
+    pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
+    /// Early paths that are heard apart from the impulse response, where they are now; `None`: none are.
+    pub(super) followed: Option<Vec<PropagationPath>>,
+    /// Since which block a new response waits for its turn.
+    pub(super) since: Option<u64>,
+    /// What was traced of it so far.
+    pub(super) job: PartialTrace,
+}
+
+/// A source that sounds or rings.
+struct SoundingSource {
+    id: u64,
+    /// `None` for what is no longer named.
+    position: Option<Vec3>,
+    /// Its place among the sources, of which the loudest come first.
+    rank: usize,
+}
+
+/// What all sources of a block have in common.
+pub(super) struct BlockContext<'a> {
+    pub(super) rays: &'a RayScene,
+    pub(super) receiver: &'a Receiver,
+    pub(super) threshold: UpdateThreshold,
+    /// Whether a large part is on its way.
+    pub(super) passing: bool,
+}
+
+impl Stream {
+    /// The sources that are heard in this block, by id, with new impulse responses where they need them and it is their turn.
+    pub(super) fn plan(
+        &self,
+        rays: &RayScene,
+        state: &State,
+        sources: &[ActiveSource<'_>],
+        receiver: &Receiver,
+        report: &mut BlockReport,
+    ) -> Result<Vec<PlannedSource>, AcousticsError> {
+        let all = self.sounding(sources, report);
+        // The microphones of an array hear early paths of their own.
+        let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
+        let distance_m = self.config.update_distance_m;
+        let parts = self.poses(state);
+        // Nothing is remembered where all rays are traced anyway.
+        let remembers = self.config.update_share < 1.0;
+        let around = BlockContext {
+            rays,
+            receiver,
+            threshold: UpdateThreshold {
+                distance_m: if glides {
+                    distance_m
+                } else {
+                    distance_m / STIFF
+                },
+                angle_rad: self.config.update_angle_rad,
+                part_m: self.config.update_part_m,
+            },
+            passing: remembers && source_state::largest_movement(&self.parts, &parts) > STILL_M,
+        };
+        let wants = all
+            .iter()
+            .filter_map(|one| self.want(&around, one, state, &parts));
+        let mut wants: Vec<UpdateRequest<'_>> = wants.collect();
+        self.update_responses(&around, &mut wants, report)?;
+        let planned = wants.into_iter().map(|want| {
+            let heard = want.heard();
+            let last = want.voice.and_then(|voice| voice.moved.last);
+            let follows = want
+                .voice
+                .is_some_and(|voice| voice.moved.followed.is_some());
+            let moved = follows || last.is_some_and(|last| last != want.place);
+            let known = want.news.as_ref().or(heard);
+            let elsewhere =
+                known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.place);
+            // What has to wait is heard on its straight ways and known reflections as they are now.
+            let moved =
+                moved || elsewhere || (want.is_waiting && want.change == SituationChange::Moved);
+            let followed = known.filter(|_| glides && moved).map(|(_, response)| {
+                let chosen = early::choose(&response.echogram.paths, self.config.moving_paths);
+                let (source, receiver) = (want.place.0, receiver.position());
+                self.scene.follow(rays, source, receiver, &chosen)
+            });
+            PlannedSource {
+                id: want.id,
+                named: want.named,
+                place: want.place,
+                followed,
+                since: want.is_waiting.then_some(want.since),
+                job: want.job,
+                news: want.news,
+            }
+        });
+        Ok(planned.collect())
+    }
+
+    /// What has changed for a source; `None` for what was never heard.
+    fn want(
+        &self,
+        around: &BlockContext<'_>,
+        one: &SoundingSource,
+        state: &State,
+        parts: &[Pose],
+    ) -> Option<UpdateRequest<'_>> {
+        let id = one.id;
+        let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
+        let voice = at.ok().map(|at| &self.voices[at]);
+        let heard = voice.and_then(|voice| voice.heard.as_ref());
+        let named = one.position.is_some();
+        // What is no longer named rings out where it was last.
+        let last = voice.and_then(|voice| voice.moved.last);
+        let position = one.position.or(last.map(|(source, _)| source))?;
+        let receiver = around.receiver;
+        let now = ListeningSituation {
+            source: position,
+            receiver: receiver.clone(),
+            parts: parts.to_vec(),
+            overrides: state.overrides.clone(),
+            effects: *self.scene.effects(),
+            rough: false,
+            noise: heard.map_or_else(
+                || between(self.key_of(id), position, receiver.position()),
+                |(then, _)| then.noise,
+            ),
+        };
+        let change = heard.map_or(SituationChange::Moved, |(then, _)| {
+            if named {
+                then.change(&now, &around.threshold)
+            } else {
+                then.change_while_ringing(&now, &around.threshold)
+            }
+        });
+        Some(UpdateRequest {
+            id,
+            named,
+            rank: one.rank,
+            place: (position, receiver.pose),
+            voice,
+            change,
+            // When a door has come to rest, all rays tell what is heard now.
+            stale: heard.is_some_and(|(then, _)| then.rough && named && !around.passing),
+            since: voice
+                .and_then(|voice| voice.waiting.since)
+                .unwrap_or(self.block),
+            now,
+            news: None,
+            job: PartialTrace::Unchanged,
+            is_waiting: false,
+        })
+    }
+
+    /// The sources that sound or ring, by id.
+    fn sounding(
+        &self,
+        sources: &[ActiveSource<'_>],
+        report: &mut BlockReport,
+    ) -> Vec<SoundingSource> {
+        let mut all: Vec<SoundingSource> = Vec::new();
+        let mut seen = 0;
+        for source in sources {
+            if all.iter().any(|one| one.id == source.id) {
+                continue;
+            }
+            let sounds = sources
+                .iter()
+                .filter(|other| other.id == source.id)
+                .any(|other| other.signal.iter().any(|x| *x != 0.0));
+            let rings = self
+                .voices
+                .iter()
+                .any(|voice| voice.id == source.id && !voice.input.is_silent());
+            if sounds || rings {
+                seen += 1;
+                if seen <= self.config.max_sources {
+                    all.push(SoundingSource {
+                        id: source.id,
+                        position: Some(source.position),
+                        rank: all.len(),
+                    });
+                } else {
+                    report.left_out += 1;
+                }
+            }
+        }
+        for voice in &self.voices {
+            if !voice.input.is_silent() && !all.iter().any(|one| one.id == voice.id) {
+                all.push(SoundingSource {
+                    id: voice.id,
+                    position: None,
+                    rank: all.len(),
+                });
+            }
+        }
+        all.sort_by_key(|one| one.id);
+        report.heard = all.len();
+        all
+    }
+
+    /// What another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
+    pub(super) fn nearby_similar_source(
+        &self,
+        rays: &RayScene,
+        now: &ListeningSituation,
+        alike: impl Fn(&ListeningSituation) -> bool,
+    ) -> Option<&(ListeningSituation, ImpulseResponse)> {
+        let heard = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
+        let close = heard.filter(|(then, _)| then.moved_m(now) <= BESIDE_M && alike(then));
+        let nearest = close.min_by(|(a, _), (b, _)| a.moved_m(now).total_cmp(&b.moved_m(now)));
+        nearest.filter(|(then, _)| {
+            let way = |from, to| Ray::segment(from, to, 0.0);
+            let sources = way(then.source, now.source);
+            let receivers = way(then.receiver.position(), now.receiver.position());
+            !rays.occluded(&sources, RayMask::EAR) && !rays.occluded(&receivers, RayMask::EAR)
+        })
+    }
+}

@@ -1,0 +1,105 @@
+//! How a stream finds a response: by all rays, by few and what it remembers, or piece by piece.
+
+use super::tail_update::TailHistory;
+use crate::echogram::Echogram;
+use crate::error::AcousticsError;
+use crate::image_sources;
+use crate::receiver::{Receiver, SoundSourcePose};
+use crate::response::ImpulseResponse;
+use crate::scene::AcousticScene;
+use crate::tail::{TailTrace, TraceProgress};
+use dwell_scene::parallel::Threads;
+use dwell_scene::random::RandomKey;
+use dwell_scene::rays::RayScene;
+
+/// From where to where a stream hears.
+pub(super) struct ResponseUpdater<'a> {
+    pub(super) scene: &'a AcousticScene,
+    pub(super) rays: &'a RayScene,
+    pub(super) source: SoundSourcePose,
+    pub(super) receiver: &'a Receiver,
+    /// Of the rays.
+    pub(super) key: RandomKey,
+    /// Of the tail's random arrivals.
+    pub(super) noise: RandomKey,
+    pub(super) threads: Threads,
+}
+
+impl ResponseUpdater<'_> {
+    /// A new response for a listener who heard `memory` not far from here: fewer rays, and the rest of the tail from memory. Where these
+    /// show that it is another tail, all rays if `all`, else these alone.
+    ///
+    /// Beside it, whether the tail is known as well as it can be.
+    ///
+    /// # Errors
+    /// As [`AcousticScene::echogram`].
+    pub(super) fn update_from_history(
+        &self,
+        memory: &TailHistory<'_>,
+        all: bool,
+    ) -> Result<(ImpulseResponse, bool), AcousticsError> {
+        let config = self.scene.config();
+        let again = self.key.child("again").child(memory.update);
+        let mut echogram = self.echogram(memory.rays(config), again)?;
+        let mut known = memory.recall(&mut echogram);
+        if !known && all {
+            echogram = self.echogram(config.rays, again.child("all"))?;
+            known = true;
+        }
+        Ok((self.arrive(echogram), known))
+    }
+
+    /// What `count` rays tell of a response.
+    ///
+    /// # Errors
+    /// As [`AcousticScene::echogram`].
+    pub(super) fn trace_few(&self, count: usize) -> Result<ImpulseResponse, AcousticsError> {
+        let echogram = self.echogram(count, self.key.child("roughly"))?;
+        Ok(self.arrive(echogram))
+    }
+
+    /// Traces up to `most` rays more of a response; that response when all are traced, the same to the bit in whatever pieces.
+    ///
+    /// # Errors
+    /// As [`AcousticScene::echogram`].
+    pub(super) fn trace_incrementally(
+        &self,
+        progress: &mut TraceProgress,
+        most: usize,
+    ) -> Result<Option<ImpulseResponse>, AcousticsError> {
+        self.check()?;
+        let (scene, rays, source) = (self.scene, self.rays, &self.source);
+        let centre = self.receiver.position();
+        let (count, key) = (scene.config().rays, self.key.child("tail"));
+        let trace = TailTrace::new(scene, rays, source, &[centre], count, key, self.threads);
+        if !trace.advance(progress, most) {
+            return Ok(None);
+        }
+        let paths = image_sources::find(scene, rays, source, centre);
+        let late = trace.end(progress.clone()).into_iter();
+        let echograms =
+            late.map(|late| scene.joined(paths.clone(), late, source.position(), centre));
+        Ok(echograms.map(|echogram| self.arrive(echogram)).next())
+    }
+
+    fn check(&self) -> Result<(), AcousticsError> {
+        let centre = [self.receiver.position()];
+        self.scene.check(self.rays, &self.source, &centre)?;
+        self.scene.check_receiver(self.receiver)
+    }
+
+    fn echogram(&self, count: usize, key: RandomKey) -> Result<Echogram, AcousticsError> {
+        self.check()?;
+        let centre = [self.receiver.position()];
+        let (rays, source) = (self.rays, &self.source);
+        let scene = self.scene;
+        let echograms = scene.echograms_of(rays, source, &centre, count, key, self.threads);
+        Ok(echograms.into_iter().next().unwrap_or_default())
+    }
+
+    fn arrive(&self, echogram: Echogram) -> ImpulseResponse {
+        let (scene, receiver) = (self.scene, self.receiver);
+        let early = scene.early_of_microphones(self.rays, &self.source, receiver);
+        scene.arrive(echogram, receiver, early.as_deref(), self.noise)
+    }
+}

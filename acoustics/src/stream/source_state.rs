@@ -1,0 +1,267 @@
+//! One source in a stream: what it has played, and how it was last heard.
+
+use super::convolver::{ConvolverInput, PartitionedFilter};
+use super::early::TrackedPath;
+use crate::fft::RealFft;
+use crate::laws::PathEffects;
+use crate::receiver::Receiver;
+use crate::response::ImpulseResponse;
+use crate::synthesis::CachedGains;
+use crate::tail::TraceProgress;
+use dwell_scene::random::RandomKey;
+use dwell_scene::{Address, Pose};
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// The situation for which an impulse response was computed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ListeningSituation {
+    pub(super) source: Vec3,
+    pub(super) receiver: Receiver,
+    /// Poses of the parts that are large enough to be heard. Shape (large part,).
+    pub(super) parts: Vec<Pose>,
+    pub(super) overrides: BTreeMap<Address, f64>,
+    pub(super) effects: PathEffects,
+    /// Whether not all rays have told of the tail: large parts were on their way, so that it is partly remembered from where they were
+    /// before, or only a few rays were traced yet.
+    pub(super) rough: bool,
+    /// The tail's random arrivals: those between the places where it was first heard.
+    pub(super) noise: RandomKey,
+}
+
+/// How a situation differs from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum SituationChange {
+    /// Not so that it could be heard.
+    None,
+    /// The head turned.
+    Turned,
+    /// Something moved: new rays are needed.
+    Moved,
+}
+
+/// How large differences must be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UpdateThreshold {
+    pub(super) distance_m: f32,
+    pub(super) angle_rad: f32,
+    pub(super) part_m: f32,
+}
+
+/// The tail that is heard beside a door changes with its way so many times faster than with one's own: a quarter of a turn changes all.
+const PART_WAYS: f32 = 25.0;
+
+/// How far the one that moved furthest did, m, or turned, rad: a part that turns by an angle moves its far edge about as many metres.
+/// Shape of both: (large part,).
+pub(super) fn largest_movement(before: &[Pose], now: &[Pose]) -> f32 {
+    let ways = before.iter().zip(now).filter(|(a, b)| a != b);
+    ways.map(|(a, b)| {
+        a.position
+            .distance(b.position)
+            .max(angle(a.rotation, b.rotation))
+    })
+    .fold(0.0, f32::max)
+}
+
+fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
+    2.0 * dwell_scene::math::acos(a.dot(b).abs().min(1.0))
+}
+
+impl ListeningSituation {
+    /// How far source and receiver are from where they are `now`, m; large parts' ways count [`PART_WAYS`] times.
+    pub(super) fn moved_m(&self, now: &Self) -> f64 {
+        let receivers = self.receiver.position().distance(now.receiver.position());
+        let parts = PART_WAYS * largest_movement(&self.parts, &now.parts);
+        f64::from(self.source.distance(now.source) + receivers + parts)
+    }
+
+    /// Whether only source and receiver moved, and large parts if they are `passing`.
+    pub(super) fn differs_by_places_only(
+        &self,
+        now: &Self,
+        threshold: &UpdateThreshold,
+        passing: bool,
+    ) -> bool {
+        let mut there = Self {
+            source: now.source,
+            receiver: now.receiver.clone(),
+            ..self.clone()
+        };
+        if passing && self.parts.len() == now.parts.len() {
+            there.parts.clone_from(&now.parts);
+        }
+        self.receiver.kind == now.receiver.kind
+            && there.change(now, threshold) == SituationChange::None
+    }
+
+    /// Whether more has changed than where things are, so that nothing else may be heard any more.
+    pub(super) fn is_of_another_kind(&self, now: &Self) -> bool {
+        self.receiver.kind != now.receiver.kind
+            || self.overrides != now.overrides
+            || self.effects != now.effects
+            || self.parts.len() != now.parts.len()
+    }
+
+    /// As [`Self::change`], for a source that is over: what still rings is heard from where it was heard last.
+    pub(super) fn change_while_ringing(
+        &self,
+        now: &Self,
+        threshold: &UpdateThreshold,
+    ) -> SituationChange {
+        let mut there = now.clone();
+        there.source = self.source;
+        there.receiver.pose.position = self.receiver.pose.position;
+        self.change(&there, threshold)
+    }
+
+    pub(super) fn change(&self, now: &Self, threshold: &UpdateThreshold) -> SituationChange {
+        let far = |a: Vec3, b: Vec3, limit: f32| {
+            // Not "farther than", so that a limit of 0 asks for any movement at all.
+            a != b && a.distance(b) >= limit
+        };
+        let (here, there) = (&self.receiver, &now.receiver);
+        let parts = self.parts.iter().zip(&now.parts);
+        let mut parts = parts.map(|(a, b)| {
+            // A part that turns by an angle moves its far edge about as many metres.
+            far(a.position, b.position, threshold.part_m)
+                || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
+        });
+        if self.is_of_another_kind(now)
+            || far(self.source, now.source, threshold.distance_m)
+            || far(here.position(), there.position(), threshold.distance_m)
+            || parts.any(|moved| moved)
+        {
+            return SituationChange::Moved;
+        }
+        let (a, b) = (here.rotation(), there.rotation());
+        if a != b && angle(a, b) >= threshold.angle_rad {
+            return if here.turns_in_place() {
+                SituationChange::Turned
+            } else {
+                SituationChange::Moved
+            };
+        }
+        SituationChange::None
+    }
+}
+
+/// What must be remembered of a source so that it goes on bit for bit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SourceMemory {
+    pub(super) id: u64,
+    pub(super) heard: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) history: Vec<f32>,
+    pub(super) moved: TrackedPaths,
+    pub(super) waiting: PendingUpdate,
+}
+
+/// A response that must be computed anew and has not had its turn, or not all of it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct PendingUpdate {
+    /// The block in which it became due.
+    pub(super) since: Option<u64>,
+    pub(super) job: Option<Box<TraceJob>>,
+}
+
+/// The rays of a response that are traced piece by piece.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct TraceJob {
+    pub(super) situation: ListeningSituation,
+    pub(super) progress: TraceProgress,
+}
+
+impl TraceJob {
+    /// Whether what it traces is still worth hearing. Parts that creep on meanwhile are heard by the rays that come later, and in its
+    /// next turn.
+    pub(super) fn is_still_useful(
+        &self,
+        now: &ListeningSituation,
+        threshold: &UpdateThreshold,
+    ) -> bool {
+        let mut there = now.clone();
+        if there.parts.len() == self.situation.parts.len() {
+            there.parts.clone_from(&self.situation.parts);
+        }
+        self.situation.change(&there, threshold) != SituationChange::Moved
+    }
+}
+
+/// How the early paths of a source are heard while something moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct TrackedPaths {
+    /// Where source and receiver were at the end of the last block.
+    pub(super) last: Option<(Vec3, Pose)>,
+    /// Early paths outside the filter, once anything has moved.
+    pub(super) followed: Option<Vec<TrackedPath>>,
+}
+
+/// One source.
+#[derive(Clone, Debug)]
+pub(super) struct SourceState {
+    pub(super) id: u64,
+    pub(super) heard: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) input: ConvolverInput,
+    pub(super) filter: PartitionedFilter,
+    pub(super) moved: TrackedPaths,
+    pub(super) waiting: PendingUpdate,
+}
+
+impl SourceState {
+    pub(super) fn new(id: u64, block: usize, partitions: usize) -> Self {
+        Self {
+            id,
+            heard: None,
+            input: ConvolverInput::new(block, partitions),
+            filter: PartitionedFilter::default(),
+            moved: TrackedPaths::default(),
+            waiting: PendingUpdate::default(),
+        }
+    }
+
+    pub(super) fn memory(&self) -> SourceMemory {
+        let heard = self.heard.as_ref().map(|(situation, response)| {
+            // Samples follow from the echogram, but for an array: each of its microphones has early paths of its own.
+            let samples = match situation.receiver.microphone_positions() {
+                Some(_) => response.samples.clone(),
+                None => Vec::new(),
+            };
+            let response = ImpulseResponse {
+                samples,
+                echogram: response.echogram.clone(),
+                levels: CachedGains::default(),
+                ..*response
+            };
+            (situation.clone(), response)
+        });
+        SourceMemory {
+            id: self.id,
+            heard,
+            history: self.input.history().to_vec(),
+            moved: self.moved.clone(),
+            waiting: self.waiting.clone(),
+        }
+    }
+
+    pub(super) fn restore(fft: &mut RealFft, memory: SourceMemory, partitions: usize) -> Self {
+        Self {
+            id: memory.id,
+            heard: memory.heard,
+            input: ConvolverInput::restore(fft, &memory.history, partitions),
+            filter: PartitionedFilter::default(),
+            moved: memory.moved,
+            waiting: memory.waiting,
+        }
+    }
+
+    /// Convolves from now on with `samples`, shape (channel, sample), flat.
+    pub(super) fn filter_with(
+        &mut self,
+        fft: &mut RealFft,
+        samples: &[f32],
+        channels: usize,
+        partitions: usize,
+    ) {
+        self.filter = PartitionedFilter::new(fft, samples, channels, partitions);
+    }
+}

@@ -1,0 +1,125 @@
+//! What a listener who moves on still knows of the tail.
+
+use crate::config::AcousticConfig;
+use crate::echogram::{Echogram, SPAN_COUNT};
+use crate::tail::spans;
+
+/// How far early sound stays alike, m.
+const NEAR_M: f64 = 0.3;
+/// Late sound stays alike over this fraction of its way: it has mixed.
+const OF_THE_WAY: f64 = 0.3;
+
+/// The least weight of the new, in shares of its rays: what is remembered comes from many updates.
+const LEAST: f64 = 0.67;
+
+/// What comes before this has not mixed: it changes with every step, s.
+const MIXED_S: f64 = 0.04;
+/// How much the level of a mixed tail differs from place to place in one room, as a logarithm of energies: 0.5 dB.
+const PLACES: f64 = 0.115;
+/// A difference that neither chance nor place makes, in standard deviations of a normal distribution.
+const SURPRISE: f64 = 5.0;
+/// From such a difference on, the new weighs more, the more the larger it is.
+const DOUBT: f64 = 3.0;
+/// Above this relative error, too few rays came to tell anything.
+const FEW: f64 = 0.5;
+
+/// The tail that was heard before, and what has changed since.
+pub(super) struct TailHistory<'a> {
+    pub(super) before: &'a Echogram,
+    /// How far source and receiver have moved since, m.
+    pub(super) moved_m: f64,
+    /// The share of all rays that is traced anew.
+    pub(super) share: f64,
+    /// Tells updates apart.
+    pub(super) update: u64,
+}
+
+/// How many rays an update traces that remembers the rest.
+pub(super) fn rays_of(config: &AcousticConfig, share: f64) -> usize {
+    (config.rays as f64 * share).ceil() as usize
+}
+
+impl TailHistory<'_> {
+    /// How many rays are traced anew.
+    pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
+        rays_of(config, self.share)
+    }
+
+    /// How unlike `now` is to what was heard before, where it has mixed, as a deviate of a normal distribution: who walks through a
+    /// door hears another tail, however short the way.
+    ///
+    /// # Source
+    /// The sum of squares of the spans' differences over their errors, made normal by E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad.
+    /// Sci. 17, 684 (1931).
+    fn deviation_score(&self, now: &Echogram) -> f64 {
+        let energies = |of: &Echogram| spans::energies(&of.tail);
+        let (old, new) = (energies(self.before), energies(now));
+        let silent = |spans: &[f64]| spans.iter().all(|energy| *energy == 0.0);
+        if silent(&old) != silent(&new) {
+            return f64::INFINITY;
+        }
+        let (mut count, mut squares) = (0.0, 0.0);
+        for span in spans::span_of(MIXED_S)..SPAN_COUNT {
+            let error = |of: &Echogram| f64::from(of.trace.error_over_time[span]);
+            let (before, after) = (error(self.before), error(now));
+            if old[span] > 0.0 && new[span] > 0.0 && before.max(after) <= FEW {
+                let variance = before * before + after * after + PLACES * PLACES;
+                squares += libm::log(new[span] / old[span]).powi(2) / variance;
+                count += 1.0;
+            }
+        }
+        if count == 0.0 {
+            return 0.0;
+        }
+        let spread = 2.0 / (9.0 * count);
+        (libm::cbrt(squares / count) - (1.0 - spread)) / spread.sqrt()
+    }
+
+    /// Mixes what was heard before into `now`: exponential averaging whose weight of the new grows with the distance moved, and
+    /// for early sound more than for late.
+    ///
+    /// # Source
+    /// The idea is that of temporal coherence in C. Schissler, D. Manocha, ACM TOG 36(2), 16 (2017), section 4.
+    ///
+    /// `false`: this is another tail, of which only all rays tell enough.
+    pub(super) fn recall(&self, now: &mut Echogram) -> bool {
+        let before = &self.before.tail;
+        if before.bin_s != now.tail.bin_s
+            || before.bins.len() != now.tail.bins.len()
+            || before.bins_per_direction != now.tail.bins_per_direction
+        {
+            return false;
+        }
+        let surprise = self.deviation_score(now);
+        if surprise > SURPRISE {
+            return false;
+        }
+        let doubt = (1.0 - (DOUBT / surprise.max(DOUBT)).powi(2)).max(LEAST * self.share);
+        let weight_at = |time_s: f64| {
+            let reach_m = NEAR_M + OF_THE_WAY * now.speed_m_s * time_s;
+            1.0 - (1.0 - doubt) * libm::exp(-self.moved_m / reach_m)
+        };
+        let (bin_s, per_direction) = (now.tail.bin_s, now.tail.bins_per_direction.max(1));
+        let errors = &self.before.trace.error_over_time;
+        for (span, (error, old)) in now.trace.error_over_time.iter_mut().zip(errors).enumerate() {
+            let weight = weight_at(spans::middle_s(span)) as f32;
+            *error = libm::hypotf(weight * *error, (1.0 - weight) * old);
+        }
+        for (k, (bin, old)) in now.tail.bins.iter_mut().zip(&before.bins).enumerate() {
+            let weight = weight_at((k as f64 + 0.5) * bin_s);
+            for (e, old) in bin.iter_mut().zip(old) {
+                *e = old + (*e - old) * weight;
+            }
+        }
+        let pairs = now.tail.directions.iter_mut().zip(&before.directions);
+        for (k, (cells, old)) in pairs.enumerate() {
+            let weight = weight_at((k as f64 + 0.5) * bin_s * per_direction as f64) as f32;
+            for (cell, old) in cells.energy.iter_mut().zip(&old.energy) {
+                for (e, old) in cell.iter_mut().zip(old) {
+                    *e = old + (*e - old) * weight;
+                }
+            }
+        }
+        true
+    }
+}

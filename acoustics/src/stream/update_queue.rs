@@ -1,0 +1,323 @@
+//! Whose impulse response is computed anew in a block, and whose later.
+//!
+//! A door that opens changes all that is heard at once. [`StreamConfig::update_rays`](super::StreamConfig::update_rays) bounds what a
+//! block computes. It counts rays, never time, so that streams stay equal to the bit on all machines. First come sources of which
+//! nothing is known yet, then what something has moved for, then tails that a few rays have told of; among equals what waits longest,
+//! and then the loudest. What waits is heard as before, on straight ways and reflections as they are now. Where all rays are needed,
+//! they are traced piece by piece, and heard together when the last is traced.
+
+use super::block_plan::BlockContext;
+use super::response_update::ResponseUpdater;
+use super::source_state::{ListeningSituation, SituationChange, SourceState, TraceJob};
+use super::tail_update::{TailHistory, rays_of};
+use super::{BlockReport, Stream};
+use crate::error::AcousticsError;
+use crate::receiver::SoundSourcePose;
+use crate::response::ImpulseResponse;
+use crate::tail::TraceProgress;
+use dwell_scene::Pose;
+use glam::Vec3;
+
+/// What finding a response's early paths and making the response count as, rays.
+const OF_A_RESPONSE: usize = 150;
+/// What turning a response counts as, rays.
+const OF_A_TURN: usize = 50;
+/// The fewest rays that tell anything of a tail.
+const FEWEST: usize = 64;
+
+/// A source in a block, and what it needs.
+pub(super) struct UpdateRequest<'a> {
+    pub(super) id: u64,
+    /// Whether its source is heard; else it only rings out.
+    pub(super) named: bool,
+    /// Its place among the sources, of which the loudest come first.
+    pub(super) rank: usize,
+    /// Where source and receiver are.
+    pub(super) place: (Vec3, Pose),
+    pub(super) voice: Option<&'a SourceState>,
+    pub(super) now: ListeningSituation,
+    pub(super) change: SituationChange,
+    /// Whether all rays are to tell what a few have told of.
+    pub(super) stale: bool,
+    /// The block in which a new response became due.
+    pub(super) since: u64,
+    pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) job: PartialTrace,
+    /// Whether a new response still waits for its turn or for rays.
+    pub(super) is_waiting: bool,
+}
+
+/// What becomes of rays that are traced piece by piece.
+pub(super) enum PartialTrace {
+    Unchanged,
+    None,
+    Advanced(Box<TraceJob>),
+}
+
+/// How soon a response is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum UpdateUrgency {
+    /// There is none, or none that may still be heard.
+    Immediate,
+    Moved,
+    Stale,
+    None,
+}
+
+impl<'a> UpdateRequest<'a> {
+    pub(super) fn heard(&self) -> Option<&'a (ListeningSituation, ImpulseResponse)> {
+        self.voice.and_then(|voice| voice.heard.as_ref())
+    }
+
+    fn started(&self) -> Option<&'a TraceJob> {
+        self.voice.and_then(|voice| voice.waiting.job.as_deref())
+    }
+
+    fn need(&self) -> UpdateUrgency {
+        match (self.change, self.heard()) {
+            (_, None) => UpdateUrgency::Immediate,
+            (_, Some((then, _))) if then.is_of_another_kind(&self.now) => UpdateUrgency::Immediate,
+            (SituationChange::Moved | SituationChange::Turned, _) => UpdateUrgency::Moved,
+            (SituationChange::None, _) if self.stale => UpdateUrgency::Stale,
+            (SituationChange::None, _) => UpdateUrgency::None,
+        }
+    }
+}
+
+/// What a block may still compute.
+struct RayBudget {
+    /// Rays; `None`: as many as are needed.
+    left: Option<usize>,
+    /// Whether any response was computed: one always is.
+    served: bool,
+    /// Whether one tail has settled: one does in a block.
+    settled: bool,
+}
+
+impl RayBudget {
+    /// Whether there is room for `rays`.
+    fn holds(&self, rays: usize) -> bool {
+        self.left.is_none_or(|left| rays <= left)
+    }
+
+    /// Whether it is the turn of what takes `rays`.
+    fn allows(&self, rays: usize) -> bool {
+        !self.served || self.holds(rays)
+    }
+
+    fn spend(&mut self, rays: usize) {
+        self.served = true;
+        self.left = self.left.map(|left| left.saturating_sub(rays));
+    }
+}
+
+impl Stream {
+    /// Computes the responses whose turn it is.
+    pub(super) fn update_responses(
+        &self,
+        around: &BlockContext<'_>,
+        wants: &mut [UpdateRequest<'_>],
+        report: &mut BlockReport,
+    ) -> Result<(), AcousticsError> {
+        // Before the first block nothing is heard that could wait.
+        let bounded = self.config.update_rays > 0 && self.block > 0;
+        let mut budget = RayBudget {
+            left: bounded.then_some(self.config.update_rays),
+            served: false,
+            settled: false,
+        };
+        let mut order: Vec<&mut UpdateRequest<'_>> = Vec::new();
+        for want in wants {
+            match want.need() {
+                // Things are again as they were heard.
+                UpdateUrgency::None if want.started().is_some() => want.job = PartialTrace::None,
+                UpdateUrgency::None => {}
+                _ => order.push(want),
+            }
+        }
+        if bounded {
+            order.sort_by_key(|want| {
+                (
+                    want.need(),
+                    want.started().is_none(),
+                    want.since,
+                    want.rank,
+                    want.id,
+                )
+            });
+        }
+        for want in order {
+            self.update_one(around, want, &mut budget, report)?;
+            report.waiting += usize::from(want.is_waiting);
+        }
+        Ok(())
+    }
+
+    fn update_one(
+        &self,
+        around: &BlockContext<'_>,
+        want: &mut UpdateRequest<'_>,
+        budget: &mut RayBudget,
+        report: &mut BlockReport,
+    ) -> Result<(), AcousticsError> {
+        let (heard, threshold, passing) = (want.heard(), &around.threshold, around.passing);
+        // Where work is bounded, a place that is left again is not worth all rays.
+        let stays = budget.left.is_none() || want.change == SituationChange::None;
+        let settles = want.stale && stays && !budget.settled;
+        budget.settled |= settles;
+        match (want.change, heard) {
+            (SituationChange::None, Some(_)) if !settles => {
+                want.is_waiting = true;
+                return Ok(());
+            }
+            (SituationChange::Turned, Some((then, response))) => {
+                want.is_waiting = !budget.allows(OF_A_TURN);
+                if !want.is_waiting {
+                    budget.spend(OF_A_TURN);
+                    report.turned += 1;
+                    // The echogram stays that of the place where it was traced.
+                    let mut turned = then.clone();
+                    turned.receiver.pose.rotation = want.now.receiver.pose.rotation;
+                    let response = self.scene.turn(response, &turned.receiver, turned.noise);
+                    want.news = Some((turned, response));
+                }
+                return Ok(());
+            }
+            _ => {}
+        }
+        // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
+        let usable = |then: &ListeningSituation| {
+            (passing || !then.rough) && then.change(&want.now, threshold) == SituationChange::None
+        };
+        let mut others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
+        if let Some(known) = others.find(|(then, _)| usable(then)) {
+            want.job = PartialTrace::None;
+            want.news = Some(known.clone());
+            return Ok(());
+        }
+        let alike = |then: &ListeningSituation| {
+            !settles && then.differs_by_places_only(&want.now, threshold, passing)
+        };
+        let again = heard
+            .filter(|(then, _)| alike(then))
+            .or_else(|| self.nearby_similar_source(around.rays, &want.now, alike));
+        match again {
+            Some(before) => self.update_with_few_rays(around, want, before, budget, report),
+            None => self.update_fully(around, want, budget, report),
+        }
+    }
+
+    /// Few rays, and the rest from memory.
+    fn update_with_few_rays(
+        &self,
+        around: &BlockContext<'_>,
+        want: &mut UpdateRequest<'_>,
+        (then, response): &(ListeningSituation, ImpulseResponse),
+        budget: &mut RayBudget,
+        report: &mut BlockReport,
+    ) -> Result<(), AcousticsError> {
+        let rays = rays_of(self.scene.config(), self.config.update_share);
+        want.is_waiting =
+            want.need() != UpdateUrgency::Immediate && !budget.allows(rays + OF_A_RESPONSE);
+        if want.is_waiting {
+            return Ok(());
+        }
+        budget.spend(rays + OF_A_RESPONSE);
+        let memory = TailHistory {
+            before: &response.echogram,
+            moved_m: then.moved_m(&want.now),
+            share: self.config.update_share,
+            update: self.block,
+        };
+        let all = budget.holds(self.scene.config().rays);
+        let way = self.way(around, want.id, &want.now);
+        let (response, known) = way.update_from_history(&memory, all)?;
+        report.traced += 1;
+        report.rays += response.echogram.trace.rays as usize;
+        want.now.rough = around.passing || then.rough || !known;
+        want.job = PartialTrace::None;
+        want.news = Some((want.now.clone(), response));
+        Ok(())
+    }
+
+    /// All rays, or as many as it is the turn of.
+    fn update_fully(
+        &self,
+        around: &BlockContext<'_>,
+        want: &mut UpdateRequest<'_>,
+        budget: &mut RayBudget,
+        report: &mut BlockReport,
+    ) -> Result<(), AcousticsError> {
+        let all = self.scene.config().rays;
+        if want.heard().is_none() && !budget.holds(all) {
+            let share = rays_of(self.scene.config(), self.config.update_share);
+            let rays = share
+                .min(budget.left.unwrap_or(all))
+                .clamp(FEWEST.min(all), all);
+            budget.spend(rays + OF_A_RESPONSE);
+            let way = self.way(around, want.id, &want.now);
+            let response = way.trace_few(rays)?;
+            report.traced += 1;
+            report.rays += rays;
+            want.now.rough = true;
+            want.news = Some((want.now.clone(), response));
+            return Ok(());
+        }
+        let is_waiting = want.need() != UpdateUrgency::Immediate;
+        let most = match budget.left {
+            Some(left) if is_waiting => left,
+            _ => usize::MAX,
+        };
+        if is_waiting && !budget.allows(FEWEST) {
+            want.is_waiting = true;
+            return Ok(());
+        }
+        let mut job = match want.started() {
+            Some(job) if job.is_still_useful(&want.now, &around.threshold) => Box::new(job.clone()),
+            // Somebody who walks on must not keep all others from their turns.
+            Some(_) if is_waiting => {
+                (want.is_waiting, want.since, want.job) = (true, self.block, PartialTrace::None);
+                return Ok(());
+            }
+            _ => Box::new(TraceJob {
+                situation: want.now.clone(),
+                progress: TraceProgress::new(self.scene.config(), 1),
+            }),
+        };
+        // It is heard with the head as it is turned now.
+        job.situation.receiver.pose.rotation = want.now.receiver.pose.rotation;
+        let before = job.progress.rays();
+        let way = self.way(around, want.id, &job.situation);
+        let response = way.trace_incrementally(&mut job.progress, most)?;
+        let rays = job.progress.rays() - before;
+        report.rays += rays;
+        budget.spend(rays);
+        if let Some(response) = response {
+            budget.spend(OF_A_RESPONSE);
+            report.traced += 1;
+            want.job = PartialTrace::None;
+            want.news = Some((job.situation, response));
+        } else {
+            want.is_waiting = true;
+            want.job = PartialTrace::Advanced(job);
+        }
+        Ok(())
+    }
+
+    fn way<'a>(
+        &'a self,
+        around: &BlockContext<'a>,
+        id: u64,
+        situation: &'a ListeningSituation,
+    ) -> ResponseUpdater<'a> {
+        ResponseUpdater {
+            scene: &self.scene,
+            rays: around.rays,
+            source: SoundSourcePose::at(situation.source),
+            receiver: &situation.receiver,
+            key: self.key_of(id),
+            noise: situation.noise,
+            threads: self.threads,
+        }
+    }
+}

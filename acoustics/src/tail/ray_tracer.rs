@@ -1,0 +1,593 @@
+//! One ray's way through the house.
+
+use super::receiver_volume::TailReceiver;
+use super::{RAYS_PER_CHUNK, RayChunk, margin_m, sequence_direction};
+use crate::bands::{BAND_COUNT, BandValues};
+use crate::directions::{CELL_COUNT, cell_of};
+use crate::directivity::TabulatedPattern;
+use crate::echogram::SPAN_COUNT;
+use crate::scene::AcousticScene;
+use crate::surface::ReflectedEnergy;
+use crate::transmission;
+use dwell_scene::bvh::{Hit, Ray, RayMask};
+use dwell_scene::math::sin_cos;
+use dwell_scene::random::{RandomKey, RandomStream};
+use dwell_scene::rays::RayScene;
+use glam::{Quat, Vec3};
+use std::f32::consts::TAU;
+use std::ops::Range;
+
+/// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
+const NEAREST_M: f32 = 0.1;
+/// The chance that a surface looks for receivers behind walls.
+const LOOK_THROUGH: f32 = 0.1;
+/// Panels at least this large are walls and doors, m².
+const WALL_M2: f32 = 0.5;
+/// No ray is followed further than this many reflections.
+const MOST_REFLECTIONS: usize = 20_000;
+/// Less energy than this is none: its inverse is a number still.
+const FAINTEST: f32 = 1e-30;
+/// Way between two looks at how energies have spread, m: about two reflections in a living room.
+const STAGE_M: f32 = 5.0;
+
+/// What all rays of one trace have in common.
+pub(super) struct RayTracer<'a> {
+    pub(super) scene: &'a AcousticScene,
+    pub(super) rays: &'a RayScene,
+    pub(super) source: Vec3,
+    /// The source's axis and how loud it is around it.
+    pub(super) axis: Vec3,
+    pub(super) pattern: TabulatedPattern,
+    pub(super) listeners: &'a [TailReceiver],
+    pub(super) turn: Quat,
+    /// Where the sequence of directions begins.
+    pub(super) place: (f64, f64),
+    pub(super) bins_per_m: f32,
+    pub(super) furthest_m: f32,
+    pub(super) bin_count: usize,
+    /// Shape (bin,).
+    pub(super) span_of_bin: Vec<usize>,
+    pub(super) bins_per_direction: usize,
+    /// Entries of directions over time.
+    pub(super) times: usize,
+    /// A band's energy, of all rays of a chunk, re the start below which it counts less and rays become fewer.
+    pub(super) roulette: f32,
+    /// The chance that a ray goes on behind a wall, too; 0 where nobody listens there.
+    pub(super) wall_chance: f32,
+}
+
+/// Chance: of rays that never went through a wall, and of all the rest.
+struct RayRandom<'a> {
+    own: &'a mut RandomStream,
+    aside: &'a mut RandomStream,
+}
+
+impl RayRandom<'_> {
+    fn of(&mut self, one: &TracedRay) -> &mut RandomStream {
+        if one.walls == 0 { self.own } else { self.aside }
+    }
+}
+
+/// A ray on its way.
+#[derive(Clone)]
+struct TracedRay {
+    ray: Ray,
+    energy: BandValues,
+    /// Which of the chunk's rays it once was.
+    origin: usize,
+    /// Reflections so far, those before it split among them.
+    reflections: usize,
+    travelled_m: f32,
+    /// Way since the source or the last scattering, m.
+    straight_m: f32,
+    /// Whether it was ever scattered, and whether its last reflection was a mirror's.
+    scattered: bool,
+    mirrored: bool,
+    /// Mirrors so far.
+    order: usize,
+    /// Walls that it went through.
+    walls: usize,
+}
+
+impl RayTracer<'_> {
+    /// Traces the rays of `range`, at most a chunk.
+    pub(super) fn chunk(&self, range: Range<usize>, key: RandomKey) -> RayChunk {
+        debug_assert!(range.len() <= RAYS_PER_CHUNK);
+        let receivers = self.listeners.len();
+        let mut chunk = RayChunk {
+            energy: vec![[0.0; BAND_COUNT]; receivers * self.bin_count],
+            directions: vec![[0.0; BAND_COUNT]; receivers * self.times * CELL_COUNT],
+            by_ray: vec![[0.0; SPAN_COUNT]; receivers * RAYS_PER_CHUNK],
+            segments: 0,
+            escaped: 0,
+            length_m: 0.0,
+        };
+        let mut stream = key.stream();
+        // What goes through walls has its own chance, so that what stays is the same with and without it.
+        let mut aside = key.child("walls").stream();
+        let first = range.start;
+        let start = range.map(|k| {
+            let direction = self.turn * sequence_direction(k, self.place);
+            let energy = self.pattern.gain(direction.dot(self.axis)).map(|g| g * g);
+            TracedRay::new(Ray::new(self.source, direction), energy, k - first)
+        });
+        let mut beyond = Vec::new();
+        let random = &mut RayRandom {
+            own: &mut stream,
+            aside: &mut aside,
+        };
+        let start = start.filter(|one| one.energy.iter().any(|e| *e > 0.0));
+        let start = start.collect();
+        self.trace_rays(start, random, &mut chunk, &mut beyond);
+        while let Some(one) = beyond.pop() {
+            self.trace_rays(vec![one], random, &mut chunk, &mut beyond);
+        }
+        chunk
+    }
+
+    /// Follows rays to their ends, stage by stage; what goes on behind walls is added to `beyond`.
+    fn trace_rays(
+        &self,
+        mut rays: Vec<TracedRay>,
+        random: &mut RayRandom<'_>,
+        chunk: &mut RayChunk,
+        beyond: &mut Vec<TracedRay>,
+    ) {
+        let Some(begin_m) = rays.first().map(|one| one.travelled_m) else {
+            return;
+        };
+        let count = rays.len();
+        let least = sum(&rays).map(|all| self.roulette * all);
+        let mut worth = band_importance(&rays, &least);
+        let mut next = Vec::with_capacity(count);
+        for stage in 1_u16.. {
+            let end_m = begin_m + f32::from(stage) * STAGE_M;
+            let last = end_m >= self.furthest_m;
+            for one in rays.drain(..) {
+                next.extend(self.follow(one, end_m, &worth, random, chunk, beyond));
+            }
+            let Some(one) = next.first() else { return };
+            if last {
+                return;
+            }
+            let place = random.of(one).uniform_f32();
+            worth = self::band_importance(&next, &least);
+            resample(&next, count, &worth, place, &mut rays);
+            next.clear();
+        }
+    }
+
+    /// Follows one ray to its first reflection behind `end_m`.
+    fn follow(
+        &self,
+        mut one: TracedRay,
+        end_m: f32,
+        worth: &BandValues,
+        random: &mut RayRandom<'_>,
+        chunk: &mut RayChunk,
+        beyond: &mut Vec<TracedRay>,
+    ) -> Option<TracedRay> {
+        let images = self.scene.config().image_order;
+        while one.travelled_m < end_m {
+            if one.reflections == MOST_REFLECTIONS {
+                return None;
+            }
+            let hit = self.rays.closest(&one.ray, RayMask::EAR);
+            // Images go through no walls.
+            if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
+                let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
+                self.cross(&one, reach_m, random.of(&one), chunk);
+            }
+            let Some(hit) = hit else {
+                // Behind an outer wall all is open.
+                chunk.escaped += u64::from(one.walls == 0);
+                return None;
+            };
+            if one.walls == 0 {
+                chunk.segments += 1;
+                chunk.length_m += f64::from(hit.distance_m);
+            }
+            one.travelled_m += hit.distance_m;
+            one.straight_m += hit.distance_m;
+            if one.travelled_m >= self.furthest_m {
+                return None;
+            }
+            let surface = self.rays.surface(&hit);
+            let material = self.scene.surface(surface.material);
+            if self.wall_chance > 0.0 && material.passed.iter().any(|passed| *passed > 0.0) {
+                self.pass(&one, &hit, random.aside, beyond);
+            }
+            let point = one.ray.at(hit.distance_m);
+            let cosine = surface.normal.dot(one.ray.direction);
+            let normal = if cosine > 0.0 {
+                -surface.normal
+            } else {
+                surface.normal
+            };
+            let scattering =
+                self.scene
+                    .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
+            let parts = material.parts(cosine.abs(), &scattering);
+            let start = point + normal * margin_m(point);
+            if scattering.iter().any(|s| *s > 0.0) {
+                self.add_diffuse_rain(start, normal, &one, &parts.scattered, random.aside, chunk);
+            }
+            let stream = random.of(&one);
+            if !one.turn(start, normal, &parts, worth, stream) {
+                return None;
+            }
+        }
+        Some(one)
+    }
+
+    /// Counts what the surface at `start` scatters straight to the receivers.
+    fn add_diffuse_rain(
+        &self,
+        start: Vec3,
+        normal: Vec3,
+        one: &TracedRay,
+        scattered: &BandValues,
+        aside: &mut RandomStream,
+        chunk: &mut RayChunk,
+    ) {
+        let looks_through = self.wall_chance > 0.0 && aside.uniform_f32() < LOOK_THROUGH;
+        for (receiver, listener) in self.listeners.iter().enumerate() {
+            if one.walls > 0 && !listener.hidden {
+                continue;
+            }
+            let way = listener.position - start;
+            let distance_m = way.length();
+            let cosine = normal.dot(way) / distance_m;
+            let way_m = one.travelled_m + distance_m;
+            // A receiver on the very surface has no cosine (0 / 0).
+            if cosine.is_nan() || cosine <= 0.0 || way_m >= self.furthest_m {
+                continue;
+            }
+            let direction = way / distance_m;
+            let shadow = Ray {
+                origin: start,
+                direction,
+                near_m: 0.0,
+                far_m: distance_m,
+            };
+            let mut share = one.energy;
+            if self.rays.occluded(&shadow, RayMask::EAR) {
+                if !(looks_through && listener.hidden) {
+                    continue;
+                }
+                let (scene, rays) = (self.scene, self.rays);
+                let passed = transmission::transmitted(scene, rays, start, listener.position);
+                let Some((passed, _)) = passed else {
+                    continue;
+                };
+                multiply(&mut share, &passed.map(|p| p / LOOK_THROUGH));
+            }
+            let nearest = distance_m.max(NEAREST_M);
+            multiply(&mut share, scattered);
+            let factor = 4.0 * cosine / (nearest * nearest);
+            let from = -direction;
+            self.deposit(chunk, (receiver, one.origin), way_m, &share, factor, from);
+        }
+    }
+
+    /// Now and then, lets what a wall lets through go on behind it.
+    fn pass(
+        &self,
+        one: &TracedRay,
+        hit: &Hit,
+        aside: &mut RandomStream,
+        beyond: &mut Vec<TracedRay>,
+    ) {
+        if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.wall_chance {
+            return;
+        }
+        // Nothing of furniture keeps rooms apart.
+        let panel = self.scene.table().panel(self.scene.house(), hit);
+        if panel.area_m2 < WALL_M2 {
+            return;
+        }
+        let Some(exit) = transmission::beyond(self.scene, self.rays, &one.ray, hit) else {
+            return;
+        };
+        let mut energy = one.energy;
+        multiply(&mut energy, &exit.passed.map(|p| p / self.wall_chance));
+        let inside_m = exit.start.distance(one.ray.at(hit.distance_m));
+        beyond.push(TracedRay {
+            ray: Ray::new(exit.start, one.ray.direction),
+            energy,
+            travelled_m: one.travelled_m + inside_m,
+            straight_m: one.straight_m + inside_m,
+            walls: one.walls + 1,
+            ..*one
+        });
+    }
+
+    /// Counts a ray where it crosses the balls around receivers.
+    fn cross(
+        &self,
+        one: &TracedRay,
+        reach_m: f32,
+        stream: &mut RandomStream,
+        chunk: &mut RayChunk,
+    ) {
+        // Drawn once, so that a receiver's energies do not depend on which others there are.
+        let place = stream.uniform_f32();
+        for (receiver, listener) in self.listeners.iter().enumerate() {
+            if one.walls > 0 && !listener.hidden {
+                continue;
+            }
+            let Some(crossing) = listener.crossing(
+                &one.ray,
+                reach_m - margin_m(one.ray.origin),
+                one.travelled_m,
+            ) else {
+                continue;
+            };
+            // Only what the receiver sees of its ball counts: one point of the piece stands for it.
+            let along = crossing.enter_m + place * (crossing.leave_m - crossing.enter_m);
+            let point = one.ray.at(along);
+            let sight = Ray::segment(listener.position, point, 0.0);
+            if self.rays.occluded(&sight, RayMask::EAR) {
+                continue;
+            }
+            let way_m = one.travelled_m + 0.5 * (crossing.enter_m + crossing.leave_m);
+            let from = -one.ray.direction;
+            let to = (receiver, one.origin);
+            self.deposit(chunk, to, way_m, &one.energy, crossing.factor, from);
+        }
+    }
+
+    fn deposit(
+        &self,
+        chunk: &mut RayChunk,
+        (receiver, origin): (usize, usize),
+        way_m: f32,
+        energy: &BandValues,
+        factor: f32,
+        from: Vec3,
+    ) {
+        let bin = (way_m * self.bins_per_m) as usize;
+        if bin >= self.bin_count {
+            return;
+        }
+        let all = energy.iter().sum::<f32>() * factor;
+        chunk.by_ray[receiver * RAYS_PER_CHUNK + origin][self.span_of_bin[bin]] += all;
+        let time = receiver * self.times + bin / self.bins_per_direction;
+        let cell = &mut chunk.directions[time * CELL_COUNT + cell_of(from)];
+        let bin = &mut chunk.energy[receiver * self.bin_count + bin];
+        for ((total, cell), e) in bin.iter_mut().zip(cell).zip(energy) {
+            *total += e * factor;
+            *cell += e * factor;
+        }
+    }
+}
+
+/// Energy of all rays. Shape (band,).
+fn sum(rays: &[TracedRay]) -> BandValues {
+    let mut sum = [0.0; BAND_COUNT];
+    for one in rays {
+        for (all, e) in sum.iter_mut().zip(&one.energy) {
+            *all += e;
+        }
+    }
+    sum
+}
+
+/// What energy is worth in each band: all bands are worth the same, 1, until they fall below their `least`. Shape (band,).
+fn band_importance(rays: &[TracedRay], least: &BandValues) -> BandValues {
+    let all = sum(rays);
+    std::array::from_fn(|band| {
+        let all = all[band].max(least[band]);
+        if all > FAINTEST { 1.0 / all } else { 0.0 }
+    })
+}
+
+/// Rays of equal worth for those of `from`: the strong ones split, the weak ones end or stand for others. `count`: as many as there
+/// should be while no band is below its least; then there are fewer. While they are worth about the same still, all stay as they
+/// are. `place`: chance, 0 to 1.
+///
+/// After some reflections, the energy that is left is that of a few lucky rays. Split, they meet other surfaces from then on.
+///
+/// # Source
+/// G. Kitagawa, J. Comput. Graph. Stat. 5, 1 (1996), appendix: stratified resampling, here with equal distances ("systematic"); when
+/// half of the effective number is lost: A. Kong, J. S. Liu, W. H. Wong, J. Am. Stat. Assoc. 89, 278 (1994).
+fn resample(
+    from: &[TracedRay],
+    count: usize,
+    worth: &BandValues,
+    place: f32,
+    into: &mut Vec<TracedRay>,
+) {
+    let weights = || from.iter().map(|one| one.weight(worth));
+    let (all, squares): (f32, f32) = (weights().sum(), weights().map(|w| w * w).sum());
+    let bands = worth.iter().filter(|worth| **worth > 0.0).count();
+    if bands == 0 {
+        return;
+    }
+    let each = bands as f32 / count as f32;
+    // As many as there should be, of which no less than half count.
+    if all > 0.99 * bands as f32 && all * all > 0.5 * count as f32 * squares {
+        into.extend_from_slice(from);
+        return;
+    }
+    // A mark at every `each` of all worth, from a place by chance on.
+    let mut mark = place * each;
+    let mut passed = 0.0;
+    for (one, weight) in from.iter().zip(weights()) {
+        passed += weight;
+        while mark < passed && into.len() <= count {
+            mark += each;
+            let mut copy = one.clone();
+            copy.energy = one.energy.map(|e| e * (each / weight));
+            into.push(copy);
+        }
+    }
+}
+
+impl TracedRay {
+    /// At the source, ray `origin` of its chunk.
+    fn new(ray: Ray, energy: BandValues, origin: usize) -> Self {
+        Self {
+            ray,
+            energy,
+            origin,
+            reflections: 0,
+            travelled_m: 0.0,
+            straight_m: 0.0,
+            scattered: false,
+            mirrored: false,
+            order: 0,
+            walls: 0,
+        }
+    }
+
+    /// What it counts among others.
+    fn weight(&self, worth: &BandValues) -> f32 {
+        self.energy
+            .iter()
+            .zip(worth)
+            .map(|(e, worth)| e * worth)
+            .sum()
+    }
+
+    /// Leaves a surface, scattered or mirrored; `false` where nothing is left.
+    ///
+    /// The fraction of what stays of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the
+    /// bands, and no band's weight can grow from reflection to reflection.
+    fn turn(
+        &mut self,
+        start: Vec3,
+        normal: Vec3,
+        parts: &ReflectedEnergy,
+        worth: &BandValues,
+        stream: &mut RandomStream,
+    ) -> bool {
+        let part = |of: &BandValues| -> f32 {
+            let energy = self.energy.iter().zip(worth).map(|(e, worth)| e * worth);
+            energy.zip(of).map(|(e, part)| e * part).sum()
+        };
+        let (scattered, mirrored) = (part(&parts.scattered), part(&parts.mirrored));
+        if scattered + mirrored <= 0.0 {
+            return false;
+        }
+        self.reflections += 1;
+        let scatter = (scattered / (scattered + mirrored)).clamp(0.0, 1.0);
+        if scatter > 0.0 && stream.uniform_f32() < scatter {
+            multiply(&mut self.energy, &parts.scattered.map(|s| s / scatter));
+            self.ray = Ray::new(start, lambert(normal, stream));
+            (self.scattered, self.mirrored, self.straight_m) = (true, false, 0.0);
+        } else {
+            let kept = 1.0 - scatter;
+            multiply(&mut self.energy, &parts.mirrored.map(|m| m / kept));
+            let direction = self.ray.direction;
+            self.ray = Ray::new(start, direction - 2.0 * direction.dot(normal) * normal);
+            self.mirrored = true;
+            self.order += 1;
+        }
+        true
+    }
+}
+
+fn multiply(energy: &mut BandValues, factors: &BandValues) {
+    for (e, factor) in energy.iter_mut().zip(factors) {
+        *e *= factor;
+    }
+}
+
+/// A direction above a surface with the density of Lambert's cosine law.
+fn lambert(normal: Vec3, stream: &mut RandomStream) -> Vec3 {
+    let u = stream.uniform_f32();
+    let (s, c) = sin_cos(TAU * stream.uniform_f32());
+    let (tangent, bitangent) = normal.any_orthonormal_pair();
+    let r = u.sqrt();
+    tangent * (r * c) + bitangent * (r * s) + normal * (1.0 - u).max(0.0).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ray of some energy in all bands.
+    fn ray(energy: f32) -> TracedRay {
+        let energy = std::array::from_fn(|band| energy * (1.0 + band as f32));
+        TracedRay::new(Ray::new(Vec3::ZERO, Vec3::X), energy, 0)
+    }
+
+    /// Over all places, every ray's energy comes out again, whether rays are split or thinned; alike, they stay as they are.
+    #[test]
+    fn resampling_keeps_what_every_ray_stands_for() {
+        let from: Vec<TracedRay> = (0..16)
+            .map(|k| TracedRay {
+                origin: k,
+                ..ray(if k == 3 { 40.0 } else { 0.1 + k as f32 })
+            })
+            .collect();
+        let start = sum(&from);
+        // As much as there was, and a tenth of it: the rays are as many, or about a tenth.
+        for (least, many) in [(0.1, 16.0), (10.0, 1.6)] {
+            let worth = band_importance(&from, &start.map(|all| least * all));
+            let (mut found, mut rays) = ([0.0_f64; 16], 0);
+            let places = 1000;
+            for k in 0..places {
+                let place = (k as f32 + 0.5) / places as f32;
+                let mut into = Vec::new();
+                resample(&from, 16, &worth, place, &mut into);
+                rays += into.len();
+                for one in into {
+                    found[one.origin] += f64::from(one.energy[2]) / f64::from(places);
+                }
+            }
+            assert!(
+                (rays as f64 / f64::from(places) - many).abs() < 0.02,
+                "{rays}"
+            );
+            for (found, one) in found.iter().zip(&from) {
+                let wanted = f64::from(one.energy[2]);
+                assert!((found / wanted - 1.0).abs() < 0.03, "{found} for {wanted}");
+            }
+        }
+        let alike = vec![ray(1.0); 9];
+        let mut into = Vec::new();
+        resample(
+            &alike,
+            9,
+            &band_importance(&alike, &[0.0; BAND_COUNT]),
+            0.5,
+            &mut into,
+        );
+        assert!(into.len() == 9 && into.iter().all(|one| one.energy == ray(1.0).energy));
+    }
+
+    /// What nobody can hear, nor divide by, is no energy.
+    #[test]
+    fn the_faintest_rays_end() {
+        let mut into = Vec::new();
+        let faint = vec![ray(1e-38); 4];
+        let worth = band_importance(&faint, &[0.0; BAND_COUNT]);
+        resample(&faint, 4, &worth, 0.5, &mut into);
+        assert!(into.is_empty());
+    }
+
+    /// The mean cosine of Lambert's law is 2/3, its mean square 1/2; five seeds, five standard errors.
+    #[test]
+    fn scattered_directions_follow_lambert() {
+        let normal = Vec3::new(0.36, 0.48, 0.8);
+        for seed in 0..5 {
+            let mut stream = RandomKey::root(seed).stream();
+            let n = 40_000;
+            let (mut first, mut second, mut across) = (0.0_f64, 0.0_f64, Vec3::ZERO);
+            for _ in 0..n {
+                let direction = lambert(normal, &mut stream);
+                let cosine = f64::from(direction.dot(normal));
+                assert!((direction.length() - 1.0).abs() < 1e-5);
+                first += cosine;
+                second += cosine * cosine;
+                across += direction - normal * cosine as f32;
+            }
+            let n = f64::from(n);
+            assert!((first / n - 2.0 / 3.0).abs() < 5.0 * (1.0 / 18.0 / n).sqrt());
+            assert!((second / n - 0.5).abs() < 5.0 * (1.0 / 12.0 / n).sqrt());
+            assert!(f64::from(across.length()) / n < 5.0 * (0.5 / n).sqrt());
+        }
+    }
+}
