@@ -68,7 +68,7 @@ pub(crate) fn furniture_kinds() -> std::collections::BTreeMap<&'static str, &'st
 /// The words of instructions; token k is word k - 1, 0 is padding.
 #[pyfunction]
 pub(crate) fn vocabulary() -> Vec<&'static str> {
-    dwell_semantics::tokens::vocabulary().to_vec()
+    dwell_semantics::vocabulary::vocabulary().to_vec()
 }
 
 /// The characters of instructions.

@@ -11,7 +11,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
 use dwell_semantics::graph::scene_graph;
-use dwell_semantics::instruct::{Goal, InstructionKind, candidates, choose};
+use dwell_semantics::instruct::{InstructionGoal, InstructionKind, candidates, choose};
 use dwell_semantics::{Semantics, describe};
 use glam::Vec3;
 use pyo3::prelude::*;
@@ -299,7 +299,7 @@ pub(crate) fn describe_level(
 }
 
 /// Where an instruction leads, by the numbers of sensors and of the scene graph: ids of objects, rooms counted from 0.
-fn goal(house: &House, goal: &Goal) -> Value {
+fn goal(house: &House, goal: &InstructionGoal) -> Value {
     let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
     json!({
         "rooms": goal.rooms,

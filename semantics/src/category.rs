@@ -1,7 +1,7 @@
 //! Household categories, `assets/categories.csv`.
 
+use crate::csv_table::CsvTable;
 use crate::error::SemanticsError;
-use crate::table::Table;
 use dwell_scene::Category;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -12,7 +12,7 @@ use std::sync::LazyLock;
     clippy::struct_excessive_bools,
     reason = "the columns of the file are independent flags"
 )]
-pub struct CategoryRow {
+pub struct SemanticCategory {
     /// The identifier.
     pub name: &'static str,
     /// Spoken, for one.
@@ -56,13 +56,13 @@ pub struct CategoryRow {
 /// All categories.
 #[derive(Debug)]
 pub struct Categories {
-    rows: Vec<CategoryRow>,
+    rows: Vec<SemanticCategory>,
     by_name: BTreeMap<&'static str, usize>,
 }
 
 impl Categories {
     fn parse(text: &'static str) -> Result<Self, SemanticsError> {
-        let table = Table::parse("categories.csv", text)?;
+        let table = CsvTable::parse("categories.csv", text)?;
         let (mut rows, mut by_name) = (Vec::new(), BTreeMap::new());
         let mut aliases = Vec::new();
         for row in table.rows() {
@@ -72,7 +72,7 @@ impl Categories {
                 return Err(row.fault(format!("the name {name:?} is taken")));
             }
             aliases.extend(row.list("aliases")?.into_iter().map(|alias| (alias, index)));
-            rows.push(CategoryRow {
+            rows.push(SemanticCategory {
                 name,
                 singular: row.text("singular")?,
                 plural: row.text("plural")?,
@@ -105,17 +105,17 @@ impl Categories {
     }
 
     /// All rows, in file order.
-    pub fn rows(&self) -> &[CategoryRow] {
+    pub fn rows(&self) -> &[SemanticCategory] {
         &self.rows
     }
 
     /// The row called `name`, by identifier or alias.
-    pub fn get(&self, name: &str) -> Option<&CategoryRow> {
+    pub fn get(&self, name: &str) -> Option<&SemanticCategory> {
         self.by_name.get(name).map(|index| &self.rows[*index])
     }
 
     /// The row of a thing: by its fine name, else its coarse one. `None` when neither is known.
-    pub fn of(&self, category: &Category) -> Option<&CategoryRow> {
+    pub fn of(&self, category: &Category) -> Option<&SemanticCategory> {
         let known = |name: &str| self.get(name).or_else(|| self.get(&name.replace(' ', "_")));
         known(&category.fine)
             .filter(|row| row.name != "unknown")
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn the_articles_of_the_file_are_those_of_the_rule() {
         let text = include_str!("../../assets/categories.csv");
-        let table = Table::parse("categories.csv", text).unwrap();
+        let table = CsvTable::parse("categories.csv", text).unwrap();
         for row in table.rows() {
             let noun = row.text("singular").unwrap();
             assert_eq!(row.text("article").unwrap(), article(noun), "{noun}");

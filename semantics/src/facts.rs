@@ -1,10 +1,10 @@
 //! What is true of an object in every state: kind, colours, substances, size.
 
-use crate::category::{CategoryRow, categories};
-use crate::color::{Paint, Patch, Vocabulary, color_words};
+use crate::category::{SemanticCategory, categories};
+use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
 use crate::english::counted_noun;
 use crate::geometry::mapped_area_m2;
-use crate::size::Size;
+use crate::size::SizeClass;
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId};
 use glam::Vec3;
@@ -14,16 +14,16 @@ const MADE_OF_SHARE: f32 = 0.5;
 
 /// The lasting facts about an object.
 #[derive(Clone, Debug)]
-pub struct Facts {
+pub struct ObjectFacts {
     /// Its category, if the table knows it.
-    pub category: Option<&'static CategoryRow>,
+    pub category: Option<&'static SemanticCategory>,
     /// Spoken noun, for one.
     pub noun: String,
     /// Spoken noun, for several.
     pub plural: String,
     /// Its materials by share of what is seen of it where it stands at the start, from around and a little above (below, for
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens are left out.
-    pub patches: Vec<Patch>,
+    pub patches: Vec<SurfacePatch>,
     /// Its colours in plain words with their shares, largest first; none for what is mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// Its substances with their shares of the surface, largest first.
@@ -31,13 +31,13 @@ pub struct Facts {
     /// Edges of the box around it in the axes of its root part, m.
     pub extents_m: Vec3,
     /// How large it is for its kind.
-    pub size: Size,
+    pub size: SizeClass,
 }
 
-impl Facts {
+impl ObjectFacts {
     pub(crate) fn gather(
         house: &House,
-        paints: &IdVec<MaterialId, Paint>,
+        paints: &IdVec<MaterialId, MaterialColors>,
         seen: &[(MaterialId, f32)],
         id: ObjectId,
     ) -> Self {
@@ -61,7 +61,7 @@ impl Facts {
             if mostly.is_some_and(|(substance, _)| clear.contains(&substance.name.as_str())) {
                 Vec::new()
             } else {
-                color_words(&patches, Vocabulary::Plain)
+                color_words(&patches, ColorVocabulary::Plain)
             };
         Self {
             category,
@@ -71,12 +71,12 @@ impl Facts {
             patches,
             substances,
             extents_m,
-            size: Size::of(extents_m, category),
+            size: SizeClass::of(extents_m, category),
         }
     }
 
     /// The words for its colours in `vocabulary`, largest share first.
-    pub fn color_words(&self, vocabulary: Vocabulary) -> Vec<&'static str> {
+    pub fn color_words(&self, vocabulary: ColorVocabulary) -> Vec<&'static str> {
         color_words(&self.patches, vocabulary)
             .into_iter()
             .map(|(word, _)| word)
@@ -247,7 +247,7 @@ fn areas_m2(house: &House, id: ObjectId) -> Vec<(MaterialId, f32)> {
 /// `areas` without the picture of a screen: a television has the colour of its frame, whatever is on.
 fn without_screen(
     house: &House,
-    category: Option<&CategoryRow>,
+    category: Option<&SemanticCategory>,
     areas: &[(MaterialId, f32)],
 ) -> Vec<(MaterialId, f32)> {
     let screened = category.is_some_and(|row| {
@@ -264,15 +264,15 @@ fn without_screen(
 /// Materials by opacity-weighted share of `areas`, largest first.
 fn patches(
     house: &House,
-    paints: &IdVec<MaterialId, Paint>,
+    paints: &IdVec<MaterialId, MaterialColors>,
     areas: &[(MaterialId, f32)],
-) -> Vec<Patch> {
+) -> Vec<SurfacePatch> {
     let weight =
         |(material, area): &(MaterialId, f32)| area * house.materials[*material].opacity.max(0.02);
     let total: f32 = areas.iter().map(weight).sum();
-    let mut patches: Vec<Patch> = areas
+    let mut patches: Vec<SurfacePatch> = areas
         .iter()
-        .map(|area| Patch {
+        .map(|area| SurfacePatch {
             material: area.0,
             linear: paints[area.0].dominant,
             share: weight(area) / total,

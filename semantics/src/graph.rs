@@ -1,7 +1,7 @@
 //! The scene graph: rooms, objects with their properties, and every relation that holds.
 
 use crate::predicates;
-use crate::scene::{Scene, Term, Viewer};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct SceneGraph {
     /// Objects in order.
     pub objects: Vec<ObjectNode>,
     /// Relations, sorted by subject, then predicate, then object.
-    pub relations: Vec<Edge>,
+    pub relations: Vec<RelationEdge>,
 }
 
 /// A room.
@@ -48,7 +48,7 @@ pub struct ObjectNode {
     /// Substances by name, largest share first.
     pub substances: Vec<String>,
     /// Its size for its kind.
-    pub size: crate::Size,
+    pub size: crate::SizeClass,
     /// The room it is in.
     pub room: Option<u32>,
     /// The middle of its box, m.
@@ -65,7 +65,7 @@ pub struct ObjectNode {
 
 /// One relation that holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Edge {
+pub struct RelationEdge {
     /// The sensors' id of an object.
     pub subject: i32,
     /// The predicate's name.
@@ -74,7 +74,7 @@ pub struct Edge {
     pub object: i32,
 }
 
-fn node(scene: &Scene<'_>, id: ObjectId) -> ObjectNode {
+fn node(scene: &SemanticScene<'_>, id: ObjectId) -> ObjectNode {
     let (house, facts) = (scene.house(), scene.facts(id));
     let bounds = scene.extent(id).bounds;
     ObjectNode {
@@ -104,7 +104,7 @@ fn node(scene: &Scene<'_>, id: ObjectId) -> ObjectNode {
 }
 
 /// The objects and pieces of the building whose middles are in front of a viewer, the nearest of them; in order.
-fn in_front(scene: &Scene<'_>, viewer: &Viewer) -> Vec<Term> {
+fn in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
     let house = scene.house();
     let objects = house.objects.ids().map(Term::Object);
     let terms = objects.chain(house.structure.ids().map(Term::Structure));
@@ -124,7 +124,7 @@ fn in_front(scene: &Scene<'_>, viewer: &Viewer) -> Vec<Term> {
 /// it.
 ///
 /// Relations are those between objects, between an object and a structure piece it rests or hangs on, and `in_room`.
-pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
+pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
     let house = scene.house();
     let rooms = house.rooms.ids().map(|id| {
         let facts = scene.semantics.room(id);
@@ -150,7 +150,7 @@ pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
             } else {
                 Vec::new()
             };
-            relations.extend(found.into_iter().map(|term| Edge {
+            relations.extend(found.into_iter().map(|term| RelationEdge {
                 subject: house.entity_of_object(subject).0,
                 predicate: predicate.name().to_owned(),
                 object: match term {
@@ -174,7 +174,7 @@ pub fn scene_graph(scene: &Scene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
 
 impl SceneGraph {
     /// The relations of one object, by sensors' id.
-    pub fn of(&self, id: i32) -> impl Iterator<Item = &Edge> {
+    pub fn of(&self, id: i32) -> impl Iterator<Item = &RelationEdge> {
         self.relations.iter().filter(move |edge| edge.subject == id)
     }
 

@@ -1,13 +1,13 @@
 //! Kinds of rooms, `assets/rooms.csv`.
 
+use crate::csv_table::CsvTable;
 use crate::error::SemanticsError;
-use crate::table::Table;
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 /// A row of `assets/rooms.csv`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RoomKind {
+pub struct RoomCategory {
     /// The identifier.
     pub name: &'static str,
     /// Spoken, for one.
@@ -24,8 +24,8 @@ pub struct RoomKind {
 
 /// All kinds of rooms.
 #[derive(Debug)]
-pub struct RoomKinds {
-    rows: Vec<RoomKind>,
+pub struct RoomCategories {
+    rows: Vec<RoomCategory>,
     by_word: BTreeMap<String, usize>,
 }
 
@@ -33,14 +33,14 @@ fn key(word: &str) -> String {
     word.to_lowercase().replace('_', " ")
 }
 
-impl RoomKinds {
+impl RoomCategories {
     fn parse(text: &'static str) -> Result<Self, SemanticsError> {
-        let table = Table::parse("rooms.csv", text)?;
+        let table = CsvTable::parse("rooms.csv", text)?;
         let (mut rows, mut by_word) = (Vec::new(), BTreeMap::new());
         let mut weaker = Vec::new();
         for row in table.rows() {
             let index = rows.len();
-            let kind = RoomKind {
+            let kind = RoomCategory {
                 name: row.text("name")?,
                 singular: row.text("singular")?,
                 plural: row.text("plural")?,
@@ -61,21 +61,21 @@ impl RoomKinds {
     }
 
     /// All rows, in file order.
-    pub fn rows(&self) -> &[RoomKind] {
+    pub fn rows(&self) -> &[RoomCategory] {
         &self.rows
     }
 
     /// The kind that a word means: identifier, spoken word, synonym or label of a file; case and underscores do not
     /// matter.
-    pub fn get(&self, word: &str) -> Option<&RoomKind> {
+    pub fn get(&self, word: &str) -> Option<&RoomCategory> {
         self.by_word.get(&key(word)).map(|index| &self.rows[*index])
     }
 }
 
 /// The table that ships with the engine.
-pub fn room_kinds() -> &'static RoomKinds {
-    static TABLE: LazyLock<RoomKinds> = LazyLock::new(|| {
-        RoomKinds::parse(include_str!("../../assets/rooms.csv"))
+pub fn room_kinds() -> &'static RoomCategories {
+    static TABLE: LazyLock<RoomCategories> = LazyLock::new(|| {
+        RoomCategories::parse(include_str!("../../assets/rooms.csv"))
             .expect("assets/rooms.csv is checked by this crate's tests")
     });
     &TABLE

@@ -1,9 +1,9 @@
 //! What is true of a room in every state.
 
-use crate::color::{Paint, Patch, Vocabulary, color_words};
+use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
 use crate::english;
-use crate::passages::passages;
-use crate::room_kind::{RoomKind, preposition, room_kinds};
+use crate::open_passages::passages;
+use crate::room_kind::{RoomCategory, preposition, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::material::library;
 use dwell_scene::math;
@@ -21,9 +21,9 @@ const DIRECTIONS: usize = 48;
 
 /// The lasting facts about a room.
 #[derive(Clone, Debug)]
-pub struct RoomFacts {
+pub struct RoomProperties {
     /// Its kind, if the table knows it.
-    pub kind: Option<&'static RoomKind>,
+    pub kind: Option<&'static RoomCategory>,
     /// Spoken noun, for one.
     pub noun: String,
     /// Spoken noun, for several.
@@ -44,14 +44,14 @@ pub struct RoomFacts {
     pub passages: Vec<RoomId>,
 }
 
-impl RoomFacts {
+impl RoomProperties {
     pub(crate) fn gather(
         rays: &RayScene,
-        paints: &IdVec<MaterialId, Paint>,
+        paints: &IdVec<MaterialId, MaterialColors>,
         doors: &[Aabb],
     ) -> IdVec<RoomId, Self> {
         let house = rays.house();
-        let surfaces = Surfaces::gather(rays, paints);
+        let surfaces = RoomSurfaces::gather(rays, paints);
         let passages = passages(rays, doors);
         let mut rooms: IdVec<RoomId, Self> = house
             .rooms
@@ -76,9 +76,9 @@ impl RoomFacts {
         rooms
     }
 
-    fn of(house: &House, surfaces: &Surfaces, id: RoomId) -> Self {
+    fn of(house: &House, surfaces: &RoomSurfaces, id: RoomId) -> Self {
         let room = &house.rooms[id];
-        let kinds: Vec<Option<&RoomKind>> = room
+        let kinds: Vec<Option<&RoomCategory>> = room
             .kinds
             .iter()
             .map(|kind| room_kinds().get(kind))
@@ -121,14 +121,14 @@ impl RoomFacts {
 }
 
 /// Areas of floors by substance and seen walls by material, per room.
-struct Surfaces {
+struct RoomSurfaces {
     floors: IdVec<RoomId, BTreeMap<String, f32>>,
-    floor_paints: IdVec<RoomId, Vec<Patch>>,
-    walls: IdVec<RoomId, Vec<Patch>>,
+    floor_paints: IdVec<RoomId, Vec<SurfacePatch>>,
+    walls: IdVec<RoomId, Vec<SurfacePatch>>,
 }
 
-impl Surfaces {
-    fn gather(rays: &RayScene, paints: &IdVec<MaterialId, Paint>) -> Self {
+impl RoomSurfaces {
+    fn gather(rays: &RayScene, paints: &IdVec<MaterialId, MaterialColors>) -> Self {
         let house = rays.house();
         let count = house.rooms.len();
         let mut floors = IdVec::filled(BTreeMap::new(), count);
@@ -165,7 +165,7 @@ impl Surfaces {
             .collect();
         let walls = points
             .iter()
-            .map(|points| seen_walls(rays, paints, points))
+            .map(|points| visible_wall_areas(rays, paints, points))
             .collect();
         Self {
             floors,
@@ -186,14 +186,14 @@ impl Surfaces {
 }
 
 /// The colour word of at least half of a surface.
-fn most(patches: &[Patch]) -> Option<&'static str> {
-    let words = color_words(patches, Vocabulary::Plain);
+fn most(patches: &[SurfacePatch]) -> Option<&'static str> {
+    let words = color_words(patches, ColorVocabulary::Plain);
     let (word, _) = words.first().filter(|(_, share)| *share >= 0.5)?;
     Some(word)
 }
 
 /// Makes areas shares of their sum.
-fn shares(patches: &mut [Patch]) {
+fn shares(patches: &mut [SurfacePatch]) {
     let whole: f32 = patches.iter().map(|patch| patch.share).sum();
     for patch in patches {
         patch.share /= whole;
@@ -203,7 +203,11 @@ fn shares(patches: &mut [Patch]) {
 /// The materials of the walls that somebody in the room sees, by share of the directions to the side.
 ///
 /// Walls have two shells and rooms may overlap, so what belongs to a room is not what shows in it.
-fn seen_walls(rays: &RayScene, paints: &IdVec<MaterialId, Paint>, points: &[Vec3]) -> Vec<Patch> {
+fn visible_wall_areas(
+    rays: &RayScene,
+    paints: &IdVec<MaterialId, MaterialColors>,
+    points: &[Vec3],
+) -> Vec<SurfacePatch> {
     let mut patches = Vec::new();
     let step = (points.len() / LOOKS).max(1);
     for eye in points.iter().step_by(step) {
@@ -230,10 +234,15 @@ fn seen_walls(rays: &RayScene, paints: &IdVec<MaterialId, Paint>, points: &[Vec3
     patches
 }
 
-fn add(patches: &mut Vec<Patch>, material: MaterialId, linear: Option<[f32; 3]>, share: f32) {
+fn add(
+    patches: &mut Vec<SurfacePatch>,
+    material: MaterialId,
+    linear: Option<[f32; 3]>,
+    share: f32,
+) {
     match patches.iter_mut().find(|patch| patch.material == material) {
         Some(patch) => patch.share += share,
-        None => patches.push(Patch {
+        None => patches.push(SurfacePatch {
             material,
             linear,
             share,

@@ -1,9 +1,11 @@
 //! A house in one state, as predicates see it.
 
-use crate::facts::Facts;
+use crate::facts::ObjectFacts;
 use crate::geometry::Extent;
-use crate::predicates::{Support, around, beside, near, supports_of};
-use crate::refer::Alike;
+use crate::predicates::{
+    SurfaceSupport, containers, neighbour_candidates, neighbours, supports_of,
+};
+use crate::refer::DistractorSet;
 use crate::semantics::Semantics;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
@@ -84,37 +86,37 @@ impl Viewer {
 }
 
 /// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
-pub struct Scene<'a> {
+pub struct SemanticScene<'a> {
     /// What stays true.
     pub semantics: &'a Semantics,
     /// The state.
     pub state: &'a State,
-    known: IdVec<ObjectId, Known>,
+    known: IdVec<ObjectId, ObjectCache>,
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
     windows: OnceCell<IdVec<RoomId, usize>>,
     /// By noun.
-    alike: RefCell<BTreeMap<String, Rc<Alike>>>,
+    alike: RefCell<BTreeMap<String, Rc<DistractorSet>>>,
 }
 
 /// What was measured of an object.
 #[derive(Default)]
-struct Known {
+struct ObjectCache {
     extent: OnceCell<Extent>,
     room: OnceCell<Option<RoomId>>,
-    supports: OnceCell<Vec<Support>>,
+    supports: OnceCell<Vec<SurfaceSupport>>,
     around: OnceCell<Vec<ObjectId>>,
     near: OnceCell<Vec<ObjectId>>,
     beside: OnceCell<Vec<ObjectId>>,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> SemanticScene<'a> {
     pub(crate) fn new(semantics: &'a Semantics, state: &'a State) -> Self {
         let count = semantics.house().objects.len();
         Self {
             semantics,
             state,
-            known: (0..count).map(|_| Known::default()).collect(),
+            known: (0..count).map(|_| ObjectCache::default()).collect(),
             boxes: OnceCell::new(),
             in_rooms: OnceCell::new(),
             windows: OnceCell::new(),
@@ -128,7 +130,7 @@ impl<'a> Scene<'a> {
     }
 
     /// What is always true of an object.
-    pub fn facts(&self, object: ObjectId) -> &'a Facts {
+    pub fn facts(&self, object: ObjectId) -> &'a ObjectFacts {
         self.semantics.facts(object)
     }
 
@@ -170,28 +172,30 @@ impl<'a> Scene<'a> {
     }
 
     /// What the object rests on, the largest share first.
-    pub fn supports(&self, object: ObjectId) -> &[Support] {
+    pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
         let supports = &self.known[object].supports;
         supports.get_or_init(|| supports_of(self, object))
     }
 
     /// What the object is in, rising; at most 32 things.
-    pub(crate) fn around(&self, object: ObjectId) -> &[ObjectId] {
+    pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
         self.known[object]
             .around
-            .get_or_init(|| around(self, object))
+            .get_or_init(|| containers(self, object))
     }
 
     /// What may be next to the object, rising; at most [`MOST_NEAR`] things.
-    pub(crate) fn near(&self, object: ObjectId) -> &[ObjectId] {
-        self.known[object].near.get_or_init(|| near(self, object))
+    pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
+        self.known[object]
+            .near
+            .get_or_init(|| neighbour_candidates(self, object))
     }
 
     /// What is next to the object, rising.
-    pub(crate) fn beside(&self, object: ObjectId) -> &[ObjectId] {
+    pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
         self.known[object]
             .beside
-            .get_or_init(|| beside(self, object))
+            .get_or_init(|| neighbours(self, object))
     }
 
     /// Whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
@@ -263,11 +267,11 @@ impl<'a> Scene<'a> {
     }
 
     /// The things that may be called `noun`.
-    pub(crate) fn alike(&self, noun: &str) -> Rc<Alike> {
+    pub(crate) fn distractors(&self, noun: &str) -> Rc<DistractorSet> {
         if let Some(known) = self.alike.borrow().get(noun) {
             return known.clone();
         }
-        let alike = Rc::new(Alike::gather(self, noun));
+        let alike = Rc::new(DistractorSet::gather(self, noun));
         let mut all = self.alike.borrow_mut();
         all.insert(noun.to_owned(), alike.clone());
         alike

@@ -1,15 +1,15 @@
 //! The entry point: a house, and what can be said about it.
 
-use crate::color::{Paint, paints};
-use crate::doors::Doorway;
+use crate::color::{MaterialColors, paints};
+use crate::doorways::RoomDoorway;
 use crate::error::SemanticsError;
-use crate::facts::Facts;
+use crate::facts::ObjectFacts;
 use crate::geometry::{Extent, Hull};
-use crate::kinds::Kinds;
+use crate::noun_index::NounIndex;
 use crate::predicates;
-use crate::rooms::RoomFacts;
-use crate::scene::{Scene, Term, Viewer};
-use crate::seen::seen_surfaces;
+use crate::rooms::RoomProperties;
+use crate::scene::{SemanticScene, Term, Viewer};
+use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
 use dwell_scene::rays::RayScene;
@@ -22,14 +22,14 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Semantics {
     house: Arc<House>,
-    facts: IdVec<ObjectId, Facts>,
-    kinds: Kinds,
+    facts: IdVec<ObjectId, ObjectFacts>,
+    kinds: NounIndex,
     rest_extents: IdVec<ObjectId, Extent>,
     structure: IdVec<StructureId, (Aabb, Hull)>,
     structure_boxes: BoxTree,
-    rooms: IdVec<RoomId, RoomFacts>,
-    doorways: BTreeMap<ObjectId, Doorway>,
-    paints: IdVec<MaterialId, Paint>,
+    rooms: IdVec<RoomId, RoomProperties>,
+    doorways: BTreeMap<ObjectId, RoomDoorway>,
+    paints: IdVec<MaterialId, MaterialColors>,
 }
 
 impl Semantics {
@@ -54,23 +54,23 @@ impl Semantics {
         let rays = RayScene::new(house.clone());
         let bounds: IdVec<ObjectId, Aabb> =
             rest_extents.iter().map(|extent| extent.bounds).collect();
-        let seen = seen_surfaces(&rays, &bounds);
-        let facts: IdVec<ObjectId, Facts> = objects()
+        let seen = visible_surface_areas(&rays, &bounds);
+        let facts: IdVec<ObjectId, ObjectFacts> = objects()
             .map(|id| {
                 interrupt::check();
-                Facts::gather(house, &paints, &seen[id], id)
+                ObjectFacts::gather(house, &paints, &seen[id], id)
             })
             .collect();
         let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
-        let doorways: BTreeMap<ObjectId, Doorway> = doors
-            .map(|(id, _)| (id, Doorway::gather(&rays, &state, id, bounds[id])))
+        let doorways: BTreeMap<ObjectId, RoomDoorway> = doors
+            .map(|(id, _)| (id, RoomDoorway::gather(&rays, &state, id, bounds[id])))
             .collect();
         let doors: Vec<Aabb> = doorways.keys().map(|id| bounds[*id]).collect();
         Self {
             structure_boxes: BoxTree::new(structure.iter().map(|(bounds, _)| *bounds).collect()),
             structure,
-            kinds: Kinds::gather(&facts),
-            rooms: RoomFacts::gather(&rays, &paints, &doors),
+            kinds: NounIndex::gather(&facts),
+            rooms: RoomProperties::gather(&rays, &paints, &doors),
             doorways,
             facts,
             rest_extents,
@@ -85,22 +85,22 @@ impl Semantics {
     }
 
     /// What is always true of an object.
-    pub fn facts(&self, object: ObjectId) -> &Facts {
+    pub fn facts(&self, object: ObjectId) -> &ObjectFacts {
         &self.facts[object]
     }
 
     /// What is always true of a room.
-    pub fn room(&self, room: RoomId) -> &RoomFacts {
+    pub fn room(&self, room: RoomId) -> &RoomProperties {
         &self.rooms[room]
     }
 
     /// Where a door or archway leads; `None` for other things.
-    pub fn doorway(&self, door: ObjectId) -> Option<&Doorway> {
+    pub fn doorway(&self, door: ObjectId) -> Option<&RoomDoorway> {
         self.doorways.get(&door)
     }
 
     /// The doors and archways with where they lead, rising.
-    pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &Doorway)> {
+    pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &RoomDoorway)> {
         self.doorways.iter().map(|(door, doorway)| (*door, doorway))
     }
 
@@ -127,18 +127,18 @@ impl Semantics {
         touching.map(StructureId::from_index)
     }
 
-    pub(crate) fn kinds(&self) -> &Kinds {
+    pub(crate) fn kinds(&self) -> &NounIndex {
         &self.kinds
     }
 
     /// The numbers of the kinds of things that may be called `noun`.
     pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
-        self.kinds.called(&self.facts, noun)
+        self.kinds.with_noun(&self.facts, noun)
     }
 
     /// The house in `state`, ready for questions.
-    pub fn scene<'a>(&'a self, state: &'a State) -> Scene<'a> {
-        Scene::new(self, state)
+    pub fn scene<'a>(&'a self, state: &'a State) -> SemanticScene<'a> {
+        SemanticScene::new(self, state)
     }
 
     /// Whether the relation `predicate` holds between two things.

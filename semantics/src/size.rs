@@ -1,13 +1,13 @@
 //! Words for sizes.
 
-use crate::category::CategoryRow;
+use crate::category::SemanticCategory;
 use dwell_scene::math;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Whether a box says nothing about the size of such things: doors swing, cloth is folded, and what is built in has the size
 /// of its room.
-fn has_no_usual_size(row: &CategoryRow) -> bool {
+fn has_no_usual_size(row: &SemanticCategory) -> bool {
     let classes = ["door", "curtain", "blinds", "towel", "clothes", "counter"];
     row.structure
         || classes.contains(&row.nyu40_name)
@@ -21,7 +21,7 @@ fn has_no_usual_size(row: &CategoryRow) -> bool {
 /// thing shows says more than its thickness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Size {
+pub enum SizeClass {
     /// z below -3: less than 0.35 times as long and wide.
     Tiny,
     /// z from -3 to -1.2.
@@ -35,10 +35,10 @@ pub enum Size {
     Huge,
 }
 
-impl Size {
-    /// The size of a box of `extents_m` beside the usual one of `row`; [`Size::Normal`] for an unknown category
+impl SizeClass {
+    /// The size of a box of `extents_m` beside the usual one of `row`; [`SizeClass::Normal`] for an unknown category
     /// and for what folds, swings or is built in.
-    pub fn of(extents_m: Vec3, row: Option<&CategoryRow>) -> Self {
+    pub fn of(extents_m: Vec3, row: Option<&SemanticCategory>) -> Self {
         let Some(row) = row.filter(|row| !has_no_usual_size(row)) else {
             return Self::Normal;
         };
@@ -77,19 +77,24 @@ mod tests {
     fn size_grows_with_the_thing_and_the_usual_one_is_normal() {
         for row in categories().rows() {
             let usual = Vec3::from(row.size_m);
-            assert_eq!(Size::of(usual, Some(row)), Size::Normal, "{}", row.name);
+            assert_eq!(
+                SizeClass::of(usual, Some(row)),
+                SizeClass::Normal,
+                "{}",
+                row.name
+            );
             if has_no_usual_size(row) {
-                assert_eq!(Size::of(usual * 3.0, Some(row)), Size::Normal);
+                assert_eq!(SizeClass::of(usual * 3.0, Some(row)), SizeClass::Normal);
                 continue;
             }
-            let mut last = Size::Tiny;
+            let mut last = SizeClass::Tiny;
             for k in 1..60 {
-                let size = Size::of(usual * (k as f32 * 0.05), Some(row));
+                let size = SizeClass::of(usual * (k as f32 * 0.05), Some(row));
                 assert!(size >= last);
                 last = size;
             }
-            assert_eq!(last, Size::Huge);
+            assert_eq!(last, SizeClass::Huge);
         }
-        assert_eq!(Size::of(Vec3::ONE, None), Size::Normal);
+        assert_eq!(SizeClass::of(Vec3::ONE, None), SizeClass::Normal);
     }
 }

@@ -2,10 +2,10 @@
 
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, House, ObjectId, ReceptacleKind, State};
-use dwell_semantics::color::Vocabulary;
+use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::describe::{caption, describe_house};
 use dwell_semantics::graph::scene_graph;
-use dwell_semantics::instruct::{InstructionKind, Progress, candidates};
+use dwell_semantics::instruct::{InstructionKind, InstructionProgress, candidates};
 use dwell_semantics::refer::{refer, refer_to_room};
 use dwell_semantics::{Semantics, Term, predicates};
 use glam::Vec3;
@@ -110,8 +110,8 @@ fn every_thing_is_mentioned_once() {
     let state = State::new(house);
     let mut text = describe_house(&semantics.scene(&state));
     // "Gray and black candles": the "and" between colours splits no list.
-    for one in Vocabulary::Plain.words() {
-        for other in Vocabulary::Plain.words() {
+    for one in ColorVocabulary::Plain.words() {
+        for other in ColorVocabulary::Plain.words() {
             text = text.replace(&format!("{one} and {other} "), &format!("{one} "));
         }
     }
@@ -302,7 +302,8 @@ fn most_things_can_be_asked_for_and_found() {
             agent.position = eye - Vec3::Y * agent.body.eye_height_m.min(eye.y);
             agent.body.eye_height_m = eye.y - agent.position.y;
             agent.yaw_rad = dwell_scene::space::yaw_from_forward(center - eye);
-            instruction.verify(&semantics.scene(&state), &rays, AgentId(0)) == Progress::Success
+            instruction.verify(&semantics.scene(&state), &rays, AgentId(0))
+                == InstructionProgress::Success
         });
         state.agents[AgentId(0)].body = AgentBody::default();
         found += usize::from(reached);

@@ -8,10 +8,10 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, ObjectId, Pose, State};
 use dwell_semantics::predicates::{all, find};
-use dwell_semantics::{Scene, Semantics, Term, Viewer};
+use dwell_semantics::{SemanticScene, Semantics, Term, Viewer};
 use glam::{Quat, Vec3};
 
-fn holds(scene: &Scene<'_>, name: &str, a: ObjectId, b: impl Into<TermOf>) -> bool {
+fn holds(scene: &SemanticScene<'_>, name: &str, a: ObjectId, b: impl Into<TermOf>) -> bool {
     find(name)
         .expect("the predicate exists")
         .holds(scene, Term::Object(a), b.into().0, None)
@@ -71,7 +71,7 @@ fn every_relation_keeps_its_laws_in_every_arrangement() {
         };
         let scene = semantics.scene(&state);
         for predicate in all() {
-            let laws = predicate.laws();
+            let laws = predicate.properties();
             let holds = |a, b| predicate.holds(&scene, a, b, Some(&viewer));
             assert!(!predicate.words().is_empty() && !predicate.name().is_empty());
             for a in &terms {

@@ -1,8 +1,8 @@
 //! Properties over random inputs.
 
-use dwell_semantics::color::{Oklab, Vocabulary};
+use dwell_semantics::color::{ColorVocabulary, Oklab};
 use dwell_semantics::geometry::Hull;
-use dwell_semantics::{english, tokens};
+use dwell_semantics::{english, vocabulary};
 use glam::Vec2;
 use proptest::prelude::*;
 
@@ -28,7 +28,7 @@ proptest! {
     #[test]
     fn the_chosen_word_is_never_beaten(r in 0.0f32..1.0, g in 0.0f32..1.0, b in 0.0f32..1.0) {
         let color = Oklab::from_linear([r, g, b]);
-        for list in [Vocabulary::Basic, Vocabulary::Web, Vocabulary::Xkcd] {
+        for list in [ColorVocabulary::Basic, ColorVocabulary::Web, ColorVocabulary::Xkcd] {
             let lab = |word| {
                 let srgb = list.srgb(word).expect("a word of the list").map(|c| f32::from(c) / 255.0);
                 Oklab::from_srgb(srgb)
@@ -36,21 +36,21 @@ proptest! {
             let chosen = lab(list.word([r, g, b])).distance(color);
             prop_assert!(list.words().iter().all(|word| lab(word).distance(color) >= chosen));
         }
-        prop_assert!(Vocabulary::Plain.words().contains(&Vocabulary::Plain.word([r, g, b])));
+        prop_assert!(ColorVocabulary::Plain.words().contains(&ColorVocabulary::Plain.word([r, g, b])));
     }
 
     #[test]
-    fn texts_of_known_words_come_back(picks in prop::collection::vec(0usize..10_000, 1..tokens::LENGTH)) {
-        let known = tokens::vocabulary();
+    fn texts_of_known_words_come_back(picks in prop::collection::vec(0usize..10_000, 1..vocabulary::LENGTH)) {
+        let known = vocabulary::vocabulary();
         let text = picks.iter().map(|k| known[k % known.len()]).collect::<Vec<_>>().join(" ");
-        let tokens = tokens::tokenize(&text).expect("all words are known");
-        prop_assert_eq!(tokens.len(), tokens::LENGTH);
-        prop_assert_eq!(tokens::detokenize(&tokens), text);
+        let tokens = vocabulary::tokenize(&text).expect("all words are known");
+        prop_assert_eq!(tokens.len(), vocabulary::LENGTH);
+        prop_assert_eq!(vocabulary::detokenize(&tokens), text);
     }
 
     #[test]
     fn no_text_makes_the_tokenizer_panic(text in ".{0,200}") {
-        let _ = tokens::tokenize(&text);
+        let _ = vocabulary::tokenize(&text);
         let _ = english::with_article(&text);
         let _ = english::capitalized(&text);
     }

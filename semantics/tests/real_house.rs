@@ -3,11 +3,11 @@
 use dwell_houses::suncg;
 use dwell_scene::parallel::Threads;
 use dwell_scene::{House, ObjectId, State};
-use dwell_semantics::color::Vocabulary;
+use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::describe::{caption, describe_house};
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, candidates};
-use dwell_semantics::{Semantics, Size};
+use dwell_semantics::{Semantics, SizeClass};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -122,7 +122,7 @@ fn things_are_in_the_rooms_that_the_file_lists_them_in() {
 
 /// The predecessor's colours of a thing: groups by texture or colour, a fifth of the area at least, plain mean of the image,
 /// nearest by Euclid's distance in sRGB.
-fn predecessor_colors(house: &House, object: ObjectId, list: Vocabulary) -> BTreeSet<String> {
+fn predecessor_colors(house: &House, object: ObjectId, list: ColorVocabulary) -> BTreeSet<String> {
     let mut groups: BTreeMap<String, (f64, [f32; 3])> = BTreeMap::new();
     for part in house.objects[object].parts() {
         let part = &house.parts[part];
@@ -156,20 +156,20 @@ fn predecessor_colors(house: &House, object: ObjectId, list: Vocabulary) -> BTre
 fn the_predecessors_colour_words_come_out_of_our_surfaces() {
     let Some(house) = sample() else { return };
     let semantics = Semantics::new(&house);
-    let cases: &[(&str, Vocabulary, &[&str])] = &[
-        ("317", Vocabulary::Basic, &["silver"]),
-        ("317", Vocabulary::Web, &["navajo white"]),
-        ("317", Vocabulary::Xkcd, &["light peach"]),
-        ("210", Vocabulary::Web, &["dark gray", "cadet blue"]),
-        ("561", Vocabulary::Web, &["linen"]),
-        ("67", Vocabulary::Basic, &["teal"]),
-        ("67", Vocabulary::Web, &["dark slate blue"]),
-        ("67", Vocabulary::Xkcd, &["denim blue"]),
-        ("656", Vocabulary::Basic, &["olive"]),
-        ("656", Vocabulary::Web, &["sienna"]),
-        ("656", Vocabulary::Xkcd, &["sienna"]),
-        ("261", Vocabulary::Basic, &["silver"]),
-        ("77", Vocabulary::Basic, &["silver", "teal"]),
+    let cases: &[(&str, ColorVocabulary, &[&str])] = &[
+        ("317", ColorVocabulary::Basic, &["silver"]),
+        ("317", ColorVocabulary::Web, &["navajo white"]),
+        ("317", ColorVocabulary::Xkcd, &["light peach"]),
+        ("210", ColorVocabulary::Web, &["dark gray", "cadet blue"]),
+        ("561", ColorVocabulary::Web, &["linen"]),
+        ("67", ColorVocabulary::Basic, &["teal"]),
+        ("67", ColorVocabulary::Web, &["dark slate blue"]),
+        ("67", ColorVocabulary::Xkcd, &["denim blue"]),
+        ("656", ColorVocabulary::Basic, &["olive"]),
+        ("656", ColorVocabulary::Web, &["sienna"]),
+        ("656", ColorVocabulary::Xkcd, &["sienna"]),
+        ("261", ColorVocabulary::Basic, &["silver"]),
+        ("77", ColorVocabulary::Basic, &["silver", "teal"]),
     ];
     let mut agree = 0;
     for (model, list, words) in cases {
@@ -232,7 +232,7 @@ fn substances_and_kinds_agree_with_the_predecessor() {
     for (model, word) in sizes {
         let ours = semantics.facts(of_model(&house, model)).size;
         println!("{model}: {word} among its class's models, {ours:?} beside a usual one");
-        assert!(ours != Size::Tiny && ours != Size::Huge);
+        assert!(ours != SizeClass::Tiny && ours != SizeClass::Huge);
     }
 }
 

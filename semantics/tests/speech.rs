@@ -9,10 +9,10 @@ use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
 use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
 use dwell_semantics::graph::{SceneGraph, scene_graph};
 use dwell_semantics::instruct::{
-    CHARSET, InstructionKind, MAX_TEXT_LEN, Progress, candidates, choose, instruction,
+    CHARSET, InstructionKind, InstructionProgress, MAX_TEXT_LEN, candidates, choose, instruction,
 };
 use dwell_semantics::refer::{refer, refer_to_room};
-use dwell_semantics::{Semantics, Term, Viewer, predicates, tokens};
+use dwell_semantics::{Semantics, Term, Viewer, predicates, vocabulary};
 use glam::Vec3;
 
 #[test]
@@ -217,7 +217,7 @@ fn the_graph_holds_exactly_what_the_predicates_say() {
             for predicate in predicates::all() {
                 let holds =
                     predicate.holds(&scene, Term::Object(a), Term::Object(b), Some(&viewer));
-                let edge = dwell_semantics::graph::Edge {
+                let edge = dwell_semantics::graph::RelationEdge {
                     subject: s.house.entity_of_object(a).0,
                     predicate: predicate.name().to_owned(),
                     object: s.house.entity_of_object(b).0,
@@ -274,7 +274,7 @@ fn crowded(seed: u64) -> std::sync::Arc<dwell_scene::House> {
 fn read_by_graph(
     graph: &SceneGraph,
     house: &dwell_scene::House,
-    e: &dwell_semantics::refer::Expression,
+    e: &dwell_semantics::refer::ReferringExpression,
 ) -> Vec<i32> {
     let called = |id: i32, noun: &str| {
         let said = &graph.object(id).expect("a node").noun;
@@ -410,8 +410,8 @@ fn every_instruction_tokenises_and_keeps_to_its_charset() {
                         && chosen.text.chars().all(|c| CHARSET.contains(c))
                 );
                 let tokens = chosen.tokens().unwrap();
-                assert_eq!(tokens.len(), tokens::LENGTH);
-                let again = tokens::detokenize(&tokens)
+                assert_eq!(tokens.len(), vocabulary::LENGTH);
+                let again = vocabulary::detokenize(&tokens)
                     .replace(" .", ".")
                     .replace(" ,", ",");
                 assert_eq!(again, chosen.text.to_lowercase());
@@ -446,16 +446,16 @@ fn going_to_a_room_succeeds_in_that_room_only() {
     let kitchen = all.iter().find(|i| i.goal.rooms == [s.kitchen]).unwrap();
     assert_eq!(kitchen.text, "Go to the kitchen.");
     let judge = |state: &State| kitchen.verify(&semantics.scene(state), &rays, AgentId(0));
-    assert_eq!(judge(&state), Progress::Continue);
+    assert_eq!(judge(&state), InstructionProgress::Continue);
     assert_eq!(
         kitchen.verify_at_stop(&semantics.scene(&state), &rays, AgentId(0)),
-        Progress::Failure
+        InstructionProgress::Failure
     );
     state.agents[AgentId(0)].position = Vec3::new(3.0, 0.0, 3.0);
-    assert_eq!(judge(&state), Progress::Success);
+    assert_eq!(judge(&state), InstructionProgress::Success);
     assert_eq!(
         kitchen.verify(&semantics.scene(&state), &rays, AgentId(7)),
-        Progress::Failure
+        InstructionProgress::Failure
     );
 }
 
@@ -474,19 +474,19 @@ fn finding_needs_nearness_and_sight() {
     let find = all.iter().find(|i| i.goal.objects == [s.fridge]).unwrap();
     assert_eq!(find.text, "Find the refrigerator.");
     let judge = |state: &State| find.verify(&semantics.scene(state), &rays, AgentId(0));
-    assert_eq!(judge(&state), Progress::Success);
+    assert_eq!(judge(&state), InstructionProgress::Success);
     // Turned away.
     state.agents[AgentId(0)].yaw_rad += 2.0;
-    assert_eq!(judge(&state), Progress::Continue);
+    assert_eq!(judge(&state), InstructionProgress::Continue);
     // Too far.
     state.agents[AgentId(0)] = agent_towards(Vec3::new(3.8, 0.0, 0.4), fridge);
-    assert_eq!(judge(&state), Progress::Continue);
+    assert_eq!(judge(&state), InstructionProgress::Continue);
     // Near, but behind the wall: it stands in the hall, a step from the refrigerator.
     state.agents[AgentId(0)] = agent_towards(Vec3::new(0.4, 0.0, 4.6), fridge);
-    assert_eq!(judge(&state), Progress::Continue);
+    assert_eq!(judge(&state), InstructionProgress::Continue);
     // In hand.
     state.agents[AgentId(0)].holding = Some(s.fridge);
-    assert_eq!(judge(&state), Progress::Success);
+    assert_eq!(judge(&state), InstructionProgress::Success);
     // Bound at reset: another colour of house changes nothing, the same thing counts.
     let bound: dwell_semantics::instruct::Instruction =
         serde_json::from_str(&serde_json::to_string(find).unwrap()).unwrap();

@@ -6,7 +6,7 @@ use crate::metrics::Progress;
 use crate::sensors::Dtype;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
-use dwell_semantics::tokens;
+use dwell_semantics::vocabulary;
 
 impl Env {
     /// Asks something else of the episode that has just begun: what a task outside of this crate does, once it has arranged
@@ -81,10 +81,10 @@ impl Env {
                 allowed: format!("1 to {MAX_TEXT_LEN} characters of {CHARSET:?}"),
             });
         }
-        match tokens::tokenize(instruction) {
+        match vocabulary::tokenize(instruction) {
             Ok(tokens) => Ok(tokens),
             Err(error) if gives_tokens => Err(error.into()),
-            Err(_) => Ok(vec![tokens::PAD; tokens::LENGTH]),
+            Err(_) => Ok(vec![vocabulary::PAD; vocabulary::LENGTH]),
         }
     }
 }

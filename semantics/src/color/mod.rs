@@ -5,6 +5,6 @@ mod paint;
 mod vocabulary;
 
 pub use oklab::Oklab;
-pub use paint::{MENTION_SHARE, Patch, color_words};
-pub(crate) use paint::{Paint, paints};
-pub use vocabulary::Vocabulary;
+pub use paint::{MENTION_SHARE, SurfacePatch, color_words};
+pub(crate) use paint::{MaterialColors, paints};
+pub use vocabulary::ColorVocabulary;

@@ -1,6 +1,6 @@
 //! The colours of a thing.
 
-use super::{Oklab, Vocabulary};
+use super::{ColorVocabulary, Oklab};
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{House, IdVec, MaterialId, Texture, TextureId};
 
@@ -19,7 +19,7 @@ const ROUNDS: usize = 4;
 
 /// The colours of a material, in linear light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Paint {
+pub(crate) struct MaterialColors {
     /// Mean over the texture, times base colour.
     pub(crate) mean: [f32; 3],
     /// The mean of the sort of colour that most of it has; `None` for pictures and patterns of several sorts.
@@ -27,7 +27,7 @@ pub(crate) struct Paint {
 }
 
 /// The colours of every material of a house. Shape (material,).
-pub(crate) fn paints(house: &House) -> IdVec<MaterialId, Paint> {
+pub(crate) fn paints(house: &House) -> IdVec<MaterialId, MaterialColors> {
     let decoded = decoded();
     let means: IdVec<TextureId, [f32; 3]> = house
         .textures
@@ -40,13 +40,13 @@ pub(crate) fn paints(house: &House) -> IdVec<MaterialId, Paint> {
         .map(|material| {
             let base = material.base_color;
             let Some(texture) = material.texture else {
-                return Paint {
+                return MaterialColors {
                     mean: base,
                     dominant: Some(base),
                 };
             };
             let mean = means[texture];
-            Paint {
+            MaterialColors {
                 mean: std::array::from_fn(|k| base[k] * mean[k]),
                 dominant: dominant(&house.textures[texture], base, &decoded),
             }
@@ -125,7 +125,7 @@ fn decoded() -> [f32; 256] {
 
 /// One material's part of a thing's surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patch {
+pub struct SurfacePatch {
     /// The material.
     pub material: MaterialId,
     /// The colour that most of it has, in linear light; `None` for pictures and patterns of several sorts of colour.
@@ -138,7 +138,10 @@ pub struct Patch {
 ///
 /// Patches of equal words count together; pictures and patterns have none; words under [`MENTION_SHARE`] are dropped, unless
 /// that leaves none of a thing without pictures and patterns.
-pub fn color_words(patches: &[Patch], vocabulary: Vocabulary) -> Vec<(&'static str, f32)> {
+pub fn color_words(
+    patches: &[SurfacePatch],
+    vocabulary: ColorVocabulary,
+) -> Vec<(&'static str, f32)> {
     let mut words: Vec<(&'static str, f32)> = Vec::new();
     for patch in patches {
         let Some(linear) = patch.linear else {
@@ -164,8 +167,8 @@ pub fn color_words(patches: &[Patch], vocabulary: Vocabulary) -> Vec<(&'static s
 mod tests {
     use super::*;
 
-    fn patch(linear: [f32; 3], share: f32) -> Patch {
-        Patch {
+    fn patch(linear: [f32; 3], share: f32) -> SurfacePatch {
+        SurfacePatch {
             material: MaterialId(0),
             linear: Some(linear),
             share,
@@ -180,27 +183,27 @@ mod tests {
             patch([0.0, 0.0, 0.6], 0.55),
             patch([0.9, 0.9, 0.9], 0.15),
         ];
-        let words: Vec<_> = color_words(&patches, Vocabulary::Plain)
+        let words: Vec<_> = color_words(&patches, ColorVocabulary::Plain)
             .iter()
             .map(|w| w.0)
             .collect();
         assert_eq!(words, ["blue", "red"]);
-        let one = color_words(&[patch([1.0; 3], 0.1)], Vocabulary::Plain);
+        let one = color_words(&[patch([1.0; 3], 0.1)], ColorVocabulary::Plain);
         assert_eq!(one[0].0, "white");
-        assert!(color_words(&[], Vocabulary::Plain).is_empty());
+        assert!(color_words(&[], ColorVocabulary::Plain).is_empty());
     }
 
     #[test]
     fn a_picture_in_a_thin_frame_has_no_word() {
-        let picture = Patch {
+        let picture = SurfacePatch {
             linear: None,
             ..patch([0.0; 3], 0.9)
         };
         let frame = patch([0.0, 0.0, 0.6], 0.1);
-        assert!(color_words(&[picture, frame], Vocabulary::Plain).is_empty());
+        assert!(color_words(&[picture, frame], ColorVocabulary::Plain).is_empty());
         let wide = patch([0.0, 0.0, 0.6], 0.4);
         assert_eq!(
-            color_words(&[picture, wide], Vocabulary::Plain)[0].0,
+            color_words(&[picture, wide], ColorVocabulary::Plain)[0].0,
             "blue"
         );
     }
@@ -215,7 +218,7 @@ mod tests {
     }
 
     fn word(texture: &Texture) -> Option<&'static str> {
-        dominant(texture, [1.0; 3], &decoded()).map(|linear| Vocabulary::Plain.word(linear))
+        dominant(texture, [1.0; 3], &decoded()).map(|linear| ColorVocabulary::Plain.word(linear))
     }
 
     #[test]

@@ -1,15 +1,15 @@
 //! Words for colours.
 
 use super::oklab::Oklab;
+use crate::csv_table::CsvTable;
 use crate::error::SemanticsError;
-use crate::table::Table;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
 /// A list of colour words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Vocabulary {
+pub enum ColorVocabulary {
     /// Twelve words of everyday speech: black, white, gray, brown, beige, red, orange, yellow, green, blue, purple,
     /// pink. What text is made of.
     #[default]
@@ -56,7 +56,7 @@ const HEADS: &[(&str, &[&str])] = &[
 
 /// A named colour.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct NamedColor {
     name: &'static str,
     srgb: [u8; 3],
     lab: Oklab,
@@ -69,15 +69,15 @@ fn hex(text: &str) -> Option<[u8; 3]> {
     Some([r, g, b])
 }
 
-fn parse(file: &'static str, text: &'static str) -> Result<Vec<Entry>, SemanticsError> {
-    let table = Table::parse(file, text)?;
-    let mut entries: Vec<Entry> = Vec::new();
+fn parse(file: &'static str, text: &'static str) -> Result<Vec<NamedColor>, SemanticsError> {
+    let table = CsvTable::parse(file, text)?;
+    let mut entries: Vec<NamedColor> = Vec::new();
     for row in table.rows() {
         let value = row.text("hex")?;
         let srgb =
             hex(value).ok_or_else(|| row.fault(format!("hex is {value:?}, allowed is #rrggbb")))?;
         let lab = Oklab::from_srgb(srgb.map(|c| f32::from(c) / 255.0));
-        entries.push(Entry {
+        entries.push(NamedColor {
             name: row.text("name")?,
             srgb,
             lab,
@@ -106,7 +106,7 @@ const LIT: f32 = 0.57;
 
 /// "Very dark brown" counts for brown. Names of very light colours are left out: people call them after the tint, a room
 /// calls them white or beige; and so are tinted greys and yellow browns, which lie between two words.
-fn plain_from_survey(survey: &[Entry]) -> Vec<Entry> {
+fn plain_from_survey(survey: &[NamedColor]) -> Vec<NamedColor> {
     let mut plain = Vec::new();
     for entry in survey {
         let last = entry.name.rsplit([' ', '/']).next().unwrap_or_default();
@@ -121,18 +121,18 @@ fn plain_from_survey(survey: &[Entry]) -> Vec<Entry> {
             && !entry.name.starts_with("very light")
             && !tinted(name)
         {
-            plain.push(Entry { name, ..*entry });
+            plain.push(NamedColor { name, ..*entry });
         }
     }
     plain
 }
 
-impl Vocabulary {
+impl ColorVocabulary {
     /// All lists, from the shortest.
     pub const ALL: [Self; 4] = [Self::Plain, Self::Basic, Self::Web, Self::Xkcd];
 
-    fn entries(self) -> &'static [Entry] {
-        static TABLES: OnceLock<[Vec<Entry>; 4]> = OnceLock::new();
+    fn entries(self) -> &'static [NamedColor] {
+        static TABLES: OnceLock<[Vec<NamedColor>; 4]> = OnceLock::new();
         let tables = TABLES.get_or_init(|| {
             let read = |file, text| {
                 parse(file, text).expect("the colour tables are checked by this crate's tests")
@@ -157,7 +157,7 @@ impl Vocabulary {
         &tables[self as usize]
     }
 
-    /// The number of colours in the list; for [`Vocabulary::Plain`] the number of survey colours it rests on.
+    /// The number of colours in the list; for [`ColorVocabulary::Plain`] the number of survey colours it rests on.
     pub fn len(self) -> usize {
         self.entries().len()
     }
@@ -239,7 +239,7 @@ impl Vocabulary {
     }
 }
 
-fn nearest(entries: &'static [Entry], distance: impl Fn(&Entry) -> f32) -> &'static str {
+fn nearest(entries: &'static [NamedColor], distance: impl Fn(&NamedColor) -> f32) -> &'static str {
     let mut best = ("", f32::INFINITY);
     for entry in entries {
         let d = distance(entry);
@@ -262,11 +262,15 @@ mod tests {
 
     #[test]
     fn the_lists_have_the_published_lengths() {
-        assert_eq!(Vocabulary::Basic.len(), 16);
-        assert_eq!(Vocabulary::Web.len(), 148);
-        assert_eq!(Vocabulary::Xkcd.len(), 949);
-        assert_eq!(Vocabulary::Plain.words().len(), 12);
-        for list in [Vocabulary::Basic, Vocabulary::Web, Vocabulary::Xkcd] {
+        assert_eq!(ColorVocabulary::Basic.len(), 16);
+        assert_eq!(ColorVocabulary::Web.len(), 148);
+        assert_eq!(ColorVocabulary::Xkcd.len(), 949);
+        assert_eq!(ColorVocabulary::Plain.words().len(), 12);
+        for list in [
+            ColorVocabulary::Basic,
+            ColorVocabulary::Web,
+            ColorVocabulary::Xkcd,
+        ] {
             let unique: BTreeSet<_> = list.words().into_iter().collect();
             assert_eq!(unique.len(), list.len());
         }
@@ -274,7 +278,11 @@ mod tests {
 
     #[test]
     fn every_named_colour_gets_a_name_of_its_own_value() {
-        for list in [Vocabulary::Basic, Vocabulary::Web, Vocabulary::Xkcd] {
+        for list in [
+            ColorVocabulary::Basic,
+            ColorVocabulary::Web,
+            ColorVocabulary::Xkcd,
+        ] {
             for word in list.words() {
                 let srgb = list.srgb(word).unwrap();
                 let found = list.word(linear(srgb));
@@ -288,19 +296,19 @@ mod tests {
         for k in 0..200_u32 {
             let srgb = [k * 37 % 256, k * 101 % 256, k * 173 % 256].map(|c| c as u8);
             let color = Oklab::from_linear(linear(srgb));
-            let mut sorted: Vec<_> = Vocabulary::Web
+            let mut sorted: Vec<_> = ColorVocabulary::Web
                 .words()
                 .into_iter()
                 .map(|word| {
                     (
                         word,
-                        Oklab::from_linear(linear(Vocabulary::Web.srgb(word).unwrap())),
+                        Oklab::from_linear(linear(ColorVocabulary::Web.srgb(word).unwrap())),
                     )
                 })
                 .map(|(word, lab)| (lab.distance(color), word))
                 .collect();
             sorted.sort_by(|p, q| p.0.total_cmp(&q.0));
-            assert_eq!(Vocabulary::Web.word(linear(srgb)), sorted[0].1);
+            assert_eq!(ColorVocabulary::Web.word(linear(srgb)), sorted[0].1);
         }
     }
 
@@ -346,16 +354,20 @@ mod tests {
             ([209, 178, 111], "beige"),
         ];
         for (srgb, word) in cases {
-            assert_eq!(Vocabulary::Plain.word(linear(*srgb)), *word, "{srgb:?}");
+            assert_eq!(
+                ColorVocabulary::Plain.word(linear(*srgb)),
+                *word,
+                "{srgb:?}"
+            );
         }
     }
 
     #[test]
     fn plain_words_agree_with_the_survey_names_they_come_from() {
         let mut agree = 0;
-        let entries = Vocabulary::Plain.entries();
+        let entries = ColorVocabulary::Plain.entries();
         for entry in entries {
-            agree += usize::from(Vocabulary::Plain.word(linear(entry.srgb)) == entry.name);
+            agree += usize::from(ColorVocabulary::Plain.word(linear(entry.srgb)) == entry.name);
         }
         // The rest are greys with a tint that the rule for neutral colours takes.
         assert!(

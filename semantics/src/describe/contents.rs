@@ -2,19 +2,19 @@
 
 use super::object::{adjectives, described, phrase};
 use crate::english::{counted, with_article};
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::ObjectId;
 use std::collections::BTreeMap;
 
 /// Things of one kind.
-pub(super) struct Group {
+pub(super) struct NounGroup {
     /// The things, in order.
     pub(super) objects: Vec<ObjectId>,
 }
 
-impl Group {
+impl NounGroup {
     /// "four brown wooden chairs": with the adjectives that all share.
-    pub(super) fn text(&self, scene: &Scene<'_>) -> String {
+    pub(super) fn text(&self, scene: &SemanticScene<'_>) -> String {
         let facts = scene.facts(self.objects[0]);
         if let [only] = self.objects[..] {
             return with_article(&phrase(scene, only));
@@ -34,8 +34,8 @@ impl Group {
 }
 
 /// `objects` by spoken noun, the largest things first (they are seen first), then by noun.
-pub(super) fn grouped(scene: &Scene<'_>, objects: &[ObjectId]) -> Vec<Group> {
-    let mut groups: Vec<(f32, &str, Group)> = Vec::new();
+pub(super) fn grouped(scene: &SemanticScene<'_>, objects: &[ObjectId]) -> Vec<NounGroup> {
+    let mut groups: Vec<(f32, &str, NounGroup)> = Vec::new();
     let mut known: BTreeMap<&str, usize> = BTreeMap::new();
     for object in objects {
         let noun = scene.facts(*object).noun.as_str();
@@ -46,7 +46,7 @@ pub(super) fn grouped(scene: &Scene<'_>, objects: &[ObjectId]) -> Vec<Group> {
             groups.push((
                 volume,
                 noun,
-                Group {
+                NounGroup {
                     objects: Vec::new(),
                 },
             ));

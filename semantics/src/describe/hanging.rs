@@ -3,7 +3,7 @@
 use super::contents::grouped;
 use crate::english::list;
 use crate::predicates::mount_of;
-use crate::scene::{Scene, Term};
+use crate::scene::{SemanticScene, Term};
 use dwell_scene::{ObjectId, StructureId, StructureKind};
 
 /// How far apart the middles of two pieces of one wall may lie across it, m.
@@ -11,7 +11,7 @@ const SAME_WALL_M: f32 = 0.2;
 
 /// What things hang on, in the order of telling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Hold {
+pub(super) enum MountKind {
     Wall,
     Ceiling,
     Window,
@@ -19,15 +19,15 @@ pub(super) enum Hold {
 
 /// A thing that hangs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hanging {
+pub(super) struct MountedObject {
     pub(super) thing: ObjectId,
-    pub(super) hold: Hold,
+    pub(super) hold: MountKind,
     mount: Term,
     /// Whether its room has other windows beside the one it hangs at.
     other_windows: bool,
 }
 
-impl Hold {
+impl MountKind {
     /// Of several: "on the walls", "at the windows".
     fn places(self) -> &'static str {
         match self {
@@ -38,20 +38,20 @@ impl Hold {
     }
 }
 
-impl Hanging {
+impl MountedObject {
     /// How `thing` hangs, if it does.
-    pub(super) fn of(scene: &Scene<'_>, thing: ObjectId) -> Option<Self> {
+    pub(super) fn of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Self> {
         let mount = mount_of(scene, thing)?;
         let hold = match mount {
             Term::Structure(piece)
                 if scene.house().structure[piece].kind == StructureKind::Ceiling =>
             {
-                Hold::Ceiling
+                MountKind::Ceiling
             }
-            Term::Structure(_) => Hold::Wall,
-            _ => Hold::Window,
+            Term::Structure(_) => MountKind::Wall,
+            _ => MountKind::Window,
         };
-        let other_windows = hold == Hold::Window
+        let other_windows = hold == MountKind::Window
             && scene
                 .room_of(thing)
                 .is_some_and(|room| scene.windows_in(room) > 1);
@@ -64,43 +64,43 @@ impl Hanging {
     }
 
     /// Whether its noun says it already: a wall lamp, a ceiling lamp.
-    pub(super) fn is_in_noun(&self, scene: &Scene<'_>) -> bool {
+    pub(super) fn is_in_noun(&self, scene: &SemanticScene<'_>) -> bool {
         let said = match self.hold {
-            Hold::Wall => "wall",
-            Hold::Ceiling => "ceiling",
-            Hold::Window => "window",
+            MountKind::Wall => "wall",
+            MountKind::Ceiling => "ceiling",
+            MountKind::Window => "window",
         };
         let mut words = scene.facts(self.thing).noun.split(' ');
         words.any(|word| word == said)
     }
 
     /// Where it hangs, after its name: "on the wall", "at the window"; empty where its noun says it.
-    pub(super) fn place(&self, scene: &Scene<'_>) -> String {
+    pub(super) fn place(&self, scene: &SemanticScene<'_>) -> String {
         match self.hold {
             _ if self.is_in_noun(scene) => String::new(),
             // "From the ceiling" needs a verb.
-            Hold::Ceiling => " on the ceiling".to_owned(),
-            _ => format!(" {}", self.only_place()),
+            MountKind::Ceiling => " on the ceiling".to_owned(),
+            _ => format!(" {}", self.unqualified_place()),
         }
     }
 
     /// "On the wall", "at the window", "at a window" where there are others.
-    fn only_place(&self) -> &'static str {
+    fn unqualified_place(&self) -> &'static str {
         match self.hold {
-            Hold::Wall => "on the wall",
-            Hold::Ceiling => "from the ceiling",
-            Hold::Window if self.other_windows => "at a window",
-            Hold::Window => "at the window",
+            MountKind::Wall => "on the wall",
+            MountKind::Ceiling => "from the ceiling",
+            MountKind::Window if self.other_windows => "at a window",
+            MountKind::Window => "at the window",
         }
     }
 }
 
 /// "On the wall hang two pictures and a clock", "at the window hangs a curtain": one each of what `hanging` hangs on, in
 /// order.
-pub(super) fn clauses(scene: &Scene<'_>, hanging: &[Hanging]) -> Vec<String> {
+pub(super) fn clauses(scene: &SemanticScene<'_>, hanging: &[MountedObject]) -> Vec<String> {
     let mut clauses = Vec::new();
-    for hold in [Hold::Wall, Hold::Ceiling, Hold::Window] {
-        let here: Vec<&Hanging> = hanging.iter().filter(|one| one.hold == hold).collect();
+    for hold in [MountKind::Wall, MountKind::Ceiling, MountKind::Window] {
+        let here: Vec<&MountedObject> = hanging.iter().filter(|one| one.hold == hold).collect();
         let Some((first, others)) = here.split_first() else {
             continue;
         };
@@ -116,7 +116,7 @@ pub(super) fn clauses(scene: &Scene<'_>, hanging: &[Hanging]) -> Vec<String> {
         let place = if several {
             hold.places()
         } else {
-            first.only_place()
+            first.unqualified_place()
         };
         clauses.push(format!("{place} {verb} {}", list(&texts)));
     }
@@ -124,7 +124,7 @@ pub(super) fn clauses(scene: &Scene<'_>, hanging: &[Hanging]) -> Vec<String> {
 }
 
 /// Whether two mounts are one to the eye: the same, or pieces of one wall between its windows.
-fn is_one(scene: &Scene<'_>, one: Term, other: Term) -> bool {
+fn is_one(scene: &SemanticScene<'_>, one: Term, other: Term) -> bool {
     let (Term::Structure(p), Term::Structure(q)) = (one, other) else {
         return one == other;
     };

@@ -2,10 +2,10 @@
 
 use super::room::describe_room;
 use crate::english::{be, count, counted, list};
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::{LevelId, RoomId};
 
-fn rooms_by_noun(scene: &Scene<'_>) -> Vec<String> {
+fn rooms_by_noun(scene: &SemanticScene<'_>) -> Vec<String> {
     let mut groups: Vec<(&str, &str, usize)> = Vec::new();
     for room in scene.house().rooms.ids() {
         let facts = scene.semantics.room(room);
@@ -22,7 +22,7 @@ fn rooms_by_noun(scene: &Scene<'_>) -> Vec<String> {
 }
 
 /// The description of a house: its rooms, then each of them, storey by storey.
-pub fn describe_house(scene: &Scene<'_>) -> String {
+pub fn describe_house(scene: &SemanticScene<'_>) -> String {
     let house = scene.house();
     let (rooms, objects) = (house.rooms.len(), house.objects.len());
     let mut paragraphs = Vec::new();

@@ -1,9 +1,9 @@
 //! A caption of one object.
 
-use super::hanging::Hanging;
+use super::hanging::MountedObject;
 use crate::english::{qualified, with_article};
 use crate::predicates;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
 
@@ -14,7 +14,7 @@ const CLOSED: f32 = 0.02;
 /// The adjectives of a thing by what they say: size, openness, colour, substance.
 pub(super) type Adjectives = [Option<String>; 4];
 
-pub(super) fn adjectives(scene: &Scene<'_>, object: ObjectId) -> Adjectives {
+pub(super) fn adjectives(scene: &SemanticScene<'_>, object: ObjectId) -> Adjectives {
     let facts = scene.facts(object);
     let size = facts.size.word().map(str::to_owned);
     let openness =
@@ -47,21 +47,25 @@ pub(super) fn described(adjectives: &Adjectives, noun: &str) -> String {
 }
 
 /// Adjectives and noun.
-pub(super) fn phrase(scene: &Scene<'_>, object: ObjectId) -> String {
+pub(super) fn phrase(scene: &SemanticScene<'_>, object: ObjectId) -> String {
     described(&adjectives(scene, object), &scene.facts(object).noun)
 }
 
 /// How many things in a room may be called as `object` is; as if there were several outside of all rooms.
-pub(super) fn alike(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
+pub(super) fn alike(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
     let noun = &scene.facts(object).noun;
     room.map_or(2, |room| {
-        let alike = scene.alike(noun);
+        let alike = scene.distractors(noun);
         alike.in_rooms().get(&room).copied().unwrap_or_default()
     })
 }
 
 /// A landmark in a room: "the table" when it is the only one there, else "a table".
-pub(super) fn landmark(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
+pub(super) fn landmark(
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    room: Option<RoomId>,
+) -> String {
     let noun = &scene.facts(object).noun;
     if alike(scene, object, room) == 1 {
         format!("the {noun}")
@@ -70,7 +74,7 @@ pub(super) fn landmark(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>
     }
 }
 
-fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<ObjectId> {
+fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Option<ObjectId> {
     let predicate = predicates::find(name).ok()?;
     let mut found = predicates::related_objects(scene, predicate, object);
     // A thing is placed by something larger than itself; the largest is the easiest to find.
@@ -85,7 +89,7 @@ fn first_related(scene: &Scene<'_>, object: ObjectId, name: &str) -> Option<Obje
 }
 
 /// Between what a door stands: " from the kitchen to the outside"; `None` when that is not known, and for other things.
-fn between(scene: &Scene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<String> {
+fn between(scene: &SemanticScene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<String> {
     let doorway = scene.semantics.doorway(door)?;
     let the = |room: RoomId| format!("the {}", scene.semantics.room(room).label);
     match doorway.rooms[..] {
@@ -99,13 +103,13 @@ fn between(scene: &Scene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<St
 }
 
 /// Where it is beside something else: " on the table"; empty when nothing is near.
-fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
+fn place(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
     for (name, words) in [("in", "in"), ("on", "on")] {
         if let Some(other) = first_related(scene, object, name) {
             return format!(" {words} {}", landmark(scene, other, room));
         }
     }
-    if let Some(hanging) = Hanging::of(scene, object) {
+    if let Some(hanging) = MountedObject::of(scene, object) {
         return hanging.place(scene);
     }
     first_related(scene, object, "next_to").map_or_else(String::new, |other| {
@@ -114,7 +118,7 @@ fn place(scene: &Scene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
 }
 
 /// A caption: "a brown wooden chair next to the table in the kitchen".
-pub fn caption(scene: &Scene<'_>, object: ObjectId) -> String {
+pub fn caption(scene: &SemanticScene<'_>, object: ObjectId) -> String {
     interrupt::check();
     let room = scene.room_of(object);
     let mut text = with_article(&phrase(scene, object));

@@ -1,12 +1,12 @@
 //! Windows, doors and passages of a room.
 
 use crate::english::{counted, list};
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::RoomId;
 
 /// Where a door leads from a room.
 #[derive(Clone, PartialEq, Eq)]
-enum Way {
+enum DoorDestination {
     Rooms(Vec<RoomId>),
     Outside,
     /// Within the room, or to what the house does not tell.
@@ -14,14 +14,14 @@ enum Way {
 }
 
 /// Doors of one noun that lead the same way.
-struct Doors<'a> {
+struct DoorGroup<'a> {
     noun: &'a str,
     plural: &'a str,
-    way: Way,
+    way: DoorDestination,
     number: usize,
 }
 
-fn names(scene: &Scene<'_>, rooms: &[RoomId]) -> String {
+fn names(scene: &SemanticScene<'_>, rooms: &[RoomId]) -> String {
     let labels = rooms.iter().map(|room| &scene.semantics.room(*room).label);
     list(
         &labels
@@ -30,17 +30,17 @@ fn names(scene: &Scene<'_>, rooms: &[RoomId]) -> String {
     )
 }
 
-fn doors_of<'a>(scene: &Scene<'a>, room: RoomId) -> Vec<Doors<'a>> {
-    let mut groups: Vec<Doors<'a>> = Vec::new();
+fn doors_of<'a>(scene: &SemanticScene<'a>, room: RoomId) -> Vec<DoorGroup<'a>> {
+    let mut groups: Vec<DoorGroup<'a>> = Vec::new();
     for (door, doorway) in scene.semantics.doorways() {
         if scene.room_of(door) != Some(room) && !doorway.rooms.contains(&room) {
             continue;
         }
         let rooms: Vec<RoomId> = doorway.beyond(room).collect();
         let way = match (rooms.is_empty(), doorway.outside) {
-            (false, _) => Way::Rooms(rooms),
-            (true, true) => Way::Outside,
-            (true, false) => Way::Elsewhere,
+            (false, _) => DoorDestination::Rooms(rooms),
+            (true, true) => DoorDestination::Outside,
+            (true, false) => DoorDestination::Elsewhere,
         };
         let facts = scene.facts(door);
         match groups
@@ -48,7 +48,7 @@ fn doors_of<'a>(scene: &Scene<'a>, room: RoomId) -> Vec<Doors<'a>> {
             .find(|group| group.noun == facts.noun && group.way == way)
         {
             Some(group) => group.number += 1,
-            None => groups.push(Doors {
+            None => groups.push(DoorGroup {
                 noun: &facts.noun,
                 plural: &facts.plural,
                 way,
@@ -60,7 +60,7 @@ fn doors_of<'a>(scene: &Scene<'a>, room: RoomId) -> Vec<Doors<'a>> {
 }
 
 /// "two doors to the hall and the kitchen", "a door to the outside", "another door": by noun, then by where they lead.
-fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
+fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
     let groups = doors_of(scene, room);
     let mut nouns: Vec<(&str, &str)> = Vec::new();
     for group in &groups {
@@ -76,7 +76,9 @@ fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
         let mut single: Vec<RoomId> = Vec::new();
         for group in of() {
             match &group.way {
-                Way::Rooms(rooms) if group.number == 1 && rooms.len() == 1 => single.extend(rooms),
+                DoorDestination::Rooms(rooms) if group.number == 1 && rooms.len() == 1 => {
+                    single.extend(rooms)
+                }
                 _ => {}
             }
         }
@@ -88,20 +90,20 @@ fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
         for group in of() {
             let doors = counted(group.number, noun, plural);
             match &group.way {
-                Way::Rooms(rooms) if group.number > 1 || rooms.len() > 1 => {
+                DoorDestination::Rooms(rooms) if group.number > 1 || rooms.len() > 1 => {
                     texts.push(format!("{doors} to {}", names(scene, rooms)));
                 }
                 _ => {}
             }
         }
-        let number = |way: &Way| {
+        let number = |way: &DoorDestination| {
             of().find(|group| group.way == *way)
                 .map(|group| group.number)
         };
-        if let Some(number) = number(&Way::Outside) {
+        if let Some(number) = number(&DoorDestination::Outside) {
             texts.push(format!("{} to the outside", counted(number, noun, plural)));
         }
-        if let Some(number) = number(&Way::Elsewhere) {
+        if let Some(number) = number(&DoorDestination::Elsewhere) {
             texts.push(match (number, texts.len() > said) {
                 (_, false) => counted(number, noun, plural),
                 (1, true) => format!("another {noun}"),
@@ -113,7 +115,7 @@ fn door_texts(scene: &Scene<'_>, room: RoomId) -> Vec<String> {
 }
 
 /// What the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
-pub(super) fn openings(scene: &Scene<'_>, room: RoomId) -> Option<String> {
+pub(super) fn openings(scene: &SemanticScene<'_>, room: RoomId) -> Option<String> {
     let windows = scene.windows_in(room);
     let mut parts = Vec::new();
     if windows > 0 {

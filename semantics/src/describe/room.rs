@@ -1,24 +1,24 @@
 //! The description of a room.
 
 use super::contents::grouped;
-use super::hanging::{Hanging, clauses};
+use super::hanging::{MountedObject, clauses};
 use super::object::landmark;
 use super::openings::openings;
 use crate::english::{be, capitalized, list, with_article};
 use crate::predicates;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(super) fn is_a(scene: &Scene<'_>, object: ObjectId, names: &[&str]) -> bool {
+pub(super) fn is_a(scene: &SemanticScene<'_>, object: ObjectId, names: &[&str]) -> bool {
     scene
         .facts(object)
         .category
         .is_some_and(|row| names.contains(&row.name))
 }
 
-fn shell(scene: &Scene<'_>, room: RoomId) -> String {
+fn shell(scene: &SemanticScene<'_>, room: RoomId) -> String {
     let facts = scene.semantics.room(room);
     let area = facts.area_m2.round().max(1.0);
     let mut with = Vec::new();
@@ -39,13 +39,13 @@ fn shell(scene: &Scene<'_>, room: RoomId) -> String {
 
 /// What does not stand on the floor: things by what carries them and how, and what hangs.
 #[derive(Default)]
-struct Placed {
+struct RoomContents {
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
-    hanging: Vec<Hanging>,
+    hanging: Vec<MountedObject>,
 }
 
-fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
-    let mut placed = Placed::default();
+fn placed(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> RoomContents {
+    let mut placed = RoomContents::default();
     for object in objects {
         interrupt::check();
         let related = ["in", "on"].into_iter().find_map(|name| {
@@ -67,7 +67,7 @@ fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
                 .push(*object);
             continue;
         }
-        let hanging = Hanging::of(scene, *object);
+        let hanging = MountedObject::of(scene, *object);
         placed
             .hanging
             .extend(hanging.filter(|hanging| !hanging.is_in_noun(scene)));
@@ -77,7 +77,7 @@ fn placed(scene: &Scene<'_>, room: RoomId, objects: &[ObjectId]) -> Placed {
 
 /// The carriers of things, the largest kinds first, as lists have them: a table before the bowl on it.
 fn in_order(
-    scene: &Scene<'_>,
+    scene: &SemanticScene<'_>,
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
 ) -> Vec<(ObjectId, &'static str, Vec<ObjectId>)> {
     let mut carriers: Vec<ObjectId> = carried.keys().map(|(carrier, _)| *carrier).collect();
@@ -97,7 +97,7 @@ fn in_order(
 }
 
 /// The description of a room: its size and surfaces, its openings, what stands in it, and what lies on what.
-pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
+pub fn describe_room(scene: &SemanticScene<'_>, room: RoomId) -> String {
     let mut sentences = vec![shell(scene, room)];
     sentences.extend(openings(scene, room));
     let objects: Vec<ObjectId> = scene
@@ -107,7 +107,7 @@ pub fn describe_room(scene: &Scene<'_>, room: RoomId) -> String {
         .filter(|object| !scene.facts(*object).is_door() && !is_a(scene, *object, &["window"]))
         .filter(|object| scene.holder(*object).is_none())
         .collect();
-    let Placed { carried, hanging } = placed(scene, room, &objects);
+    let RoomContents { carried, hanging } = placed(scene, room, &objects);
     let hung = hanging.iter().map(|hanging| hanging.thing);
     let elsewhere: BTreeSet<ObjectId> = carried.values().flatten().copied().chain(hung).collect();
     let standing = objects.iter().filter(|object| !elsewhere.contains(object));

@@ -2,7 +2,7 @@
 
 use super::contents::grouped;
 use crate::english::{capitalized, list};
-use crate::scene::{Scene, Viewer};
+use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::ObjectId;
 use dwell_scene::space::azimuth_elevation;
 
@@ -11,7 +11,7 @@ const AHEAD_RAD: f32 = 0.21;
 
 /// The description of a view, given the objects that are visible in it (as pixel counts or rays say), nearest sides
 /// named: "In the kitchen. To the left there is a table; ahead there are two chairs."
-pub fn describe_view(scene: &Scene<'_>, viewer: &Viewer, visible: &[ObjectId]) -> String {
+pub fn describe_view(scene: &SemanticScene<'_>, viewer: &Viewer, visible: &[ObjectId]) -> String {
     let mut sides: [(&str, Vec<ObjectId>); 3] = [
         ("to the left", Vec::new()),
         ("ahead", Vec::new()),

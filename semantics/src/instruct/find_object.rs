@@ -1,8 +1,8 @@
 //! "Find the red chair in the bedroom."
 
-use super::task::{FOUND_M, Goal, Instruction, InstructionKind};
+use super::task::{FOUND_M, Instruction, InstructionGoal, InstructionKind};
 use crate::refer::refer;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 
 /// What is part of the building, stands between rooms, or has no name of its own, is not looked for.
@@ -20,7 +20,7 @@ const NOT_SOUGHT: [&str; 11] = [
     "ground",
 ];
 
-pub(super) fn candidates(scene: &Scene<'_>) -> Vec<Instruction> {
+pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     let objects = scene.house().objects.ids();
     objects
         .filter(|object| {
@@ -32,7 +32,7 @@ pub(super) fn candidates(scene: &Scene<'_>) -> Vec<Instruction> {
             // Some milliseconds each.
             interrupt::check();
             let expression = refer(scene, object)?;
-            let goal = Goal {
+            let goal = InstructionGoal {
                 rooms: Vec::new(),
                 objects: vec![object],
                 radius_m: FOUND_M,

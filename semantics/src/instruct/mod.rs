@@ -6,10 +6,10 @@ mod find_object;
 mod go_to_room;
 mod task;
 
-pub use task::{Goal, Instruction, InstructionKind, Progress};
+pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 
 use crate::error::SemanticsError;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::random::RandomKey;
 
 /// How much room a text has at most, in characters.
@@ -18,7 +18,7 @@ pub const MAX_TEXT_LEN: usize = 120;
 pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
 
 /// Every instruction of a kind that the scene offers, with one fixed wording each, in order. Each means exactly one thing.
-pub fn candidates(scene: &Scene<'_>, kind: InstructionKind) -> Vec<Instruction> {
+pub fn candidates(scene: &SemanticScene<'_>, kind: InstructionKind) -> Vec<Instruction> {
     let found = match kind {
         InstructionKind::GoToRoom => go_to_room::candidates(scene),
         InstructionKind::FindObject => find_object::candidates(scene),
@@ -48,7 +48,7 @@ pub fn choose(candidates: &[Instruction], key: RandomKey) -> Option<Instruction>
 /// # Errors
 /// [`SemanticsError::NoInstruction`] when the scene offers none.
 pub fn instruction(
-    scene: &Scene<'_>,
+    scene: &SemanticScene<'_>,
     kind: InstructionKind,
     key: RandomKey,
 ) -> Result<Instruction, SemanticsError> {

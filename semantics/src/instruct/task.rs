@@ -1,9 +1,9 @@
 //! An instruction, bound to what it means.
 
 use crate::error::SemanticsError;
-use crate::scene::{Scene, Viewer};
-use crate::sight::sees;
-use crate::tokens;
+use crate::line_of_sight::is_in_line_of_sight;
+use crate::scene::{SemanticScene, Viewer};
+use crate::vocabulary;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, ObjectId, RoomId};
 use glam::Vec2;
@@ -60,7 +60,7 @@ impl InstructionKind {
 /// How far an instruction is fulfilled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Progress {
+pub enum InstructionProgress {
     /// It is fulfilled now.
     Success,
     /// It cannot be fulfilled any more, or the agent stopped in the wrong place.
@@ -71,7 +71,7 @@ pub enum Progress {
 
 /// Where an instruction leads, for rewards and path planning; no words in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Goal {
+pub struct InstructionGoal {
     /// The rooms that count; empty when a thing counts.
     pub rooms: Vec<RoomId>,
     /// The things that count; empty when a room counts.
@@ -92,11 +92,11 @@ pub struct Instruction {
     /// What is meant, with its article: "the red chair in the kitchen".
     pub target: String,
     /// Where it leads.
-    pub goal: Goal,
+    pub goal: InstructionGoal,
 }
 
 impl Instruction {
-    pub(super) fn new(kind: InstructionKind, target: String, goal: Goal) -> Self {
+    pub(super) fn new(kind: InstructionKind, target: String, goal: InstructionGoal) -> Self {
         let text = kind.wordings()[0].replace("{}", &target);
         Self {
             kind,
@@ -116,24 +116,29 @@ impl Instruction {
         }
     }
 
-    /// The words as numbers; shape ([`tokens::LENGTH`],), padded with 0.
+    /// The words as numbers; shape ([`vocabulary::LENGTH`],), padded with 0.
     ///
     /// # Errors
     /// [`SemanticsError::UnknownWord`] or [`SemanticsError::TooLong`]; never for a text of this crate's own making.
     pub fn tokens(&self) -> Result<Vec<i32>, SemanticsError> {
-        tokens::tokenize(&self.text)
+        vocabulary::tokenize(&self.text)
     }
 
     /// Whether the agent has fulfilled it in this scene: it stands in the room; or it stands within the goal's radius of the
     /// thing's outline and sees it at most 45 degrees from where it looks, or holds it.
     ///
-    /// `rays` must be up to date with the scene's state. [`Progress::Failure`] when the agent does not exist.
-    pub fn verify(&self, scene: &Scene<'_>, rays: &RayScene, agent: AgentId) -> Progress {
+    /// `rays` must be up to date with the scene's state. [`InstructionProgress::Failure`] when the agent does not exist.
+    pub fn verify(
+        &self,
+        scene: &SemanticScene<'_>,
+        rays: &RayScene,
+        agent: AgentId,
+    ) -> InstructionProgress {
         let (Some(body), Some(viewer)) = (
             scene.state.agents.get(agent),
             Viewer::of_agent(scene.state, agent),
         ) else {
-            return Progress::Failure;
+            return InstructionProgress::Failure;
         };
         let here = Vec2::new(body.position.x, body.position.z);
         let in_room = || {
@@ -150,20 +155,25 @@ impl Instruction {
             let level =
                 extent.bounds.max.y > body.position.y - 0.5 && extent.bounds.min.y < overhead;
             let near = extent.footprint.distance_to(here) <= self.goal.radius_m;
-            let seen = || sees(scene, rays, &viewer, *object, FOUND_HALF_ANGLE_RAD);
+            let seen = || is_in_line_of_sight(scene, rays, &viewer, *object, FOUND_HALF_ANGLE_RAD);
             body.holding == Some(*object) || (level && near && (!self.goal.in_sight || seen()))
         };
         if in_room() || self.goal.objects.iter().any(found) {
-            Progress::Success
+            InstructionProgress::Success
         } else {
-            Progress::Continue
+            InstructionProgress::Continue
         }
     }
 
-    /// As [`Self::verify`] for an agent that says it is done: [`Progress::Continue`] becomes [`Progress::Failure`].
-    pub fn verify_at_stop(&self, scene: &Scene<'_>, rays: &RayScene, agent: AgentId) -> Progress {
+    /// As [`Self::verify`] for an agent that says it is done: [`InstructionProgress::Continue`] becomes [`InstructionProgress::Failure`].
+    pub fn verify_at_stop(
+        &self,
+        scene: &SemanticScene<'_>,
+        rays: &RayScene,
+        agent: AgentId,
+    ) -> InstructionProgress {
         match self.verify(scene, rays, agent) {
-            Progress::Continue => Progress::Failure,
+            InstructionProgress::Continue => InstructionProgress::Failure,
             judged => judged,
         }
     }

@@ -1,8 +1,8 @@
 //! Hangs on a wall, from a ceiling, or before a window.
 
 use super::mount::{hangs_on, mounts};
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// `a` hangs on `b`: nothing carries `a` from below, and `b` is a wall, at whose height it is, 10 cm above its foot or
@@ -19,21 +19,27 @@ impl Predicate for HangsOn {
         "on"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             irreflexive: true,
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
-    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+    fn holds(
+        &self,
+        scene: &SemanticScene<'_>,
+        subject: Term,
+        object: Term,
+        _: Option<&Viewer>,
+    ) -> bool {
         let Term::Object(thing) = subject else {
             return false;
         };
         hangs_on(scene, thing, object)
     }
 
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
         mounts(scene, subject)
     }
 }

@@ -1,7 +1,7 @@
 //! In a room.
 
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// `a` is in room `b`: the middle of its box lies over the room's floor and between floor and ceiling (0.3 m of tolerance), in the
@@ -18,16 +18,22 @@ impl Predicate for InRoom {
         "in"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             irreflexive: true,
             antisymmetric: true,
             functional: true,
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
-    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+    fn holds(
+        &self,
+        scene: &SemanticScene<'_>,
+        subject: Term,
+        object: Term,
+        _: Option<&Viewer>,
+    ) -> bool {
         let Term::Room(room) = object else {
             return false;
         };
@@ -40,7 +46,7 @@ impl Predicate for InRoom {
         found == Some(room)
     }
 
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
         scene.room_of(subject).map(Term::Room).into_iter().collect()
     }
 }

@@ -1,7 +1,7 @@
 //! In.
 
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::{Aabb, House, ObjectId};
 
 /// In how many things a thing is at most.
@@ -15,7 +15,7 @@ const BESIDE_M: f32 = 0.025;
 pub(super) struct Inside;
 
 /// What `thing` is in, rising.
-pub(crate) fn around(scene: &Scene<'_>, thing: ObjectId) -> Vec<ObjectId> {
+pub(crate) fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {
         return Vec::new();
@@ -43,26 +43,32 @@ impl Predicate for Inside {
         "in"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             irreflexive: true,
             antisymmetric: true,
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
-    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+    fn holds(
+        &self,
+        scene: &SemanticScene<'_>,
+        subject: Term,
+        object: Term,
+        _: Option<&Viewer>,
+    ) -> bool {
         let (Term::Object(thing), Term::Object(container)) = (subject, object) else {
             return false;
         };
         let (inner, outer) = (scene.extent(thing).bounds, scene.extent(container).bounds);
         thing != container
             && House::fits_in(&outer, &inner)
-            && scene.around(thing).binary_search(&container).is_ok()
+            && scene.containers(thing).binary_search(&container).is_ok()
     }
 
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
-        let around = scene.around(subject).iter();
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
+        let around = scene.containers(subject).iter();
         around.map(|id| Term::Object(*id)).collect()
     }
 }

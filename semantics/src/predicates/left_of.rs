@@ -1,7 +1,7 @@
 //! Left of.
 
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// The least difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
@@ -13,7 +13,7 @@ const WIDEST_TANGENT: f32 = 3.73;
 
 /// Where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
 /// front of the viewer.
-pub(super) fn picture_x(scene: &Scene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
+pub(super) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
     let point = viewer.upright_from_world(scene.center(term)?);
     let depth = -point.z;
     let x = point.x / depth;
@@ -21,7 +21,7 @@ pub(super) fn picture_x(scene: &Scene<'_>, viewer: &Viewer, term: Term) -> Optio
 }
 
 /// Whether a thing's middle is in front of a viewer.
-pub(crate) fn is_in_front(scene: &Scene<'_>, viewer: &Viewer, term: Term) -> bool {
+pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> bool {
     picture_x(scene, viewer, term).is_some()
 }
 
@@ -38,12 +38,12 @@ impl Predicate for LeftOf {
         "to the left of"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             antisymmetric: true,
             irreflexive: true,
             converse: Some("right_of"),
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
@@ -53,7 +53,7 @@ impl Predicate for LeftOf {
 
     fn holds(
         &self,
-        scene: &Scene<'_>,
+        scene: &SemanticScene<'_>,
         subject: Term,
         object: Term,
         viewer: Option<&Viewer>,
@@ -62,7 +62,7 @@ impl Predicate for LeftOf {
         matches!((x(subject), x(object)), (Some(a), Some(b)) if b - a >= LEAST_TANGENT)
     }
 
-    fn related(&self, _: &Scene<'_>, _: ObjectId) -> Vec<Term> {
+    fn related(&self, _: &SemanticScene<'_>, _: ObjectId) -> Vec<Term> {
         Vec::new()
     }
 }

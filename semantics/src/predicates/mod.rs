@@ -12,15 +12,15 @@ mod on;
 mod right_of;
 mod support;
 
-pub(crate) use inside::around;
+pub(crate) use inside::containers;
 pub(crate) use left_of::is_in_front;
 pub(crate) use mount::mount_of;
-pub(crate) use next_to::{beside, near};
-pub use support::Support;
+pub(crate) use next_to::{neighbour_candidates, neighbours};
+pub use support::SurfaceSupport;
 pub(crate) use support::supports_of;
 
 use crate::error::SemanticsError;
-use crate::scene::{Scene, Term, Viewer};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// What always holds of a relation; checked for every relation by the tests.
@@ -29,7 +29,7 @@ use dwell_scene::ObjectId;
     clippy::struct_excessive_bools,
     reason = "the laws are independent of each other"
 )]
-pub struct Laws {
+pub struct RelationProperties {
     /// r(a, b) gives r(b, a).
     pub symmetric: bool,
     /// r(a, b) excludes r(b, a).
@@ -51,7 +51,7 @@ pub trait Predicate: Sync {
     fn words(&self) -> &'static str;
 
     /// What always holds of it.
-    fn laws(&self) -> Laws;
+    fn properties(&self) -> RelationProperties;
 
     /// Whether it means anything only from somebody's point of view.
     fn needs_viewer(&self) -> bool {
@@ -61,7 +61,7 @@ pub trait Predicate: Sync {
     /// Whether it holds. `false` for kinds of things it says nothing about, and without the viewer it needs.
     fn holds(
         &self,
-        scene: &Scene<'_>,
+        scene: &SemanticScene<'_>,
         subject: Term,
         object: Term,
         viewer: Option<&Viewer>,
@@ -69,7 +69,7 @@ pub trait Predicate: Sync {
 
     /// Everything that `subject` has it to without a viewer, each once: what [`Self::holds`] says of all terms, without asking
     /// for each.
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term>;
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term>;
 }
 
 /// Every relation.
@@ -87,7 +87,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
 
 /// The objects that `subject` has a relation to, rising.
 pub(crate) fn related_objects(
-    scene: &Scene<'_>,
+    scene: &SemanticScene<'_>,
     predicate: &dyn Predicate,
     subject: ObjectId,
 ) -> Vec<ObjectId> {

@@ -1,7 +1,7 @@
 //! What holds things that no surface below them carries: walls, ceilings, windows.
 
-use super::Support;
-use crate::scene::{MOST_NEAR, Scene, Term};
+use super::SurfaceSupport;
+use crate::scene::{MOST_NEAR, SemanticScene, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
 
 /// The largest gap between a thing and the wall or ceiling it hangs on, m.
@@ -24,7 +24,7 @@ const MAY_STAND: [&str; 3] = ["tap", "heater", "soap_dish"];
 /// Kinds that hang or lean.
 const MAY_LEAN: [&str; 4] = ["picture_frame", "mirror", "clock", "rifle"];
 
-fn is_cloth(scene: &Scene<'_>, thing: ObjectId) -> bool {
+fn is_cloth(scene: &SemanticScene<'_>, thing: ObjectId) -> bool {
     let row = scene.facts(thing).category;
     row.is_some_and(|row| ["curtain", "blinds"].contains(&row.name))
 }
@@ -34,7 +34,11 @@ fn is_cloth(scene: &Scene<'_>, thing: ObjectId) -> bool {
 /// So it is with upright cloth, and with what the table calls mounted where a wall or a ceiling is near: when it ends a
 /// centimetre or more above them; when it is fixed in its place and of a kind that never stands; or when it is fixed and
 /// too flat to stand.
-pub(super) fn hangs_despite(scene: &Scene<'_>, thing: ObjectId, supports: &[Support]) -> bool {
+pub(super) fn hangs_despite(
+    scene: &SemanticScene<'_>,
+    thing: ObjectId,
+    supports: &[SurfaceSupport],
+) -> bool {
     let facts = scene.facts(thing);
     let Some(row) = facts.category.filter(|row| row.mounted) else {
         return false;
@@ -48,7 +52,7 @@ pub(super) fn hangs_despite(scene: &Scene<'_>, thing: ObjectId, supports: &[Supp
     }
     // What stands in a shelf may be near the wall behind it.
     let (house, inner) = (scene.house(), scene.extent(thing).bounds);
-    let stands_in = |support: &Support| {
+    let stands_in = |support: &SurfaceSupport| {
         let by = support.by.object();
         by.is_some_and(|by| house.encloses(scene.state, by, &scene.extent(by).bounds, &inner))
     };
@@ -62,14 +66,14 @@ pub(super) fn hangs_despite(scene: &Scene<'_>, thing: ObjectId, supports: &[Supp
 }
 
 /// The pieces of the building at which a thing may hang, rising.
-fn pieces_at(scene: &Scene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
+fn pieces_at(scene: &SemanticScene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
     let reach = scene.extent(thing).bounds.grown(WALL_GAP_M);
     let pieces = scene.semantics.structure_at(&reach);
     pieces.filter(move |piece| is_at(scene, thing, *piece))
 }
 
 /// Whether a thing is so near to a wall, at its height, or so close under a ceiling, that it may hang there.
-fn is_at(scene: &Scene<'_>, thing: ObjectId, piece: StructureId) -> bool {
+fn is_at(scene: &SemanticScene<'_>, thing: ObjectId, piece: StructureId) -> bool {
     let extent = scene.extent(thing);
     let bounds = scene.semantics.structure_bounds(piece);
     if !extent.bounds.grown(WALL_GAP_M).intersects(bounds) {
@@ -93,8 +97,8 @@ fn is_at(scene: &Scene<'_>, thing: ObjectId, piece: StructureId) -> bool {
 }
 
 /// Whether cloth hangs before a window: in its room, at its height, at most 0.3 m away from above.
-fn is_before(scene: &Scene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
-    let is_window = |row: &crate::category::CategoryRow| row.name == "window";
+fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
+    let is_window = |row: &crate::category::SemanticCategory| row.name == "window";
     if cloth == window
         || !is_cloth(scene, cloth)
         || !scene.facts(window).category.is_some_and(is_window)
@@ -111,7 +115,7 @@ fn is_before(scene: &Scene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
 }
 
 /// Whether `thing` hangs on `mount`: see [`super::hangs_on::HangsOn`].
-pub(super) fn hangs_on(scene: &Scene<'_>, thing: ObjectId, mount: Term) -> bool {
+pub(super) fn hangs_on(scene: &SemanticScene<'_>, thing: ObjectId, mount: Term) -> bool {
     let near = match mount {
         Term::Structure(piece) => is_at(scene, thing, piece),
         Term::Object(window) => is_before(scene, thing, window),
@@ -121,7 +125,7 @@ pub(super) fn hangs_on(scene: &Scene<'_>, thing: ObjectId, mount: Term) -> bool 
 }
 
 /// All that `thing` hangs on: windows, then pieces of the building, each rising.
-pub(super) fn mounts(scene: &Scene<'_>, thing: ObjectId) -> Vec<Term> {
+pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
     if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
         return Vec::new();
     }
@@ -139,7 +143,7 @@ pub(super) fn mounts(scene: &Scene<'_>, thing: ObjectId) -> Vec<Term> {
 
 /// What `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
 /// and windows are part of their walls and hang on nothing.
-pub(crate) fn mount_of(scene: &Scene<'_>, thing: ObjectId) -> Option<Term> {
+pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
     if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {
         return None;
     }

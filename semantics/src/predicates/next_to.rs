@@ -1,7 +1,7 @@
 //! Next to.
 
-use super::{Laws, Predicate, on::On};
-use crate::scene::{MOST_NEAR, Scene, Term, Viewer};
+use super::{Predicate, RelationProperties, on::On};
+use crate::scene::{MOST_NEAR, SemanticScene, Term, Viewer};
 use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId};
 
@@ -21,7 +21,7 @@ fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
 }
 
 /// What may be next to `object`, rising.
-pub(crate) fn near(scene: &Scene<'_>, object: ObjectId) -> Vec<ObjectId> {
+pub(crate) fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
     scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
         let (shared, least) = shared_m(&own, &scene.extent(other).bounds);
@@ -30,23 +30,23 @@ pub(crate) fn near(scene: &Scene<'_>, object: ObjectId) -> Vec<ObjectId> {
 }
 
 /// What is next to `object`, rising.
-pub(crate) fn beside(scene: &Scene<'_>, object: ObjectId) -> Vec<ObjectId> {
+pub(crate) fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
     let holds = |other: &ObjectId| {
         let (a, b) = (Term::Object(object), Term::Object(*other));
         NextTo.holds(scene, a, b, None)
     };
-    let near = scene.near(object).iter().copied();
+    let near = scene.neighbour_candidates(object).iter().copied();
     near.filter(holds).collect()
 }
 
 /// Whether `other` is among what may be next to `object`, where that is more than counts.
-fn counts(scene: &Scene<'_>, object: ObjectId, other: ObjectId) -> bool {
-    let near = scene.near(object);
+fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
+    let near = scene.neighbour_candidates(object);
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()
 }
 
-fn stacked(scene: &Scene<'_>, a: ObjectId, b: ObjectId) -> bool {
+fn stacked(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
     let (a, b) = (Term::Object(a), Term::Object(b));
     [(a, b), (b, a)]
         .into_iter()
@@ -62,15 +62,21 @@ impl Predicate for NextTo {
         "next to"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             symmetric: true,
             irreflexive: true,
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
-    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+    fn holds(
+        &self,
+        scene: &SemanticScene<'_>,
+        subject: Term,
+        object: Term,
+        _: Option<&Viewer>,
+    ) -> bool {
         let (Term::Object(a), Term::Object(b)) = (subject, object) else {
             return false;
         };
@@ -97,8 +103,8 @@ impl Predicate for NextTo {
             && !stacked(scene, a, b)
     }
 
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
-        let beside = scene.beside(subject).iter();
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
+        let beside = scene.neighbours(subject).iter();
         beside.map(|id| Term::Object(*id)).collect()
     }
 }

@@ -1,8 +1,8 @@
 //! On.
 
 use super::support::REST_SHARE;
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// `a` is on `b`: at least a third of `a`'s sole (the faces of its lowest 2 cm) rests directly on `b`, an object or a
@@ -19,14 +19,20 @@ impl Predicate for On {
         "on"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             irreflexive: true,
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
-    fn holds(&self, scene: &Scene<'_>, subject: Term, object: Term, _: Option<&Viewer>) -> bool {
+    fn holds(
+        &self,
+        scene: &SemanticScene<'_>,
+        subject: Term,
+        object: Term,
+        _: Option<&Viewer>,
+    ) -> bool {
         let Term::Object(thing) = subject else {
             return false;
         };
@@ -36,7 +42,7 @@ impl Predicate for On {
             .any(|support| support.by == object && support.share >= REST_SHARE)
     }
 
-    fn related(&self, scene: &Scene<'_>, subject: ObjectId) -> Vec<Term> {
+    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
         let supports = scene.supports(subject).iter();
         let carries = supports.filter(|support| support.share >= REST_SHARE);
         carries.map(|support| support.by).collect()

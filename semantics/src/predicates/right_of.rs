@@ -1,8 +1,8 @@
 //! Right of.
 
 use super::left_of::LeftOf;
-use super::{Laws, Predicate};
-use crate::scene::{Scene, Term, Viewer};
+use super::{Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
 /// `a` is right of `b` for a viewer exactly when `b` is left of `a` for it.
@@ -17,12 +17,12 @@ impl Predicate for RightOf {
         "to the right of"
     }
 
-    fn laws(&self) -> Laws {
-        Laws {
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
             antisymmetric: true,
             irreflexive: true,
             converse: Some("left_of"),
-            ..Laws::default()
+            ..RelationProperties::default()
         }
     }
 
@@ -32,7 +32,7 @@ impl Predicate for RightOf {
 
     fn holds(
         &self,
-        scene: &Scene<'_>,
+        scene: &SemanticScene<'_>,
         subject: Term,
         object: Term,
         viewer: Option<&Viewer>,
@@ -40,7 +40,7 @@ impl Predicate for RightOf {
         LeftOf.holds(scene, object, subject, viewer)
     }
 
-    fn related(&self, _: &Scene<'_>, _: ObjectId) -> Vec<Term> {
+    fn related(&self, _: &SemanticScene<'_>, _: ObjectId) -> Vec<Term> {
         Vec::new()
     }
 }

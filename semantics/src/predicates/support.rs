@@ -2,7 +2,7 @@
 
 use super::mount::hangs_despite;
 use crate::geometry::{height_under, object_triangles_near, structure_triangles};
-use crate::scene::{MOST_NEAR, Scene, Term};
+use crate::scene::{MOST_NEAR, SemanticScene, Term};
 use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
@@ -18,7 +18,7 @@ pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
 
 /// Something that carries a thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Support {
+pub struct SurfaceSupport {
     /// What carries: an object or a structure piece.
     pub by: Term,
     /// The share of the sole's points that rest on it, 0 to 1.
@@ -28,14 +28,14 @@ pub struct Support {
 }
 
 /// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
-struct Search {
+struct SupportSearch {
     /// Around the sole, grown by [`REST_GAP_M`].
     reach: Aabb,
     sole: Vec<Vec3>,
     best: Vec<Option<(f32, Term)>>,
 }
 
-impl Search {
+impl SupportSearch {
     /// Offers a triangle of `owner`; what lies below `least_m` is the owner's own underside, which carries nothing.
     fn offer(&mut self, corners: [Vec3; 3], owner: Term, least_m: f32) {
         let low = corners[0].min(corners[1]).min(corners[2]);
@@ -65,7 +65,7 @@ impl Search {
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
 /// hang. Where the boxes of more than 128 others touch its own, those about its middle count.
-pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
+pub(crate) fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSupport> {
     interrupt::check();
     let house = scene.house();
     let extent = scene.extent(object);
@@ -73,7 +73,7 @@ pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
         return Vec::new();
     }
     let reach = extent.bounds.grown(REST_GAP_M);
-    let mut search = Search {
+    let mut search = SupportSearch {
         reach,
         sole: extent.sole.clone(),
         best: vec![None; extent.sole.len()],
@@ -114,9 +114,9 @@ pub(crate) fn supports_of(scene: &Scene<'_>, object: ObjectId) -> Vec<Support> {
     }
     supports.sort_by(|p, q| q.1.cmp(&p.1).then(p.0.cmp(&q.0)));
     let count = search.sole.len().max(1);
-    let supports: Vec<Support> = supports
+    let supports: Vec<SurfaceSupport> = supports
         .into_iter()
-        .map(|(by, points, gap_m)| Support {
+        .map(|(by, points, gap_m)| SurfaceSupport {
             by,
             share: points as f32 / count as f32,
             gap_m,

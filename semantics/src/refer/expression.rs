@@ -1,20 +1,20 @@
 //! A description of a thing, what it means, and how it sounds.
 
 use crate::english::{qualified, with_article};
-use crate::facts::Facts;
+use crate::facts::ObjectFacts;
 use crate::predicates;
 use crate::room_kind::preposition;
-use crate::scene::Scene;
-use crate::size::Size;
+use crate::scene::SemanticScene;
+use crate::size::SizeClass;
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
-/// A description of an object by its properties. [`Expression::matches`] says what it means, [`Expression::text`] how it
+/// A description of an object by its properties. [`ReferringExpression::matches`] says what it means, [`ReferringExpression::text`] how it
 /// sounds; both rest on the same predicates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Expression {
+pub struct ReferringExpression {
     /// Spoken noun.
     pub noun: String,
     /// Plain colour words, all of which the thing shows; may be empty.
@@ -22,7 +22,7 @@ pub struct Expression {
     /// Adjective of a substance on at least a fifth of its surface.
     pub material: Option<String>,
     /// Its size for its kind.
-    pub size: Option<Size>,
+    pub size: Option<SizeClass>,
     /// A relation to another thing.
     pub relation: Option<Relation>,
     /// The spoken noun of the room it is in.
@@ -35,12 +35,12 @@ pub struct Relation {
     /// The predicate's name.
     pub predicate: String,
     /// The landmark.
-    pub landmark: Box<Expression>,
+    pub landmark: Box<ReferringExpression>,
     /// Whether the landmark's description fits one thing only, so that it takes "the".
     pub definite: bool,
 }
 
-impl Expression {
+impl ReferringExpression {
     /// A description by the noun alone.
     pub fn noun(noun: &str) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl Expression {
         }
     }
 
-    fn fits(&self, facts: &Facts) -> bool {
+    fn fits(&self, facts: &ObjectFacts) -> bool {
         let shows = |color: &String| facts.colors.iter().any(|(word, _)| word == color);
         let made_of = |word: &String| facts.adjectives().any(|adjective| adjective == *word);
         facts.is_called(&self.noun)
@@ -63,7 +63,7 @@ impl Expression {
     }
 
     /// Whether `object` fits the description in this scene. A relation fits when some landmark fits.
-    pub fn fits_object(&self, scene: &Scene<'_>, object: ObjectId) -> bool {
+    pub fn fits_object(&self, scene: &SemanticScene<'_>, object: ObjectId) -> bool {
         let in_room = |name: &String| {
             scene
                 .room_of(object)
@@ -83,9 +83,9 @@ impl Expression {
     }
 
     /// Every object that fits, in order.
-    pub fn matches(&self, scene: &Scene<'_>) -> Vec<ObjectId> {
-        let alike = scene.alike(&self.noun);
-        let fitting = alike.fitting(scene, self);
+    pub fn matches(&self, scene: &SemanticScene<'_>) -> Vec<ObjectId> {
+        let alike = scene.distractors(&self.noun);
+        let fitting = alike.matching(scene, self);
         let related = |object: &&ObjectId| {
             self.relation.is_none() || {
                 interrupt::check();
@@ -105,7 +105,7 @@ impl Expression {
             look.push_str(material);
         }
         qualified(
-            self.size.and_then(Size::word).unwrap_or_default(),
+            self.size.and_then(SizeClass::word).unwrap_or_default(),
             &look,
             &self.noun,
         )
@@ -140,7 +140,7 @@ impl Expression {
     }
 
     /// "the ..." when exactly one object fits, else "a ...".
-    pub fn text(&self, scene: &Scene<'_>) -> String {
+    pub fn text(&self, scene: &SemanticScene<'_>) -> String {
         if self.matches(scene).len() == 1 {
             self.definite()
         } else {

@@ -1,11 +1,11 @@
 //! Referring expressions: words that mean exactly one thing.
 
-mod alike;
-mod build;
+mod distractors;
 mod expression;
+mod generate;
 mod room;
 
-pub(crate) use alike::Alike;
-pub use build::refer;
-pub use expression::{Expression, Relation};
+pub(crate) use distractors::DistractorSet;
+pub use expression::{ReferringExpression, Relation};
+pub use generate::refer;
 pub use room::{RoomExpression, refer_to_room};

@@ -1,7 +1,7 @@
 //! Descriptions of rooms that mean exactly one.
 
 use crate::english::with_article;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::RoomId;
 use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
@@ -18,8 +18,8 @@ pub struct RoomExpression {
 
 impl RoomExpression {
     /// Every room that fits, in order.
-    pub fn matches(&self, scene: &Scene<'_>) -> Vec<RoomId> {
-        let with = self.with.as_ref().map(|noun| scene.alike(noun));
+    pub fn matches(&self, scene: &SemanticScene<'_>) -> Vec<RoomId> {
+        let with = self.with.as_ref().map(|noun| scene.distractors(noun));
         let holds = |room: &RoomId| {
             let with = with.as_ref();
             with.is_none_or(|things| things.in_rooms().contains_key(room))
@@ -46,7 +46,7 @@ impl RoomExpression {
 /// The shortest description of `room` that fits no other; `None` when there is none, and for rooms without a kind.
 ///
 /// Of the things that only this room holds, the largest kind is named: it is seen first.
-pub fn refer_to_room(scene: &Scene<'_>, room: RoomId) -> Option<RoomExpression> {
+pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<RoomExpression> {
     let facts = scene.semantics.room(room);
     let unnamed = facts.kind.is_none_or(|kind| kind.name == "room");
     let unique = |expression: &RoomExpression| expression.matches(scene) == [room];
@@ -59,7 +59,7 @@ pub fn refer_to_room(scene: &Scene<'_>, room: RoomId) -> Option<RoomExpression> 
     }
     let mut things: BTreeMap<&str, f32> = BTreeMap::new();
     for object in scene.objects_in(room).iter().copied() {
-        let worth_naming = |row: &crate::category::CategoryRow| {
+        let worth_naming = |row: &crate::category::SemanticCategory| {
             !row.structure
                 && !["door", "window", "curtain", "blinds", "unknown"].contains(&row.name)
         };

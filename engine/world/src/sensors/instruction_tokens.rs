@@ -25,11 +25,11 @@ impl Sensor for InstructionTokens {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "instruction_tokens".to_owned(),
-            shape: vec![dwell_semantics::tokens::LENGTH],
+            shape: vec![dwell_semantics::vocabulary::LENGTH],
             dtype: Dtype::Int32,
             unit: "token",
             low: 0.0,
-            high: dwell_semantics::tokens::count() as f64,
+            high: dwell_semantics::vocabulary::count() as f64,
             about: ABOUT,
         }
     }

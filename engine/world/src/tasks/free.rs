@@ -12,7 +12,7 @@ use crate::metrics::Progress;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, Pose};
-use dwell_semantics::tokens;
+use dwell_semantics::vocabulary;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -116,7 +116,7 @@ impl Task for Free {
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
             instruction: INSTRUCTION.to_owned(),
-            tokens: tokens::tokenize(INSTRUCTION)?,
+            tokens: vocabulary::tokenize(INSTRUCTION)?,
             start: Pose::from_position_yaw(position, yaw_rad),
             progress: Progress::new(position, None),
         })

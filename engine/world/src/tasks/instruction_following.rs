@@ -287,7 +287,7 @@ impl Task for InstructionFollowing {
                 .instruction
                 .verify_at_stop(&scene, world.rays(), AgentId(0));
             verdict.terminated = true;
-            verdict.success = judged == instruct::Progress::Success;
+            verdict.success = judged == instruct::InstructionProgress::Success;
             if verdict.success {
                 verdict.reward += SUCCESS_REWARD;
             }
@@ -310,7 +310,9 @@ impl Task for InstructionFollowing {
         }
         let scene = world.engines().semantics().scene(world.state());
         let judged = (now.instruction).verify(&scene, world.rays(), AgentId(0));
-        if judged == instruct::Progress::Continue && now.leave_out_goals_here(world, &self.stride) {
+        if judged == instruct::InstructionProgress::Continue
+            && now.leave_out_goals_here(world, &self.stride)
+        {
             return DiscreteAction::Wait;
         }
         DiscreteAction::Stop

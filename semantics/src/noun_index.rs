@@ -1,12 +1,12 @@
 //! Things by what they are called.
 
-use crate::facts::Facts;
+use crate::facts::ObjectFacts;
 use dwell_scene::{IdVec, ObjectId};
 use std::collections::BTreeMap;
 
 /// Things that are called alike in every way.
 #[derive(Debug)]
-struct Kind {
+struct NounClass {
     /// One of them, for its words.
     first: ObjectId,
     /// All of them, rising.
@@ -15,16 +15,16 @@ struct Kind {
 
 /// The things of a house by their nouns, so that words are compared once for a kind of thing, not for each of them.
 #[derive(Debug, Default)]
-pub(crate) struct Kinds {
-    all: Vec<Kind>,
+pub(crate) struct NounIndex {
+    all: Vec<NounClass>,
     /// Shape (object,).
     of: IdVec<ObjectId, u32>,
     /// Rising.
     windows: Vec<ObjectId>,
 }
 
-impl Kinds {
-    pub(crate) fn gather(facts: &IdVec<ObjectId, Facts>) -> Self {
+impl NounIndex {
+    pub(crate) fn gather(facts: &IdVec<ObjectId, ObjectFacts>) -> Self {
         let mut known: BTreeMap<(&str, Option<&str>), u32> = BTreeMap::new();
         let mut kinds = Self::default();
         for (id, facts) in facts.iter_ids() {
@@ -33,7 +33,7 @@ impl Kinds {
             let kind = *known.entry((&facts.noun, row)).or_insert(next);
             if kind == next {
                 let things = Vec::new();
-                kinds.all.push(Kind { first: id, things });
+                kinds.all.push(NounClass { first: id, things });
             }
             kinds.all[kind as usize].things.push(id);
             kinds.of.push(kind);
@@ -50,7 +50,7 @@ impl Kinds {
     }
 
     /// The numbers of the kinds that may be called `noun`.
-    pub(crate) fn called(&self, facts: &IdVec<ObjectId, Facts>, noun: &str) -> Vec<u32> {
+    pub(crate) fn with_noun(&self, facts: &IdVec<ObjectId, ObjectFacts>, noun: &str) -> Vec<u32> {
         let kinds = self.all.iter().enumerate();
         let called = kinds.filter(|(_, kind)| facts[kind.first].is_called(noun));
         called.map(|(k, _)| k as u32).collect()

@@ -1,9 +1,9 @@
 //! What tells things of one noun apart, counted once for all of them.
 
-use super::expression::{Expression, Relation};
+use super::expression::{ReferringExpression, Relation};
 use crate::predicates;
-use crate::scene::Scene;
-use crate::size::Size;
+use crate::scene::SemanticScene;
+use crate::size::SizeClass;
 use dwell_scene::interrupt::PollEvery;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::{OnceCell, RefCell};
@@ -17,38 +17,38 @@ const THINGS_PER_CHECK: usize = 64;
 
 /// Something that a description says of a thing beside its noun.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Trait {
+enum Attribute {
     Color(String),
     Material(String),
-    Size(Size),
+    Size(SizeClass),
     Room(String),
 }
 
 /// A relation to something called `noun` that shows `colors`.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Mark {
+struct LandmarkQuery {
     predicate: String,
     noun: String,
     colors: Vec<String>,
 }
 
 /// Rising.
-pub(super) type Things = Rc<[ObjectId]>;
+pub(super) type ObjectList = Rc<[ObjectId]>;
 /// Things with what they stand in a relation to, by things.
-type Pairs = Vec<(ObjectId, ObjectId)>;
+type RelatedPairs = Vec<(ObjectId, ObjectId)>;
 
 /// The things that may be called by one noun. Who has a trait is listed once for each trait, so that a description costs no look
 /// at all of them.
-pub(crate) struct Alike {
+pub(crate) struct DistractorSet {
     /// Rising.
-    things: Things,
+    things: ObjectList,
     in_rooms: BTreeMap<RoomId, usize>,
-    having: OnceCell<BTreeMap<Trait, Things>>,
+    having: OnceCell<BTreeMap<Attribute, ObjectList>>,
     /// Those that have some traits together.
-    having_all: RefCell<BTreeMap<Vec<Trait>, Things>>,
+    having_all: RefCell<BTreeMap<Vec<Attribute>, ObjectList>>,
     /// By predicate and the kind of what it leads to.
-    pairs: OnceCell<BTreeMap<(&'static str, u32), Pairs>>,
-    marked: RefCell<BTreeMap<Mark, Things>>,
+    pairs: OnceCell<BTreeMap<(&'static str, u32), RelatedPairs>>,
+    marked: RefCell<BTreeMap<LandmarkQuery, ObjectList>>,
 }
 
 /// At most `most` of what all lists have, which are rising; shorter lists are faster.
@@ -61,15 +61,15 @@ pub(super) fn common(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
     list.iter().copied().filter(in_all).take(most).collect()
 }
 
-fn push(lists: &mut BTreeMap<Trait, Vec<ObjectId>>, key: Trait, id: ObjectId) {
+fn push(lists: &mut BTreeMap<Attribute, Vec<ObjectId>>, key: Attribute, id: ObjectId) {
     let list = lists.entry(key).or_default();
     if list.last() != Some(&id) {
         list.push(id);
     }
 }
 
-impl Alike {
-    pub(crate) fn gather(scene: &Scene<'_>, noun: &str) -> Self {
+impl DistractorSet {
+    pub(crate) fn gather(scene: &SemanticScene<'_>, noun: &str) -> Self {
         let semantics = scene.semantics;
         let things = semantics.kinds().things(&semantics.kinds_called(noun));
         let mut pace = PollEvery::new(THINGS_PER_CHECK);
@@ -95,26 +95,26 @@ impl Alike {
         &self.in_rooms
     }
 
-    fn having(&self, scene: &Scene<'_>) -> &BTreeMap<Trait, Things> {
+    fn with_attribute(&self, scene: &SemanticScene<'_>) -> &BTreeMap<Attribute, ObjectList> {
         self.having.get_or_init(|| {
             let mut pace = PollEvery::new(THINGS_PER_CHECK);
-            let mut lists: BTreeMap<Trait, Vec<ObjectId>> = BTreeMap::new();
+            let mut lists: BTreeMap<Attribute, Vec<ObjectId>> = BTreeMap::new();
             for id in self.things.iter().copied() {
                 pace.turn();
                 let facts = scene.facts(id);
-                push(&mut lists, Trait::Size(facts.size), id);
+                push(&mut lists, Attribute::Size(facts.size), id);
                 for (word, _) in &facts.colors {
-                    push(&mut lists, Trait::Color((*word).to_owned()), id);
+                    push(&mut lists, Attribute::Color((*word).to_owned()), id);
                 }
                 for word in facts.adjectives() {
-                    push(&mut lists, Trait::Material(word.to_owned()), id);
+                    push(&mut lists, Attribute::Material(word.to_owned()), id);
                 }
                 let Some(room) = scene.room_of(id) else {
                     continue;
                 };
                 let room = scene.semantics.room(room);
                 for name in room.names.iter().chain([&room.label]) {
-                    push(&mut lists, Trait::Room(name.clone()), id);
+                    push(&mut lists, Attribute::Room(name.clone()), id);
                 }
             }
             let lists = lists.into_iter();
@@ -123,34 +123,38 @@ impl Alike {
     }
 
     /// Those that a description with their noun fits, its relation left aside; rising.
-    pub(super) fn fitting(&self, scene: &Scene<'_>, expression: &Expression) -> Things {
-        let colors = expression.colors.iter().cloned().map(Trait::Color);
-        let material = expression.material.iter().cloned().map(Trait::Material);
-        let size = expression.size.map(Trait::Size);
-        let room = expression.room.iter().cloned().map(Trait::Room);
-        let traits: Vec<Trait> = colors.chain(material).chain(size).chain(room).collect();
+    pub(super) fn matching(
+        &self,
+        scene: &SemanticScene<'_>,
+        expression: &ReferringExpression,
+    ) -> ObjectList {
+        let colors = expression.colors.iter().cloned().map(Attribute::Color);
+        let material = expression.material.iter().cloned().map(Attribute::Material);
+        let size = expression.size.map(Attribute::Size);
+        let room = expression.room.iter().cloned().map(Attribute::Room);
+        let traits: Vec<Attribute> = colors.chain(material).chain(size).chain(room).collect();
         if traits.is_empty() {
             return self.things.clone();
         }
         if let Some(known) = self.having_all.borrow().get(&traits) {
             return known.clone();
         }
-        let having = self.having(scene);
+        let having = self.with_attribute(scene);
         let lists: Option<Vec<&[ObjectId]>> = traits
             .iter()
             .map(|key| having.get(key).map(|list| &**list))
             .collect();
         let found = lists.map_or_else(Vec::new, |lists| common(&lists, usize::MAX));
-        let found: Things = found.into();
+        let found: ObjectList = found.into();
         let mut known = self.having_all.borrow_mut();
         known.insert(traits, found.clone());
         found
     }
 
-    fn pairs(&self, scene: &Scene<'_>) -> &BTreeMap<(&'static str, u32), Pairs> {
+    fn pairs(&self, scene: &SemanticScene<'_>) -> &BTreeMap<(&'static str, u32), RelatedPairs> {
         self.pairs.get_or_init(|| {
             let mut pace = PollEvery::new(1);
-            let mut pairs: BTreeMap<(&'static str, u32), Pairs> = BTreeMap::new();
+            let mut pairs: BTreeMap<(&'static str, u32), RelatedPairs> = BTreeMap::new();
             for predicate in predicates::all() {
                 if !TELLING.contains(&predicate.name()) {
                     continue;
@@ -169,9 +173,13 @@ impl Alike {
     }
 
     /// Those that have a telling relation to something that its landmark fits; rising.
-    pub(super) fn marked(&self, scene: &Scene<'_>, relation: &Relation) -> Things {
+    pub(super) fn with_landmark(
+        &self,
+        scene: &SemanticScene<'_>,
+        relation: &Relation,
+    ) -> ObjectList {
         let landmark = &relation.landmark;
-        let mark = Mark {
+        let mark = LandmarkQuery {
             predicate: relation.predicate.clone(),
             noun: landmark.noun.clone(),
             colors: landmark.colors.clone(),
@@ -192,7 +200,7 @@ impl Alike {
         }
         found.sort_unstable();
         found.dedup();
-        let found: Things = found.into();
+        let found: ObjectList = found.into();
         let mut known = self.marked.borrow_mut();
         known.insert(mark, found.clone());
         found

@@ -1,6 +1,6 @@
 //! Whether somebody sees a thing.
 
-use crate::scene::{Scene, Viewer};
+use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::ObjectId;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -14,8 +14,8 @@ const AIM: f32 = 0.6;
 ///
 /// Nine rays are aimed at the thing's box; one that meets it first is enough. `rays` must be up to date with the scene's
 /// state.
-pub fn sees(
-    scene: &Scene<'_>,
+pub fn is_in_line_of_sight(
+    scene: &SemanticScene<'_>,
     rays: &RayScene,
     viewer: &Viewer,
     object: ObjectId,

@@ -27,7 +27,7 @@ const MOST_AROUND: usize = 64;
 ///
 /// Walls behind things, and other things before them, hide what they hide in the house: the back of a cupboard counts for
 /// nothing.
-pub(crate) fn seen_surfaces(
+pub(crate) fn visible_surface_areas(
     rays: &RayScene,
     bounds: &IdVec<ObjectId, Aabb>,
 ) -> IdVec<ObjectId, Vec<(MaterialId, f32)>> {
@@ -42,13 +42,13 @@ pub(crate) fn seen_surfaces(
             if others.len() > MOST_AROUND {
                 Vec::new()
             } else {
-                seen(rays, own, ids[k])
+                visible_area(rays, own, ids[k])
             }
         })
         .into()
 }
 
-fn seen(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId, f32)> {
+fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId, f32)> {
     let house = rays.house();
     let object = &house.objects[id];
     let floor_y = object

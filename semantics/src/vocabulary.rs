@@ -1,7 +1,7 @@
 //! Words as numbers: the vocabulary of instructions.
 
 use crate::category::categories;
-use crate::color::Vocabulary;
+use crate::color::ColorVocabulary;
 use crate::error::SemanticsError;
 use crate::instruct::InstructionKind;
 use crate::predicates;
@@ -30,7 +30,7 @@ pub fn needed_words() -> BTreeSet<String> {
     let mut texts: Vec<&str> = vec!["the a an and with in . , explore"];
     texts.extend(InstructionKind::ALL.iter().flat_map(|kind| kind.wordings()));
     texts.extend(predicates::all().iter().map(|predicate| predicate.words()));
-    texts.extend(Vocabulary::Plain.words());
+    texts.extend(ColorVocabulary::Plain.words());
     texts.extend(["tiny", "small", "large", "huge"]);
     texts.extend(
         library()

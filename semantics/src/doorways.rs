@@ -18,14 +18,14 @@ const TURN_RAD: f32 = std::f32::consts::FRAC_PI_6;
 
 /// What a door or archway stands between.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Doorway {
+pub struct RoomDoorway {
     /// The rooms on its sides, rising: two as a rule; one where it leads outside, or stands within a room.
     pub rooms: Vec<RoomId>,
     /// Whether one of its sides is in the open air, outside of every room.
     pub outside: bool,
 }
 
-impl Doorway {
+impl RoomDoorway {
     /// Looks across the frame: a door's first part when it has several, else the whole, `bounds`; when that is not clearly
     /// thinner one way (a single mesh with an open leaf), on all four sides.
     pub(crate) fn gather(rays: &RayScene, state: &State, door: ObjectId, bounds: Aabb) -> Self {

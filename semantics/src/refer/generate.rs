@@ -1,17 +1,17 @@
 //! The shortest description that means exactly one thing.
 
-use super::alike::{TELLING, Things, common};
-use super::expression::{Expression, Relation};
+use super::distractors::{ObjectList, TELLING, common};
+use super::expression::{ReferringExpression, Relation};
 use crate::predicates;
-use crate::scene::Scene;
+use crate::scene::SemanticScene;
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use std::collections::BTreeSet;
 
 /// The descriptions of `target` by its own properties, shortest first.
-fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
+fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<ReferringExpression> {
     let facts = scene.facts(target);
-    let noun = Expression::noun(&facts.noun);
+    let noun = ReferringExpression::noun(&facts.noun);
     // What no colour prevails on is not told apart by one.
     let spoken: &[_] = if facts.spoken_colors().is_empty() {
         &[]
@@ -26,38 +26,38 @@ fn by_properties(scene: &Scene<'_>, target: ObjectId) -> Vec<Expression> {
     let material = facts.material_word().map(str::to_owned);
     let size = facts.size.word().map(|_| facts.size);
     let mut found = vec![noun.clone()];
-    found.extend(color.iter().map(|colors| Expression {
+    found.extend(color.iter().map(|colors| ReferringExpression {
         colors: colors.clone(),
         ..noun.clone()
     }));
-    found.extend(material.iter().map(|word| Expression {
+    found.extend(material.iter().map(|word| ReferringExpression {
         material: Some(word.clone()),
         ..noun.clone()
     }));
-    found.extend(size.map(|size| Expression {
+    found.extend(size.map(|size| ReferringExpression {
         size: Some(size),
         ..noun.clone()
     }));
     if let (Some(colors), Some(word)) = (&color, &material) {
-        found.push(Expression {
+        found.push(ReferringExpression {
             colors: colors.clone(),
             material: Some(word.clone()),
             ..noun.clone()
         });
     }
     if let (Some(colors), Some(size)) = (&color, size) {
-        found.push(Expression {
+        found.push(ReferringExpression {
             colors: colors.clone(),
             size: Some(size),
             ..noun.clone()
         });
     }
-    found.extend(two.map(|colors| Expression { colors, ..noun }));
+    found.extend(two.map(|colors| ReferringExpression { colors, ..noun }));
     found
 }
 
 /// The relations in which `target` stands to other things, each named by its noun and at most one adjective; each once.
-fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
+fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
     let mut found: Vec<Relation> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for name in TELLING {
@@ -78,9 +78,9 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
                 if !known.insert((name, facts.noun.as_str(), color)) {
                     continue;
                 }
-                let landmark = Expression {
+                let landmark = ReferringExpression {
                     colors: color.map(str::to_owned).into_iter().collect(),
-                    ..Expression::noun(&facts.noun)
+                    ..ReferringExpression::noun(&facts.noun)
                 };
                 found.push(Relation {
                     predicate: name.to_owned(),
@@ -99,18 +99,18 @@ fn by_relations(scene: &Scene<'_>, target: ObjectId) -> Vec<Relation> {
 /// # Source
 /// After the incremental algorithm of R. Dale and E. Reiter, Cognitive Science 19, 233 (1995); here every candidate is
 /// checked against all objects, so that a result is unique by construction.
-pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
+pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<ReferringExpression> {
     // All candidates share the noun, so only what it may call can fit them.
     let facts = scene.facts(target);
-    let alike = scene.alike(&facts.noun);
-    let unique = |expression: &Expression| *alike.fitting(scene, expression) == [target];
+    let alike = scene.distractors(&facts.noun);
+    let unique = |expression: &ReferringExpression| *alike.matching(scene, expression) == [target];
     let room = scene
         .room_of(target)
         .map(|room| scene.semantics.room(room).noun.clone());
     let own = by_properties(scene, target);
-    let in_room: Vec<Expression> = own
+    let in_room: Vec<ReferringExpression> = own
         .iter()
-        .map(|expression| Expression {
+        .map(|expression| ReferringExpression {
             room: room.clone(),
             ..expression.clone()
         })
@@ -127,16 +127,16 @@ pub fn refer(scene: &Scene<'_>, target: ObjectId) -> Option<Expression> {
     let relations = by_relations(scene, target);
     let marked = relations.iter().map(|relation| {
         interrupt::check();
-        alike.marked(scene, relation)
+        alike.with_landmark(scene, relation)
     });
-    let marked: Vec<Things> = marked.collect();
+    let marked: Vec<ObjectList> = marked.collect();
     for expression in own.iter().chain(&in_room).take(8) {
-        let fitting = alike.fitting(scene, expression);
+        let fitting = alike.matching(scene, expression);
         for (relation, marked) in relations.iter().zip(&marked) {
             if common(&[&fitting, marked], 2) == [target] {
                 let mut relation = relation.clone();
                 relation.definite = relation.landmark.matches(scene).len() == 1;
-                return Some(Expression {
+                return Some(ReferringExpression {
                     relation: Some(relation),
                     ..expression.clone()
                 });

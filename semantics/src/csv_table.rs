@@ -3,19 +3,19 @@
 use crate::error::SemanticsError;
 
 /// A table with a head line.
-pub(crate) struct Table<'a> {
+pub(crate) struct CsvTable<'a> {
     file: &'static str,
     head: Vec<&'a str>,
     rows: Vec<Vec<&'a str>>,
 }
 
-/// One row of a [`Table`].
-pub(crate) struct Row<'t, 'a> {
-    table: &'t Table<'a>,
+/// One row of a [`CsvTable`].
+pub(crate) struct CsvRecord<'t, 'a> {
+    table: &'t CsvTable<'a>,
     index: usize,
 }
 
-impl<'a> Table<'a> {
+impl<'a> CsvTable<'a> {
     /// Splits `text`; every row must have as many fields as the head.
     pub(crate) fn parse(file: &'static str, text: &'a str) -> Result<Self, SemanticsError> {
         let mut lines = text.lines();
@@ -41,12 +41,12 @@ impl<'a> Table<'a> {
     }
 
     /// The rows in file order.
-    pub(crate) fn rows(&self) -> impl Iterator<Item = Row<'_, 'a>> {
-        (0..self.rows.len()).map(|index| Row { table: self, index })
+    pub(crate) fn rows(&self) -> impl Iterator<Item = CsvRecord<'_, 'a>> {
+        (0..self.rows.len()).map(|index| CsvRecord { table: self, index })
     }
 }
 
-impl<'a> Row<'_, 'a> {
+impl<'a> CsvRecord<'_, 'a> {
     /// A fault in this row.
     pub(crate) fn fault(&self, what: String) -> SemanticsError {
         SemanticsError::Table {
@@ -96,13 +96,13 @@ mod tests {
 
     #[test]
     fn rows_are_read_by_column_and_faults_name_their_line() {
-        let table = Table::parse("t.csv", "a,b\n1,x;y\n2,\n").unwrap();
+        let table = CsvTable::parse("t.csv", "a,b\n1,x;y\n2,\n").unwrap();
         let rows: Vec<_> = table.rows().collect();
         assert_eq!(rows[0].list("b").unwrap(), ["x", "y"]);
         assert!(rows[1].list("b").unwrap().is_empty());
         assert_eq!(rows[1].number::<u32>("a").unwrap(), 2);
         let message = rows[1].flag("a").unwrap_err().to_string();
         assert_eq!(message, "t.csv line 3: a is \"2\", allowed are 0 and 1");
-        assert!(Table::parse("t.csv", "a,b\n1\n").is_err());
+        assert!(CsvTable::parse("t.csv", "a,b\n1\n").is_err());
     }
 }
