@@ -12,7 +12,7 @@ from pages.observations import settings_table
 from pages.tables import code, number, table
 
 _ACTION = "engine/world/src/action.rs"
-_REQUEST = "engine/world/src/request.rs"
+_REQUEST = "engine/world/src/action_request.rs"
 _HAND = "physics/src/actions/request.rs"
 _OUTCOME = "physics/src/actions/outcome.rs"
 _CONTROL = "physics/src/agents/control.rs"

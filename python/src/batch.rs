@@ -7,7 +7,7 @@ use crate::house::PyHouse;
 use crate::picture;
 use crate::spare::PySpare;
 use crate::world::PyWorld;
-use dwell::sensors::{Dtype, Out};
+use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
@@ -137,7 +137,7 @@ impl PyBatch {
                 interrupt::check();
                 envs.push(Env::new(engines, &config)?);
                 if let [first] = envs.as_slice() {
-                    dwell::memory::check(first, count)?;
+                    dwell::memory_estimate::check(first, count)?;
                 }
             }
             let batch = Batch::new(envs, threads)?;
@@ -250,10 +250,16 @@ impl PyBatch {
             let name = &spec.name;
             let refuse = |_| refused(name, spec.dtype);
             slices.push(match array {
-                Lent::Uint8(array) => Out::Uint8(array.as_slice_mut().map_err(refuse)?),
-                Lent::Float32(array) => Out::Float32(array.as_slice_mut().map_err(refuse)?),
-                Lent::Int32(array) => Out::Int32(array.as_slice_mut().map_err(refuse)?),
-                Lent::Text(text) => Out::Text(text),
+                Lent::Uint8(array) => {
+                    ObservationBuffer::Uint8(array.as_slice_mut().map_err(refuse)?)
+                }
+                Lent::Float32(array) => {
+                    ObservationBuffer::Float32(array.as_slice_mut().map_err(refuse)?)
+                }
+                Lent::Int32(array) => {
+                    ObservationBuffer::Int32(array.as_slice_mut().map_err(refuse)?)
+                }
+                Lent::Text(text) => ObservationBuffer::Text(text),
             });
         }
         self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
@@ -284,7 +290,7 @@ impl PyBatch {
     ) -> PyResult<()> {
         self.with(py, |batch| {
             let asked = instruction.map(|text| (text, distance_m));
-            Ok(batch.env_mut(env)?.ask(asked)?)
+            Ok(batch.env_mut(env)?.set_goal(asked)?)
         })
     }
 
@@ -297,7 +303,9 @@ impl PyBatch {
                 terminated: ruling.terminated,
                 success: ruling.success,
             };
-            let progress = batch.env_mut(env)?.rule(verdict, ruling.distance_m)?;
+            let progress = batch
+                .env_mut(env)?
+                .set_verdict(verdict, ruling.distance_m)?;
             Ok(serde_json::json!({
                 "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
@@ -369,7 +377,7 @@ impl PyBatch {
 
     fn agents_json(&self, py: Python<'_>, env: usize) -> PyResult<String> {
         self.with(py, |batch| {
-            let agents = dwell::agents_now(batch.env(env)?.world());
+            let agents = dwell::effective_agents(batch.env(env)?.world());
             Ok(serde_json::to_string(&agents)?)
         })
     }

@@ -1,8 +1,8 @@
 //! One picture of a world, as Python asks for it.
 
 use crate::errors::Fault;
-use dwell::sensors::{Data, Observation};
-use dwell::{PictureRequest, Place, World, camera_mount};
+use dwell::sensors::{Observation, ObservationData};
+use dwell::{CameraMount, PictureRequest, World, camera_mount};
 use dwell_render::{Camera, Preset, Projection};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
@@ -112,14 +112,14 @@ pub(crate) fn render(
 pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<'_, PyAny>> {
     let shape = observation.spec.shape;
     Ok(match observation.data {
-        Data::Uint8(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
-        Data::Float32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
-        Data::Int32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
+        ObservationData::Uint8(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
+        ObservationData::Float32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
+        ObservationData::Int32(data) => data.into_pyarray(py).reshape(shape)?.into_any(),
     })
 }
 
 /// Where the camera stands.
-fn place(world: &World, settings: &ViewSettings) -> Result<Place, Fault> {
+fn place(world: &World, settings: &ViewSettings) -> Result<CameraMount, Fault> {
     let own = &settings.camera;
     let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);
     if !mount.is_valid() {
@@ -134,7 +134,7 @@ fn place(world: &World, settings: &ViewSettings) -> Result<Place, Fault> {
                 "no agent {number}; there are {count}"
             )));
         }
-        return Ok(Place::Agent(AgentId(number), mount));
+        return Ok(CameraMount::Agent(AgentId(number), mount));
     }
     let rotation = match settings.forward {
         Some(forward) => rotation_from_forward(Vec3::from_array(forward)).ok_or_else(|| {
@@ -149,7 +149,7 @@ fn place(world: &World, settings: &ViewSettings) -> Result<Place, Fault> {
     };
     let pose = Pose::new(Vec3::from_array(settings.position), rotation);
     if pose.is_valid() {
-        Ok(Place::World(pose * mount))
+        Ok(CameraMount::World(pose * mount))
     } else {
         Err(Fault::Config(
             "position and angles must be finite".to_owned(),

@@ -1,7 +1,7 @@
 //! A running world, and how Python names what is in it.
 
 use crate::errors::Fault;
-use dwell::{Guide, Stride, World};
+use dwell::{ShortestPathFollower, StepSizes, World};
 use dwell_physics::ActionOutcome;
 use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
 use serde_json::json;
@@ -10,14 +10,14 @@ use serde_json::json;
 const NAMES: usize = 12;
 
 /// A guide, and the bits of the goal that it leads to.
-pub(crate) type GuideTo = Option<([u32; 3], Guide)>;
+pub(crate) type GuideTo = Option<([u32; 3], ShortestPathFollower)>;
 
 /// What a `World` of Python works on: a world of its own, or that of an environment.
 pub(crate) struct Running<'a> {
     pub(crate) world: &'a mut World,
     pub(crate) guide: &'a mut GuideTo,
     /// How far discrete actions go.
-    pub(crate) stride: Stride,
+    pub(crate) stride: StepSizes,
 }
 
 impl Running<'_> {

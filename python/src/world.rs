@@ -9,7 +9,7 @@ use crate::navigation::PyNavigation;
 use crate::picture;
 use crate::rows::{AgentRow, BodyRow, PlaceRow, SoundRow};
 use crate::running::{GuideTo, Running};
-use dwell::{ActionRequest, DiscreteAction, Guide, Stride, World, WorldConfig};
+use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, StepSizes, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
@@ -85,7 +85,7 @@ impl PyWorld {
         match &self.source {
             Source::Own(world) => {
                 let mut world = world.lock().map_err(|_| stopped())?;
-                work(&mut world, Stride::default())
+                work(&mut world, StepSizes::default())
             }
             Source::Env { batch, env } => {
                 let mut batch = batch.get().lock()?;
@@ -216,13 +216,15 @@ impl PyWorld {
 
     fn agents_json(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |running| {
-            Ok(serde_json::to_string(&dwell::agents_now(running.world))?)
+            Ok(serde_json::to_string(&dwell::effective_agents(
+                running.world,
+            ))?)
         })
     }
 
     fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
         self.look(py, |running| {
-            Ok(serde_json::to_string(&dwell::objects_now(running.world))?)
+            Ok(serde_json::to_string(&dwell::object_states(running.world))?)
         })
     }
 
@@ -230,7 +232,7 @@ impl PyWorld {
     fn object_json(&self, py: Python<'_>, named_json: &str) -> PyResult<String> {
         self.look(py, |running| {
             let id = running.object(&serde_json::from_str(named_json)?)?;
-            Ok(serde_json::to_string(&dwell::object_now(
+            Ok(serde_json::to_string(&dwell::object_state(
                 running.world,
                 id,
             ))?)
@@ -391,7 +393,10 @@ impl PyWorld {
                         "nobody can stand within 0.6 m of {goal:?}"
                     )));
                 };
-                *running.guide = Some((bits, Guide::new(id, grid, &[cell], running.stride)));
+                *running.guide = Some((
+                    bits,
+                    ShortestPathFollower::new(id, grid, &[cell], running.stride),
+                ));
             }
             let Running { world, guide, .. } = running;
             Ok(guide

@@ -1,7 +1,7 @@
 //! All that can be observed, as bits.
 
 use dwell::Batch;
-use dwell::sensors::{self, Dtype, Out};
+use dwell::sensors::{self, Dtype, ObservationBuffer};
 
 /// The names of all sensors.
 pub fn all_sensors() -> Vec<&'static str> {
@@ -33,14 +33,14 @@ pub fn observe(batch: &mut Batch) -> Vec<Vec<u8>> {
         .zip(&mut floats)
         .zip(&mut ints)
         .zip(&mut texts);
-    let mut outs: Vec<Out<'_>> = specs
+    let mut outs: Vec<ObservationBuffer<'_>> = specs
         .iter()
         .zip(buffers)
         .map(|(spec, (((bytes, floats), ints), text))| match spec.dtype {
-            Dtype::Uint8 => Out::Uint8(bytes),
-            Dtype::Float32 => Out::Float32(floats),
-            Dtype::Int32 => Out::Int32(ints),
-            Dtype::Text => Out::Text(text),
+            Dtype::Uint8 => ObservationBuffer::Uint8(bytes),
+            Dtype::Float32 => ObservationBuffer::Float32(floats),
+            Dtype::Int32 => ObservationBuffer::Int32(ints),
+            Dtype::Text => ObservationBuffer::Text(text),
         })
         .collect();
     batch

@@ -1,6 +1,6 @@
 //! What batches see, by whatever renders.
 
-use dwell::sensors::{Dtype, Out};
+use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, WorldError};
 use dwell_render::BackEnd;
 
@@ -48,14 +48,14 @@ pub fn try_observe(batch: &mut Batch, which: &[bool]) -> Result<Vec<Vec<u8>>, Wo
     let mut ints: Vec<Vec<i32>> = buffers(Dtype::Int32).iter().map(|n| vec![0; *n]).collect();
     let mut texts = vec![String::new(); specs.len()];
     let numbers = bytes.iter_mut().zip(&mut floats).zip(&mut ints);
-    let mut outs: Vec<Out<'_>> = specs
+    let mut outs: Vec<ObservationBuffer<'_>> = specs
         .iter()
         .zip(numbers.zip(&mut texts))
         .map(|(spec, (((bytes, floats), ints), text))| match spec.dtype {
-            Dtype::Uint8 => Out::Uint8(bytes),
-            Dtype::Float32 => Out::Float32(floats),
-            Dtype::Int32 => Out::Int32(ints),
-            Dtype::Text => Out::Text(text),
+            Dtype::Uint8 => ObservationBuffer::Uint8(bytes),
+            Dtype::Float32 => ObservationBuffer::Float32(floats),
+            Dtype::Int32 => ObservationBuffer::Int32(ints),
+            Dtype::Text => ObservationBuffer::Text(text),
         })
         .collect();
     batch.observe(which, &mut outs)?;

@@ -9,8 +9,8 @@
     reason = "figures and skips are printed; a test fails by panicking"
 )]
 
-use dwell::sensors::{self, Data, Observation};
-use dwell::{Engines, PictureRequest, Place, World, WorldConfig, viewpoints};
+use dwell::sensors::{self, Observation, ObservationData};
+use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, viewpoints};
 use dwell_physics::AgentControl;
 use dwell_render::{BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, sightings};
 use dwell_scene::parallel::Threads;
@@ -105,7 +105,7 @@ fn look(
         world.step(&[walk, walk]).unwrap();
         let request = PictureRequest {
             camera: camera(),
-            place: Place::Agent(AgentId(0), Pose::IDENTITY),
+            place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
             preset,
         };
         views.push(
@@ -119,7 +119,7 @@ fn look(
 
 fn bytes(observation: &Observation) -> &[u8] {
     match &observation.data {
-        Data::Uint8(bytes) => bytes,
+        ObservationData::Uint8(bytes) => bytes,
         _ => panic!("{} is no picture of bytes", observation.spec.name),
     }
 }
@@ -154,16 +154,22 @@ fn is_within(flips: &[f64]) -> bool {
 fn leave_coincident_out(views: &[Vec<Observation>], others: &mut [Vec<Observation>]) -> f64 {
     let (mut coincident, mut all) = (0, 0);
     for (view, other) in views.iter().zip(others) {
-        let (Data::Uint8(wanted), Data::Float32(depth), Data::Int32(ids)) =
-            (&view[0].data, &view[1].data, &view[2].data)
+        let (
+            ObservationData::Uint8(wanted),
+            ObservationData::Float32(depth),
+            ObservationData::Int32(ids),
+        ) = (&view[0].data, &view[1].data, &view[2].data)
         else {
             panic!("views hold colour, depth and ids")
         };
         let [color, other_depth, other_ids] = other.as_mut_slice() else {
             panic!("views hold colour, depth and ids")
         };
-        let (Data::Uint8(color), Data::Float32(other_depth), Data::Int32(other_ids)) =
-            (&mut color.data, &other_depth.data, &other_ids.data)
+        let (
+            ObservationData::Uint8(color),
+            ObservationData::Float32(other_depth),
+            ObservationData::Int32(other_ids),
+        ) = (&mut color.data, &other_depth.data, &other_ids.data)
         else {
             panic!("views hold colour, depth and ids")
         };
@@ -339,10 +345,12 @@ fn tolerance(name: &str) -> f32 {
 }
 
 /// The share of an image's numbers that differ.
-fn share_off(name: &str, a: &Data, b: &Data) -> f64 {
+fn share_off(name: &str, a: &ObservationData, b: &ObservationData) -> f64 {
     let off = match (a, b) {
-        (Data::Int32(a), Data::Int32(b)) => a.iter().zip(b).filter(|(a, b)| a != b).count(),
-        (Data::Float32(a), Data::Float32(b)) => {
+        (ObservationData::Int32(a), ObservationData::Int32(b)) => {
+            a.iter().zip(b).filter(|(a, b)| a != b).count()
+        }
+        (ObservationData::Float32(a), ObservationData::Float32(b)) => {
             let most = tolerance(name);
             let pairs = a.iter().zip(b);
             pairs.filter(|(a, b)| (*a - *b).abs() > most).count()
@@ -351,18 +359,18 @@ fn share_off(name: &str, a: &Data, b: &Data) -> f64 {
     };
     off as f64
         / match a {
-            Data::Int32(a) => a.len(),
-            Data::Float32(a) => a.len(),
-            Data::Uint8(a) => a.len(),
+            ObservationData::Int32(a) => a.len(),
+            ObservationData::Float32(a) => a.len(),
+            ObservationData::Uint8(a) => a.len(),
         } as f64
 }
 
 /// The rows of a list, by thing.
-fn rows(data: &Data, parts: usize) -> BTreeMap<i64, Vec<f64>> {
+fn rows(data: &ObservationData, parts: usize) -> BTreeMap<i64, Vec<f64>> {
     let numbers: Vec<f64> = match data {
-        Data::Float32(data) => data.iter().map(|x| f64::from(*x)).collect(),
-        Data::Int32(data) => data.iter().map(|x| f64::from(*x)).collect(),
-        Data::Uint8(_) => panic!("lists are of numbers"),
+        ObservationData::Float32(data) => data.iter().map(|x| f64::from(*x)).collect(),
+        ObservationData::Int32(data) => data.iter().map(|x| f64::from(*x)).collect(),
+        ObservationData::Uint8(_) => panic!("lists are of numbers"),
     };
     let rows = numbers.chunks_exact(parts).filter(|row| row[0] != 0.0);
     rows.map(|row| (row[0] as i64, row[1..].to_vec())).collect()
@@ -438,7 +446,7 @@ fn every_other_sensor_agrees_by_its_numbers() {
             }
             // Something flows, and things are seen.
             let flow = names.iter().position(|name| name == "flow").unwrap();
-            let Data::Float32(flow) = &by_cpu[0][flow].data else {
+            let ObservationData::Float32(flow) = &by_cpu[0][flow].data else {
                 panic!("flow is of numbers")
             };
             assert!(flow.iter().any(|flow| flow.abs() > 0.5));

@@ -2,10 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::{Dtype, Out};
+use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{
-    Batch, DiscreteAction, Engines, Env, EnvConfig, PictureRequest, Place, SensorConfig, World,
-    WorldConfig, camera_mount,
+    Batch, CameraMount, DiscreteAction, Engines, Env, EnvConfig, PictureRequest, SensorConfig,
+    World, WorldConfig, camera_mount,
 };
 use dwell_physics::AgentControl;
 use dwell_render::{Camera, ImageChannels, Preset};
@@ -66,7 +66,7 @@ fn moving(laws: Vec<LawSpec>) -> World {
 fn eye(camera: Camera) -> PictureRequest {
     PictureRequest {
         camera,
-        place: Place::Agent(AgentId(0), Pose::IDENTITY),
+        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Flat,
     }
 }
@@ -91,7 +91,7 @@ fn earlier(ideal: &World, camera: Camera, share: f32) -> PictureRequest {
     let is = ideal.state().agents[AgentId(0)].world_from_eye();
     let eye_from_camera = is.inverse() * eye_before(ideal, share);
     PictureRequest {
-        place: Place::Agent(AgentId(0), eye_from_camera),
+        place: CameraMount::Agent(AgentId(0), eye_from_camera),
         ..eye(camera)
     }
 }
@@ -275,7 +275,7 @@ fn a_stereo_pair_sees_depth_as_disparity() {
     let world = moving(Vec::new());
     let camera = Camera::from_fov(64, 48, 90.0).unwrap();
     let at = |x: f32| PictureRequest {
-        place: Place::Agent(AgentId(0), camera_mount([x, 0.0, 0.0], [0.0; 3])),
+        place: CameraMount::Agent(AgentId(0), camera_mount([x, 0.0, 0.0], [0.0; 3])),
         ..eye(camera)
     };
     let left = world.picture(&at(-0.05), DEPTH, Threads::ONE).unwrap().1;
@@ -342,14 +342,14 @@ fn observe(batch: &mut Batch) -> Vec<Vec<f32>> {
         .iter()
         .map(|spec| vec![0; spec.len() * count])
         .collect();
-    let mut outs: Vec<Out<'_>> = Vec::new();
+    let mut outs: Vec<ObservationBuffer<'_>> = Vec::new();
     for (((spec, floats), bytes), ints) in
         specs.iter().zip(&mut floats).zip(&mut bytes).zip(&mut ints)
     {
         outs.push(match spec.dtype {
-            Dtype::Uint8 => Out::Uint8(bytes),
-            Dtype::Int32 => Out::Int32(ints),
-            _ => Out::Float32(floats),
+            Dtype::Uint8 => ObservationBuffer::Uint8(bytes),
+            Dtype::Int32 => ObservationBuffer::Int32(ints),
+            _ => ObservationBuffer::Float32(floats),
         });
     }
     batch.observe(&vec![true; count], &mut outs).unwrap();

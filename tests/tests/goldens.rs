@@ -2,8 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::{Data, Observation, SensorSpec};
-use dwell::{Engines, PictureRequest, Place, World};
+use dwell::sensors::{Observation, ObservationData, SensorSpec};
+use dwell::{CameraMount, Engines, PictureRequest, World};
 use dwell_physics::AgentControl;
 use dwell_render::{Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
 use dwell_scene::parallel::Threads;
@@ -99,7 +99,7 @@ fn plans(golden: &mut Golden) {
 fn eyes() -> PictureRequest {
     PictureRequest {
         camera: views::plain_camera(80, 60).unwrap(),
-        place: Place::Agent(AgentId(0), Pose::IDENTITY),
+        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Lit,
     }
 }
@@ -184,7 +184,7 @@ fn hidden_defects_are_found() {
     assert!(!allowed, "a texture swapped: {mean} {share}");
 
     // The whole picture is a hundredth brighter.
-    let Data::Uint8(rgb) = &sound.data else {
+    let ObservationData::Uint8(rgb) = &sound.data else {
         panic!("colours are bytes")
     };
     let brighter = rgb
@@ -192,7 +192,7 @@ fn hidden_defects_are_found() {
         .map(|byte| (f32::from(*byte) * 1.01).round().min(255.0) as u8);
     let brighter = Observation {
         spec: sound.spec.clone(),
-        data: Data::Uint8(brighter.collect()),
+        data: ObservationData::Uint8(brighter.collect()),
     };
     let (mean, share, allowed) = judge(&brighter);
     println!("a hundredth brighter: mean {mean:.4}, rough {share:.4}");
@@ -236,7 +236,7 @@ fn small_errors_of_exact_sensors_are_found() {
     let world = turned(views::company());
     for image in views::at(&world, eyes(), &["depth", "instance", "boxes_2d"]).unwrap() {
         let name = format!("sensor_{}", image.spec.name);
-        let judge = |data: Data| {
+        let judge = |data: ObservationData| {
             let spoilt = Observation {
                 spec: image.spec.clone(),
                 data,
@@ -247,21 +247,21 @@ fn small_errors_of_exact_sensors_are_found() {
         };
         assert_eq!(judge(image.data.clone()), Ok(()), "{name}");
         let fault = match image.data.clone() {
-            Data::Float32(mut depth) => {
+            ObservationData::Float32(mut depth) => {
                 depth[WALL] += 1e-3;
-                judge(Data::Float32(depth))
+                judge(ObservationData::Float32(depth))
             }
-            Data::Int32(mut ids) if image.spec.shape.len() == 3 => {
+            ObservationData::Int32(mut ids) if image.spec.shape.len() == 3 => {
                 ids[WALL] += 1;
-                judge(Data::Int32(ids))
+                judge(ObservationData::Int32(ids))
             }
-            Data::Int32(mut rows) => {
+            ObservationData::Int32(mut rows) => {
                 let parts = image.spec.shape[1];
                 let end = rows.chunks(parts).take_while(|row| row[0] != 0).count() * parts;
                 rows[end - parts..end].fill(0);
-                judge(Data::Int32(rows))
+                judge(ObservationData::Int32(rows))
             }
-            Data::Uint8(_) => Ok(()),
+            ObservationData::Uint8(_) => Ok(()),
         };
         assert!(fault.is_err(), "{name}");
     }
@@ -276,7 +276,7 @@ fn a_missing_golden_picture_fails_with_a_sentence() {
     };
     let pixel = Observation {
         spec,
-        data: Data::Uint8(vec![0; 3]),
+        data: ObservationData::Uint8(vec![0; 3]),
     };
     let sentence = golden()
         .difference("nowhere", &Kept::of(&pixel).unwrap())

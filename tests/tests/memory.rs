@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "it tells its figures")]
 
-use dwell::{DiscreteAction, Engines, Stride, World, WorldConfig};
+use dwell::{DiscreteAction, Engines, StepSizes, World, WorldConfig};
 use dwell_acoustics::{ActiveSource, Receiver, Stream, StreamConfig, signals};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -41,7 +41,7 @@ fn walk(world: &mut World, steps: usize) {
     for k in 0..steps {
         let action = DiscreteAction::ALL[1 + k % 3];
         world
-            .act_discrete(AgentId(0), action, &Stride::default())
+            .act_discrete(AgentId(0), action, &StepSizes::default())
             .unwrap();
     }
 }

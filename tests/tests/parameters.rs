@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::Out;
+use dwell::sensors::ObservationBuffer;
 use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
 use dwell_physics::BodyState;
 use dwell_scene::parallel::Threads;
@@ -284,7 +284,7 @@ fn a_field_of_view_set_at_run_time_is_what_the_camera_sees() {
         batch.reset(&[Some(3)]).unwrap();
         let mut seen = vec![0.0_f32; width * height];
         batch
-            .observe(&[true], &mut [Out::Float32(&mut seen)])
+            .observe(&[true], &mut [ObservationBuffer::Float32(&mut seen)])
             .unwrap();
         seen
     };
@@ -318,7 +318,7 @@ fn the_field_of_view_that_is_read_is_the_sensors_and_setting_it_changes_the_pict
     let look = |batch: &mut Batch| {
         let mut seen = vec![0_u8; 24 * 16 * 3];
         batch
-            .observe(&[true], &mut [Out::Uint8(&mut seen)])
+            .observe(&[true], &mut [ObservationBuffer::Uint8(&mut seen)])
             .unwrap();
         let world = batch.env(0).unwrap().world();
         (seen, get(world, "agent/0/camera/fov_deg"), world.hash())

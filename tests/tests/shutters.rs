@@ -2,9 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::Data;
+use dwell::sensors::ObservationData;
 use dwell::{
-    Batch, DiscreteAction, Env, EnvConfig, PictureRequest, Place, SensorConfig, WorldConfig,
+    Batch, CameraMount, DiscreteAction, Env, EnvConfig, PictureRequest, SensorConfig, WorldConfig,
 };
 use dwell_physics::BodyState;
 use dwell_render::{BackEnd, Camera, Preset};
@@ -142,11 +142,11 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
                     camera: Camera::from_fov(WIDTH as u32, HEIGHT as u32, 90.0)
                         .and_then(|camera| camera.with_range(0.05, 50.0))
                         .unwrap(),
-                    place: Place::Agent(AgentId(0), Pose::IDENTITY),
+                    place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
                     preset: Preset::Lit,
                 };
                 let picture = world.look(&request, &["rgb".to_owned()], 64, Threads::ONE);
-                let Data::Uint8(rgb) = &picture.unwrap()[0].data else {
+                let ObservationData::Uint8(rgb) = &picture.unwrap()[0].data else {
                     panic!("colours are bytes")
                 };
                 assert!(*rgb == part(&seen, k as usize, 2)[5]);

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::{DiscreteAction, Stride, World, WorldConfig, objects_now};
+use dwell::{DiscreteAction, StepSizes, World, WorldConfig, object_states};
 use dwell_physics::{Action, AgentControl, BodyState};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Mobility, ObjectId, Pose, Velocity};
@@ -23,7 +23,7 @@ fn a_restored_world_continues_with_the_same_bits() {
             .map(|k| {
                 let action = DiscreteAction::ALL[1 + k % 3];
                 world
-                    .act_discrete(AGENT, action, &Stride::default())
+                    .act_discrete(AGENT, action, &StepSizes::default())
                     .unwrap();
                 world.listen(&[(AGENT, 800)]).unwrap();
                 world.hash()
@@ -56,7 +56,7 @@ fn snapshots_of_worlds_stay_within_their_size() {
         for k in 0..40 {
             let action = DiscreteAction::ALL[1 + k % 3];
             world
-                .act_discrete(AGENT, action, &Stride::default())
+                .act_discrete(AGENT, action, &StepSizes::default())
                 .unwrap();
         }
         let mut again = self::world();
@@ -147,11 +147,11 @@ fn damaged_snapshots_are_refused_and_leave_the_world_alone() {
 #[test]
 fn a_house_at_rest_stays_at_rest() {
     let mut world = world();
-    let before = objects_now(&world);
+    let before = object_states(&world);
     for _ in 0..40 {
         world.step(&[]).unwrap();
     }
-    let after = objects_now(&world);
+    let after = object_states(&world);
     for ((id, a), b) in (0..).map(ObjectId).zip(&before).zip(&after) {
         if world.house().objects[id].mobility == Mobility::Movable {
             let moved = (Vec3::from_array(a.center) - Vec3::from_array(b.center)).length();
@@ -163,10 +163,14 @@ fn a_house_at_rest_stays_at_rest() {
 #[test]
 fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
     let mut world = world();
-    let thing = objects_now(&world)
+    let thing = object_states(&world)
         .into_iter()
         .find(|thing| thing.pickable && thing.category == "cup" || thing.category == "book")
-        .or_else(|| objects_now(&world).into_iter().find(|thing| thing.pickable))
+        .or_else(|| {
+            object_states(&world)
+                .into_iter()
+                .find(|thing| thing.pickable)
+        })
         .unwrap();
     let object = world.house().object_named(&thing.name).unwrap();
     let body = world.state().agents[AGENT].body;
@@ -191,7 +195,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
     assert_eq!(world.state().agents[AGENT].holding, Some(object));
     for _ in 0..20 {
         world
-            .act_discrete(AGENT, DiscreteAction::TurnLeft, &Stride::default())
+            .act_discrete(AGENT, DiscreteAction::TurnLeft, &StepSizes::default())
             .unwrap();
     }
     assert!(world.act(AGENT, &Action::Drop).success);
@@ -363,10 +367,10 @@ fn settings_that_a_sensor_does_not_know_are_refused() {
 /// The expert knows how far a step goes: with coarse turns and nods it still gets there, and looks at what it found.
 #[test]
 fn the_expert_walks_with_the_strides_of_its_environment() {
-    let stride = Stride {
+    let stride = StepSizes {
         turn_deg: 45.0,
         look_deg: 30.0,
-        ..Stride::default()
+        ..StepSizes::default()
     };
     let config = dwell::EnvConfig {
         stride,

@@ -75,7 +75,7 @@ impl DiscreteAction {
 /// How far the movement actions go in one control step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Stride {
+pub struct StepSizes {
     /// m a step; 0.001 to 1, default 0.1 (2 m/s at 20 Hz).
     pub forward_m: f32,
     /// Degrees a step; 0.1 to 180, default 9 (180 degrees/s at 20 Hz).
@@ -84,7 +84,7 @@ pub struct Stride {
     pub look_deg: f32,
 }
 
-impl Default for Stride {
+impl Default for StepSizes {
     fn default() -> Self {
         Self {
             forward_m: 0.1,
@@ -94,7 +94,7 @@ impl Default for Stride {
     }
 }
 
-impl Stride {
+impl StepSizes {
     /// Checks every range.
     ///
     /// # Errors
@@ -142,7 +142,7 @@ impl World {
         &mut self,
         agent: AgentId,
         action: DiscreteAction,
-        stride: &Stride,
+        stride: &StepSizes,
     ) -> Result<ActionOutcome, WorldError> {
         let outcome = self.use_hand(agent, action);
         let mut controls = vec![AgentControl::default(); self.state().agents.len()];

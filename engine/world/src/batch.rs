@@ -1,10 +1,10 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
 use crate::action::DiscreteAction;
-use crate::batch_pictures::{self, UnderWay};
+use crate::batch_pictures::{self, PendingPictures};
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;
-use crate::sensors::{Dtype, Out, SensorSpec};
+use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
@@ -18,7 +18,7 @@ pub struct Batch {
     /// Whether pictures are taken while other worlds step.
     overlaps: bool,
     /// What is being taken, or what went wrong when it was to be started.
-    under_way: Vec<Result<UnderWay, WorldError>>,
+    under_way: Vec<Result<PendingPictures, WorldError>>,
     /// Whose pictures are under way and still show the world as it is. Shape (environment,).
     is_started: Vec<bool>,
 }
@@ -27,7 +27,7 @@ pub struct Batch {
 const WAVES: usize = 4;
 
 /// One environment of a batch, and what its part of a step came to.
-struct Slot<'a, R> {
+struct EnvSlot<'a, R> {
     env: &'a mut Env,
     active: bool,
     result: Option<Result<R, WorldError>>,
@@ -193,7 +193,7 @@ impl Batch {
         let chosen = chosen.filter(|(number, _)| which[*number]);
         match batch_pictures::start(chosen, self.threads) {
             Ok(some) => {
-                let owners = some.iter().flat_map(UnderWay::owners);
+                let owners = some.iter().flat_map(PendingPictures::owners);
                 for number in owners {
                     self.is_started[number] = true;
                 }
@@ -224,11 +224,11 @@ impl Batch {
         work: impl Fn(usize, &mut Env) -> Result<R, WorldError> + Sync,
     ) -> Result<Vec<Option<R>>, WorldError> {
         let threads = self.threads;
-        let mut slots: Vec<Slot<'_, R>> = self
+        let mut slots: Vec<EnvSlot<'_, R>> = self
             .envs
             .iter_mut()
             .zip(active)
-            .map(|(env, active)| Slot {
+            .map(|(env, active)| EnvSlot {
                 env,
                 active: *active,
                 result: None,
@@ -264,7 +264,7 @@ impl Batch {
     ) -> Result<R, WorldError> {
         interrupt::catch_interrupt(|| work(self)).unwrap_or_else(|interrupted| {
             let stopped = self.envs.iter_mut().zip(active).filter(|(_, on)| **on);
-            stopped.for_each(|(env, _)| env.give_up());
+            stopped.for_each(|(env, _)| env.abandon_episode());
             self.under_way.clear();
             self.is_started.fill(false);
             interrupted.resume()
@@ -321,7 +321,7 @@ impl Batch {
         self.check_count("actions", actions.len())?;
         let active: Vec<bool> = actions.iter().map(Option::is_some).collect();
         for (env, _) in self.envs.iter().zip(&active).filter(|(_, active)| **active) {
-            env.ready()?;
+            env.check_can_step()?;
         }
         self.or_over(&active, |batch| {
             batch.change(&active, |k, env| {
@@ -340,7 +340,11 @@ impl Batch {
     /// # Errors
     /// [`WorldError::Usage`] for wrong counts or lengths, [`WorldError::Render`] for what went wrong with a picture, also
     /// with one that an earlier call has started.
-    pub fn observe(&mut self, which: &[bool], outs: &mut [Out<'_>]) -> Result<(), WorldError> {
+    pub fn observe(
+        &mut self,
+        which: &[bool],
+        outs: &mut [ObservationBuffer<'_>],
+    ) -> Result<(), WorldError> {
         self.check_count("which", which.len())?;
         let specs = self.specs();
         if outs.len() != specs.len() {
@@ -370,14 +374,14 @@ impl Batch {
                     ))
                 };
                 let part = match (spec.dtype, out) {
-                    (Dtype::Uint8, Out::Uint8(out)) => {
-                        Out::Uint8(out.get_mut(range).ok_or_else(fault)?)
+                    (Dtype::Uint8, ObservationBuffer::Uint8(out)) => {
+                        ObservationBuffer::Uint8(out.get_mut(range).ok_or_else(fault)?)
                     }
-                    (Dtype::Float32, Out::Float32(out)) => {
-                        Out::Float32(out.get_mut(range).ok_or_else(fault)?)
+                    (Dtype::Float32, ObservationBuffer::Float32(out)) => {
+                        ObservationBuffer::Float32(out.get_mut(range).ok_or_else(fault)?)
                     }
-                    (Dtype::Int32, Out::Int32(out)) => {
-                        Out::Int32(out.get_mut(range).ok_or_else(fault)?)
+                    (Dtype::Int32, ObservationBuffer::Int32(out)) => {
+                        ObservationBuffer::Int32(out.get_mut(range).ok_or_else(fault)?)
                     }
                     (Dtype::Text, _) => continue,
                     _ => return Err(fault()),
@@ -397,7 +401,7 @@ impl Batch {
             .zip(&mut texts)
             .filter(|(env, _)| env.episode().is_some())
         {
-            if let Err(error) = env.observe(sensor, Out::Text(text)) {
+            if let Err(error) = env.observe(sensor, ObservationBuffer::Text(text)) {
                 tracing::warn!(%error, "no text");
             }
         }

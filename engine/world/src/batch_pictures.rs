@@ -2,9 +2,9 @@
 
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::exposure::Take;
-use crate::pictures::PictureRequest;
-use crate::requests::Picture;
+use crate::picture::PictureRequest;
+use crate::sensor_requests::Picture;
+use crate::shutter::PendingPicture;
 use crate::world::World;
 use dwell_render::{PendingBatch, RenderJob, Renderer};
 use dwell_scene::parallel::Threads;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 const MOST_OPEN: usize = 64;
 
 /// A picture that is to be taken.
-struct Order<'a> {
+struct PictureOrder<'a> {
     /// Of the environment.
     number: usize,
     /// Among the environment's pictures.
@@ -26,32 +26,32 @@ struct Order<'a> {
 }
 
 /// A picture that is being taken.
-struct Taking<'a> {
+struct PictureInProgress<'a> {
     number: usize,
     place: usize,
     world: &'a World,
     picture: &'a mut Picture,
-    take: Take,
+    take: PendingPicture,
 }
 
 /// Pictures by one renderer.
-struct Group<'a> {
+struct RendererGroup<'a> {
     renderer: Arc<Renderer>,
-    orders: Vec<Order<'a>>,
+    orders: Vec<PictureOrder<'a>>,
 }
 
 /// What environments, with their numbers, ask for, by renderer.
 fn gather<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
-) -> Result<Vec<Group<'a>>, WorldError> {
-    let mut groups: Vec<Group<'a>> = Vec::new();
+) -> Result<Vec<RendererGroup<'a>>, WorldError> {
+    let mut groups: Vec<RendererGroup<'a>> = Vec::new();
     for (number, env) in envs {
         let (world, requests, results) = env.picture_work();
         let renderer = world.engines().pictures(&world.config().renderer)?;
-        let same = |group: &Group<'_>| Arc::ptr_eq(&group.renderer, &renderer);
+        let same = |group: &RendererGroup<'_>| Arc::ptr_eq(&group.renderer, &renderer);
         let group = groups.iter().position(same).unwrap_or(groups.len());
         if group == groups.len() {
-            groups.push(Group {
+            groups.push(RendererGroup {
                 renderer,
                 orders: Vec::new(),
             });
@@ -59,7 +59,7 @@ fn gather<'a>(
         let wishes = requests.views.iter().zip(&mut results.pictures);
         for (place, (wish, picture)) in wishes.enumerate() {
             if world.state().agents.get(wish.eye.agent).is_some() {
-                groups[group].orders.push(Order {
+                groups[group].orders.push(PictureOrder {
                     number,
                     place,
                     world,
@@ -73,7 +73,9 @@ fn gather<'a>(
 }
 
 /// The first orders of which not too many have an open shutter, and how many have.
-fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> (Vec<Order<'a>>, usize) {
+fn first_orders<'a>(
+    orders: &mut impl Iterator<Item = PictureOrder<'a>>,
+) -> (Vec<PictureOrder<'a>>, usize) {
     let mut open = 0;
     let mut taken = Vec::new();
     while open < MOST_OPEN
@@ -87,23 +89,26 @@ fn some<'a>(orders: &mut impl Iterator<Item = Order<'a>>) -> (Vec<Order<'a>>, us
 }
 
 /// Stands the cameras of some orders up, `open` of them with an open shutter.
-fn stand_up((orders, open): (Vec<Order<'_>>, usize), threads: Threads) -> Vec<Taking<'_>> {
+fn set_up_cameras(
+    (orders, open): (Vec<PictureOrder<'_>>, usize),
+    threads: Threads,
+) -> Vec<PictureInProgress<'_>> {
     // Worlds are copied for those alone.
     let threads = if open == 0 { Threads::ONE } else { threads };
     let takes = threads.map(orders.len(), |k| {
-        let Order {
+        let PictureOrder {
             world,
             request,
             picture,
             ..
         } = &orders[k];
-        Take::new(world, request, !picture.frame.rgb.is_empty())
+        PendingPicture::new(world, request, !picture.frame.rgb.is_empty())
     });
     let pairs = orders.into_iter().zip(takes);
     pairs
         .map(|(order, take)| {
             order.picture.camera = take.camera();
-            Taking {
+            PictureInProgress {
                 number: order.number,
                 place: order.place,
                 world: order.world,
@@ -114,9 +119,9 @@ fn stand_up((orders, open): (Vec<Order<'_>>, usize), threads: Threads) -> Vec<Ta
         .collect()
 }
 
-fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<RenderJob<'a>> {
+fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
     let mut jobs = Vec::with_capacity(taking.len());
-    for Taking {
+    for PictureInProgress {
         world,
         picture,
         take,
@@ -129,7 +134,10 @@ fn jobs<'a>(taking: &'a mut [Taking<'_>]) -> Vec<RenderJob<'a>> {
 }
 
 /// Makes one picture of each that was exposed.
-fn develop<'a>(pairs: impl Iterator<Item = (&'a mut Take, &'a mut Picture)>, threads: Threads) {
+fn develop<'a>(
+    pairs: impl Iterator<Item = (&'a mut PendingPicture, &'a mut Picture)>,
+    threads: Threads,
+) {
     let mut exposed: Vec<_> = pairs.filter(|(take, _)| take.is_exposed()).collect();
     threads.for_each(&mut exposed, |_, (take, picture)| {
         take.develop(&mut picture.frame);
@@ -141,10 +149,10 @@ pub(crate) fn take<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
 ) -> Result<(), WorldError> {
-    for Group { renderer, orders } in gather(envs)? {
+    for RendererGroup { renderer, orders } in gather(envs)? {
         let mut orders = orders.into_iter();
         loop {
-            let mut taking = stand_up(some(&mut orders), threads);
+            let mut taking = set_up_cameras(first_orders(&mut orders), threads);
             if taking.is_empty() {
                 break;
             }
@@ -161,20 +169,20 @@ pub(crate) fn take<'a>(
 
 /// Pictures that an adapter takes while worlds go on.
 #[derive(Debug)]
-pub(crate) struct UnderWay {
+pub(crate) struct PendingPictures {
     renderer: Arc<Renderer>,
     submitted: PendingBatch,
     /// Whose they are: the environment, and the picture's place there. In the order of their work.
-    takes: Vec<(usize, usize, Take)>,
+    takes: Vec<(usize, usize, PendingPicture)>,
 }
 
 /// Starts the pictures that environments ask for. None of those by the processor, which would keep nobody free.
 pub(crate) fn start<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
-) -> Result<Vec<UnderWay>, WorldError> {
+) -> Result<Vec<PendingPictures>, WorldError> {
     let mut under_way = Vec::new();
-    for Group { renderer, orders } in gather(envs)? {
+    for RendererGroup { renderer, orders } in gather(envs)? {
         // All pictures of an environment, or none.
         let mut presets = orders.iter().map(|order| order.request.preset);
         if !presets.all(|preset| renderer.can_submit(preset)) {
@@ -182,7 +190,7 @@ pub(crate) fn start<'a>(
         }
         let mut orders = orders.into_iter();
         loop {
-            let mut taking = stand_up(some(&mut orders), threads);
+            let mut taking = set_up_cameras(first_orders(&mut orders), threads);
             if taking.is_empty() {
                 break;
             }
@@ -190,10 +198,10 @@ pub(crate) fn start<'a>(
                 break;
             };
             let taken = taking.into_iter().map(|mut taking| {
-                taking.take.forget_moments();
+                taking.take.drop_past_states();
                 (taking.number, taking.place, taking.take)
             });
-            under_way.push(UnderWay {
+            under_way.push(PendingPictures {
                 renderer: renderer.clone(),
                 submitted,
                 takes: taken.collect(),
@@ -203,7 +211,7 @@ pub(crate) fn start<'a>(
     Ok(under_way)
 }
 
-impl UnderWay {
+impl PendingPictures {
     /// Whose pictures these are.
     pub(crate) fn owners(&self) -> impl Iterator<Item = usize> + '_ {
         self.takes.iter().map(|(number, ..)| *number)

@@ -2,10 +2,10 @@
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
-use crate::heap::GivesBack;
+use crate::initial_state::InitialWorld;
 use crate::recordings::Recordings;
+use crate::release_memory::ReleaseOnDrop;
 use crate::sound::emitter_places;
-use crate::start::Start;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
@@ -38,9 +38,9 @@ pub struct Engines {
     /// Of the house as it starts, by walker, the latest at the end.
     grids: Mutex<Vec<Arc<NavGrid>>>,
     /// Of the latest config, as long as a world of it is left.
-    start: Mutex<Option<(WorldConfig, Weak<Start>)>>,
+    start: Mutex<Option<(WorldConfig, Weak<InitialWorld>)>>,
     /// The last field: it is dropped after all others.
-    _heap: GivesBack,
+    _heap: ReleaseOnDrop,
 }
 
 impl Engines {
@@ -58,7 +58,7 @@ impl Engines {
             emitter_places: OnceLock::new(),
             grids: Mutex::default(),
             start: Mutex::default(),
-            _heap: GivesBack,
+            _heap: ReleaseOnDrop,
         })
     }
 
@@ -103,13 +103,13 @@ impl Engines {
     }
 
     /// Where worlds of a config begin; worlds that run side by side share it.
-    pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<Start>, WorldError> {
+    pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<InitialWorld>, WorldError> {
         let mut latest = self.start.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = latest.as_ref().filter(|(of, _)| of == config);
         if let Some(start) = shared.and_then(|(_, start)| start.upgrade()) {
             return Ok(start);
         }
-        let start = Arc::new(Start::new(self, config)?);
+        let start = Arc::new(InitialWorld::new(self, config)?);
         *latest = Some((config.clone(), Arc::downgrade(&start)));
         Ok(start)
     }

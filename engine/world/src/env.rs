@@ -1,13 +1,13 @@
 //! One agent's environment: a world, a task and sensors, stepped by discrete actions.
 
-use crate::action::{DiscreteAction, Stride};
+use crate::action::{DiscreteAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::metrics::Progress;
-use crate::pictures::PictureRequest;
-use crate::requests::{Requests, Results};
-use crate::sensors::{self, Out, Seen, Sensor, SensorSpec, Site};
+use crate::metrics::NavigationMetrics;
+use crate::picture::PictureRequest;
+use crate::sensor_requests::{Requests, Results};
+use crate::sensors::{self, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec};
 use crate::tasks::{self, Task, TaskKind};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
@@ -32,7 +32,7 @@ pub struct EnvConfig {
     /// Rates, laws, parameters.
     pub world: WorldConfig,
     /// How far movement actions go.
-    pub stride: Stride,
+    pub stride: StepSizes,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
 }
@@ -54,7 +54,7 @@ impl Default for EnvConfig {
             task: "InstructionFollowing".to_owned(),
             task_settings: serde_json::Value::Null,
             world: WorldConfig::default(),
-            stride: Stride::default(),
+            stride: StepSizes::default(),
             sensors: None,
         }
     }
@@ -70,7 +70,7 @@ pub struct Episode {
     /// Where the agent started.
     pub start: Pose,
     /// Distance, path, collisions.
-    pub progress: Progress,
+    pub progress: NavigationMetrics,
 }
 
 /// How a step is judged.
@@ -94,7 +94,7 @@ pub struct StepInfo {
     /// Why not, as a sentence; empty when it did.
     pub action_error: String,
     /// Distances and path.
-    pub progress: Progress,
+    pub progress: NavigationMetrics,
     /// Whether this step was cut short by something in the way.
     pub collision: bool,
 }
@@ -105,7 +105,7 @@ pub struct Env {
     pub(crate) world: World,
     task: Box<dyn Task>,
     pub(crate) kind: &'static TaskKind,
-    stride: Stride,
+    stride: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     requests: Requests,
     pub(crate) results: Results,
@@ -128,7 +128,7 @@ impl Env {
         let kind = tasks::find(&config.task)?;
         config.stride.check()?;
         let task = (kind.build)(&config.task_settings, config.stride)?;
-        let site = Site {
+        let site = SensorSetup {
             config: &config.world,
         };
         let defaults: Vec<SensorConfig> = kind
@@ -193,7 +193,7 @@ impl Env {
     }
 
     /// How far movement actions go.
-    pub fn stride(&self) -> &Stride {
+    pub fn stride(&self) -> &StepSizes {
         &self.stride
     }
 
@@ -230,7 +230,7 @@ impl Env {
     pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
         let key = RandomKey::root(seed).child("episode");
         // What fails from here on leaves no episode behind that could go on.
-        self.give_up();
+        self.abandon_episode();
         // A copy of the start beside the first one would only take its time and memory.
         if std::mem::take(&mut self.is_new) {
             self.world.begin(key);
@@ -273,7 +273,7 @@ impl Env {
     }
 
     /// Ends the episode: what happens to the world from here on belongs to none.
-    pub(crate) fn give_up(&mut self) {
+    pub(crate) fn abandon_episode(&mut self) {
         self.episode = None;
         self.steps = 0;
         self.done = false;
@@ -283,7 +283,7 @@ impl Env {
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.
-    pub fn ready(&self) -> Result<(), WorldError> {
+    pub fn check_can_step(&self) -> Result<(), WorldError> {
         let what = match &self.episode {
             Some(_) if self.done => "the episode has ended",
             Some(_) => return Ok(()),
@@ -302,7 +302,7 @@ impl Env {
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.
     pub fn step(&mut self, action: DiscreteAction) -> Result<StepInfo, WorldError> {
-        self.ready()?;
+        self.check_can_step()?;
         let Some(episode) = self.episode.as_mut() else {
             return Err(WorldError::Usage("step: no episode has begun".to_owned()));
         };
@@ -371,7 +371,11 @@ impl Env {
     ///
     /// # Errors
     /// [`WorldError::Usage`] for a wrong index or length, or before the first reset.
-    pub(crate) fn observe(&self, index: usize, out: Out<'_>) -> Result<(), WorldError> {
+    pub(crate) fn observe(
+        &self,
+        index: usize,
+        out: ObservationBuffer<'_>,
+    ) -> Result<(), WorldError> {
         let (Some(sensor), Some(episode)) = (self.sensors.get(index), &self.episode) else {
             return Err(WorldError::Usage(format!(
                 "observe: no sensor {index}, or no episode has begun"
@@ -379,10 +383,10 @@ impl Env {
         };
         let spec = sensor.spec();
         let length = match &out {
-            Out::Uint8(out) => out.len(),
-            Out::Float32(out) => out.len(),
-            Out::Int32(out) => out.len(),
-            Out::Text(_) => spec.len(),
+            ObservationBuffer::Uint8(out) => out.len(),
+            ObservationBuffer::Float32(out) => out.len(),
+            ObservationBuffer::Int32(out) => out.len(),
+            ObservationBuffer::Text(_) => spec.len(),
         };
         if length != spec.len() {
             return Err(WorldError::Usage(format!(
@@ -398,7 +402,7 @@ impl Env {
             .child(spec.name.as_str())
             .child(self.world.state().step);
         sensor.finish(
-            Seen {
+            SensorContext {
                 world: &self.world,
                 episode,
                 results: &self.results,
@@ -479,9 +483,9 @@ mod tests {
 
     /// A task that starts nothing.
     #[derive(Debug)]
-    struct Refusing;
+    struct RefusingTask;
 
-    impl Task for Refusing {
+    impl Task for RefusingTask {
         fn reset(&mut self, world: &mut World, _: RandomKey) -> Result<Episode, WorldError> {
             Err(WorldError::Unplayable {
                 task: "Refusing",
@@ -503,7 +507,7 @@ mod tests {
     fn a_reset_that_fails_leaves_no_episode_that_could_go_on() {
         let mut env = env();
         env.reset(1).unwrap();
-        env.task = Box::new(Refusing);
+        env.task = Box::new(RefusingTask);
         assert!(matches!(env.reset(2), Err(WorldError::Unplayable { .. })));
         assert!(env.episode().is_none());
         let error = env.step(DiscreteAction::Wait).unwrap_err().to_string();

@@ -33,7 +33,7 @@ pub enum WorldError {
         allowed: String,
     },
     /// Settings that cannot be read.
-    #[error("{of}: {found}: {}", crate::settings::plain_json_error(error))]
+    #[error("{of}: {found}: {}", crate::parse_settings::plain_json_error(error))]
     Settings {
         /// What they are for.
         of: &'static str,

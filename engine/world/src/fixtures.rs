@@ -8,18 +8,18 @@ use serde::Serialize;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Fixtures {
     /// Lamps' lights.
-    pub lamps: Vec<Lamp>,
+    pub lamps: Vec<LampFixture>,
     /// Sources of sound.
     pub sources: Vec<SoundSource>,
     /// Joints.
-    pub joints: Vec<JointNow>,
+    pub joints: Vec<JointFixture>,
     /// Around objects.
     pub boxes: Vec<ObjectBox>,
 }
 
 /// A light of a lamp.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Lamp {
+pub struct LampFixture {
     /// The lamp's name.
     pub name: String,
     /// Where the light is, m; of a line its middle.
@@ -49,7 +49,7 @@ pub struct SoundSource {
 
 /// A joint.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct JointNow {
+pub struct JointFixture {
     /// Its object's name and its own, with `/` between.
     pub name: String,
     /// Turning (`hinge`) or sliding (`slide`).
@@ -89,7 +89,7 @@ pub fn fixtures(world: &World) -> Fixtures {
             LightShape::Line { end } => (light.position + end) * 0.5,
             _ => light.position,
         };
-        Lamp {
+        LampFixture {
             name: house.objects[light.object].name.clone(),
             position: state.part_pose[light.part]
                 .transform_point(middle)
@@ -112,7 +112,7 @@ pub fn fixtures(world: &World) -> Fixtures {
     let joints = house.joints.iter_ids().map(|(id, joint)| {
         let parent = joint.parent.map(|parent| state.part_pose[parent]);
         let world_from_joint = parent.unwrap_or(Pose::IDENTITY) * joint.parent_from_joint;
-        JointNow {
+        JointFixture {
             name: format!("{}/{}", house.objects[joint.object].name, joint.name),
             kind: match joint.kind {
                 JointKind::Hinge => "hinge",

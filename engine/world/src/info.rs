@@ -62,7 +62,7 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
 
 /// Where to stand to see a room, and where to look.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Viewpoint {
+pub struct RoomViewpoint {
     /// The room's name.
     pub name: String,
     /// What people call it.
@@ -89,7 +89,7 @@ const PLACES: usize = 48;
 ///
 /// # Errors
 /// [`WorldError::Scene`] for a house too large for a navigation grid.
-pub fn viewpoints(engines: &Engines) -> Result<Vec<Viewpoint>, WorldError> {
+pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
     let house = engines.house();
     let body = AgentBody::default();
     let grid = engines.navigation(&body)?;
@@ -101,7 +101,7 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<Viewpoint>, WorldError> {
         .collect())
 }
 
-fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoint {
+fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> RoomViewpoint {
     let house = rays.house();
     let room = &house.rooms[id];
     let corners: Vec<_> = room.footprint.iter().flatten().collect();
@@ -125,13 +125,13 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoi
         let eye = *place + Vec3::Y * eye_m;
         for turn in 0..TURNS {
             let yaw_rad = f32::from(turn) * std::f32::consts::TAU / f32::from(TURNS);
-            let score = worth(rays, id, &Pose::from_position_yaw(eye, yaw_rad));
+            let score = view_score(rays, id, &Pose::from_position_yaw(eye, yaw_rad));
             if score > best.0 {
                 best = (score, eye, yaw_rad);
             }
         }
     }
-    Viewpoint {
+    RoomViewpoint {
         name: room.name.clone(),
         kinds: room.kinds.clone(),
         area_m2: house.exclusive_area_m2(id),
@@ -143,7 +143,7 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> Viewpoi
 }
 
 /// How much a view shows of a room: the mean logarithm of distance to what is in it, and how many things there are.
-fn worth(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
+fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
     let [across, down] = RAYS;
     let mut seen: Vec<i32> = Vec::new();
     let mut sum = 0.0;

@@ -14,7 +14,7 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> {
 
 /// What a law does that is asked for by its name alone: numbers that need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Usual {
+pub struct DefaultAction {
     /// The law's id.
     pub id: &'static str,
     /// Values by parameter name; the others have their defaults.
@@ -24,33 +24,33 @@ pub struct Usual {
 }
 
 /// The laws that have usual numbers. The others need some: a wind has no usual direction.
-pub const USUAL: &[Usual] = &[
-    Usual {
+pub const USUAL: &[DefaultAction] = &[
+    DefaultAction {
         id: "drag",
         params: &[("c_d", 0.47)],
         about: "that of a sphere at Reynolds numbers of 1e4 to 1e5: S. F. Hoerner, Fluid-Dynamic Drag (1965), chapter 3",
     },
-    Usual {
+    DefaultAction {
         id: "buoyancy",
         params: &[("fluid_density_kg_m3", 1.204)],
         about: "dry air at 20 degrees Celsius and 101325 Pa",
     },
-    Usual {
+    DefaultAction {
         id: "no_air_absorption",
         params: &[("missing", 1.0)],
         about: "all of it is missing",
     },
-    Usual {
+    DefaultAction {
         id: "vignetting",
         params: &[("strength", 1.0)],
         about: "the law of the fourth power",
     },
-    Usual {
+    DefaultAction {
         id: "redwood_depth",
         params: &[("strength", 1.0)],
         about: "the published noise",
     },
-    Usual {
+    DefaultAction {
         id: "kinect_depth",
         params: &[("axial", 1.0), ("lateral", 1.0)],
         about: "the published noise",

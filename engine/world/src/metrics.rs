@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// P. Anderson et al., "On Evaluation of Embodied Navigation Agents", arXiv:1807.06757 (2018), with the corner rules of
 /// `AllenAct`'s `spl_metric`: an unreachable goal counts 0, a goal at the start counts 1 if the agent never moved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Progress {
+pub struct NavigationMetrics {
     /// Geodesic distance to the goal at the start, m; `None` when it cannot be reached.
     pub start_distance_m: Option<f64>,
     /// Geodesic distance to the goal now, m; `None` when it cannot be reached from here.
@@ -21,7 +21,7 @@ pub struct Progress {
     last_position: Vec3,
 }
 
-impl Progress {
+impl NavigationMetrics {
     /// The start of an episode.
     pub fn new(position: Vec3, distance_m: Option<f64>) -> Self {
         Self {
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn a_detour_of_twice_the_distance_halves_spl() {
-        let mut progress = Progress::new(Vec3::ZERO, Some(2.0));
+        let mut progress = NavigationMetrics::new(Vec3::ZERO, Some(2.0));
         progress.advance(Vec3::new(2.0, 0.0, 0.0), Some(1.0), false);
         progress.advance(Vec3::new(2.0, 0.0, 2.0), Some(0.0), true);
         assert!((progress.spl(true) - 0.5).abs() < 1e-12 && progress.spl(false) == 0.0);
@@ -85,9 +85,9 @@ mod tests {
 
     #[test]
     fn corner_cases_give_numbers() {
-        assert!((Progress::new(Vec3::ZERO, Some(0.0)).spl(true) - 1.0).abs() < 1e-12);
-        assert!(Progress::new(Vec3::ZERO, None).spl(true).abs() < 1e-12);
-        let mut moved = Progress::new(Vec3::ZERO, Some(0.0));
+        assert!((NavigationMetrics::new(Vec3::ZERO, Some(0.0)).spl(true) - 1.0).abs() < 1e-12);
+        assert!(NavigationMetrics::new(Vec3::ZERO, None).spl(true).abs() < 1e-12);
+        let mut moved = NavigationMetrics::new(Vec3::ZERO, Some(0.0));
         moved.advance(Vec3::X, Some(1.0), false);
         assert!(moved.spl(true).abs() < 1e-12 && moved.soft_spl().abs() < 1e-12);
     }

@@ -14,11 +14,11 @@ use xxhash_rust::xxh3::Xxh3;
 const MOST_KEPT: usize = 1 << 26;
 
 /// By root, path and rate.
-type Known = BTreeMap<(String, String, u32), (Signal, u64)>;
+type LoadedSounds = BTreeMap<(String, String, u32), (Signal, u64)>;
 
 /// The house's own sounds, by number and rate. They sound in every block, so none is forgotten.
 #[derive(Debug, Default)]
-struct Own {
+struct HouseSounds {
     signals: BTreeMap<(SoundFileId, u32), Signal>,
     /// Of all of them.
     samples: usize,
@@ -26,8 +26,8 @@ struct Own {
 
 #[derive(Debug, Default)]
 pub(crate) struct Recordings {
-    known: Mutex<Known>,
-    own: Mutex<Own>,
+    known: Mutex<LoadedSounds>,
+    own: Mutex<HouseSounds>,
     /// Whether the house's own sounds were found to be some.
     are_sounds: OnceLock<()>,
 }

@@ -3,9 +3,9 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::past::{Before, Past};
-use crate::sound::{Sound, Step};
-use crate::start::Start;
+use crate::initial_state::InitialWorld;
+use crate::motion_history::{MotionHistory, PreviousState};
+use crate::sound::{StepContext, WorldSound};
 use dwell_physics::{
     Action, ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, JointState,
     PhysicsWorld, StartReport,
@@ -29,15 +29,15 @@ pub struct World {
     pub(crate) state: State,
     pub(crate) physics: PhysicsWorld,
     pub(crate) rays: RayScene,
-    pub(crate) sound: Sound,
+    pub(crate) sound: WorldSound,
     pub(crate) events: Vec<ContactEvent>,
     pub(crate) key: RandomKey,
     /// Where things were before the last step.
-    pub(crate) past: Past,
+    pub(crate) past: MotionHistory,
     /// Memory for it.
-    before: Before,
+    before: PreviousState,
     /// What [`World::reset`] goes back to; worlds of one config share it.
-    pub(crate) start: Arc<Start>,
+    pub(crate) start: Arc<InitialWorld>,
 }
 
 impl World {
@@ -65,11 +65,11 @@ impl World {
             state,
             physics,
             rays,
-            sound: Sound::new(config),
+            sound: WorldSound::new(config),
             events: Vec::new(),
             key: RandomKey::root(0),
-            past: Past::default(),
-            before: Before::default(),
+            past: MotionHistory::default(),
+            before: PreviousState::default(),
             start,
         })
     }
@@ -108,7 +108,7 @@ impl World {
         self.state.time_s = self.state.step as f64 * self.config.step_s();
         self.past.remember(&self.before, &self.state);
         self.rays.update(&self.state);
-        self.sound.take_events(&Step {
+        self.sound.add_contact_sounds(&StepContext {
             house: self.engines.house(),
             rays: &self.rays,
             state: &self.state,
@@ -221,7 +221,7 @@ impl World {
     }
 
     /// Where things were before the last step.
-    pub fn past(&self) -> &Past {
+    pub fn past(&self) -> &MotionHistory {
         &self.past
     }
 

@@ -1,7 +1,7 @@
 //! Golden pictures as files: PNG for images, JSON for lists.
 
 use super::compare::{Difference, compare};
-use dwell::sensors::{Data, Observation};
+use dwell::sensors::{Observation, ObservationData};
 use image::{ImageBuffer, Luma, Rgb};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -71,17 +71,17 @@ impl Kept {
             _ => return Err(format!("{name}: neither an image nor a list")),
         };
         match data {
-            Data::Uint8(rgb) => Ok(Self::Color {
+            ObservationData::Uint8(rgb) => Ok(Self::Color {
                 width,
                 rgb: rgb.clone(),
             }),
-            Data::Int32(ids) => {
+            ObservationData::Int32(ids) => {
                 let ids = ids.iter().map(|id| u16::try_from(*id));
                 let ids = ids.collect::<Result<_, _>>();
                 let ids = ids.map_err(|_| format!("{name}: ids beyond 16 bits"))?;
                 Ok(Self::Ids { width, ids })
             }
-            Data::Float32(numbers) => {
+            ObservationData::Float32(numbers) => {
                 let ranges = ranges(name)
                     .ok_or_else(|| format!("{name}: say its range in tests/src/golden/store.rs"))?;
                 let mut steps = vec![0; ranges.len() * height * width * 3];
@@ -179,11 +179,11 @@ impl Kept {
     }
 }
 
-fn rows(data: &Data, parts: usize) -> Vec<Vec<f64>> {
+fn rows(data: &ObservationData, parts: usize) -> Vec<Vec<f64>> {
     let numbers: Vec<f64> = match data {
-        Data::Uint8(data) => data.iter().map(|x| f64::from(*x)).collect(),
-        Data::Int32(data) => data.iter().map(|x| f64::from(*x)).collect(),
-        Data::Float32(data) => data.iter().map(|x| f64::from(*x)).collect(),
+        ObservationData::Uint8(data) => data.iter().map(|x| f64::from(*x)).collect(),
+        ObservationData::Int32(data) => data.iter().map(|x| f64::from(*x)).collect(),
+        ObservationData::Float32(data) => data.iter().map(|x| f64::from(*x)).collect(),
     };
     // Zeros fill the end.
     let rows = numbers.chunks(parts.max(1)).map(<[f64]>::to_vec);

@@ -2,7 +2,7 @@
 
 use crate::apartment;
 use dwell::sensors::Observation;
-use dwell::{Engines, PictureRequest, Place, World, WorldConfig, WorldError};
+use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, WorldError};
 use dwell_render::{Camera, Preset, Projection, RenderError};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -150,7 +150,7 @@ pub fn look(
     sensors: &[&str],
 ) -> Result<Vec<Observation>, WorldError> {
     let rotation = rotation_from_yaw_pitch(yaw_deg.to_radians(), pitch_deg.to_radians());
-    let place = Place::World(Pose::new(Vec3::from_array(eye), rotation));
+    let place = CameraMount::World(Pose::new(Vec3::from_array(eye), rotation));
     at(
         world,
         PictureRequest {

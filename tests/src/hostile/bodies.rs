@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use dwell::{DiscreteAction, Engines, PictureRequest, Place, Stride, World, WorldConfig};
+use dwell::{CameraMount, DiscreteAction, Engines, PictureRequest, StepSizes, World, WorldConfig};
 use dwell_houses::{HousesError, LoadReport};
 use dwell_render::{Camera, ImageChannels, Preset};
 use dwell_scene::parallel::Threads;
@@ -42,13 +42,13 @@ pub fn live_in(house: House) {
         return;
     }
     let step = DiscreteAction::ALL[1];
-    let _ = world.act_discrete(AgentId(0), step, &Stride::default());
+    let _ = world.act_discrete(AgentId(0), step, &StepSizes::default());
     let Ok(camera) = Camera::from_fov(24, 16, 90.0) else {
         return;
     };
     let request = PictureRequest {
         camera,
-        place: Place::Agent(AgentId(0), Pose::IDENTITY),
+        place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
         preset: Preset::Lit,
     };
     let channels = ImageChannels {

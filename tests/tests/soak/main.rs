@@ -16,7 +16,7 @@ mod inputs;
 mod memory;
 
 use checks::{check, largest_snapshot, places};
-use dwell::{Engines, Viewpoint, World, WorldConfig, viewpoints};
+use dwell::{Engines, RoomViewpoint, World, WorldConfig, viewpoints};
 use dwell_houses::with_robot;
 use dwell_physics::{ActionCode, AgentControl};
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -65,7 +65,7 @@ fn with_arm(house: House) -> Arc<Engines> {
 }
 
 /// The place of the `k`-th that stands in a room of its own, as long as there are rooms.
-fn stand(rooms: &[Viewpoint], k: usize) -> Vec3 {
+fn stand(rooms: &[RoomViewpoint], k: usize) -> Vec3 {
     let aside = Vec3::X * (k / rooms.len()) as f32 * 0.5;
     Vec3::from_array(rooms[k % rooms.len()].stand) + aside
 }

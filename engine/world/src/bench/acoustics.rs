@@ -48,9 +48,9 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
             json!(f64::from(pairs) / median(&seconds)),
         );
     }
-    let rooms: Vec<Figure> = spots
+    let rooms: Vec<WalkFigure> = spots
         .iter()
-        .filter_map(|spot| Figure::free(&rays, *spot))
+        .filter_map(|spot| WalkFigure::free(&rays, *spot))
         .take(ROOMS)
         .collect();
     let wanted: Vec<Metrics> = rooms
@@ -59,11 +59,11 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .collect::<Result<_, _>>()?;
     for preset in &options.presets {
         let walks = rooms.iter().zip(&wanted);
-        let walks: Vec<Walk> = walks
+        let walks: Vec<WalkBench> = walks
             .flat_map(|place| (0..SEEDS).map(move |seed| (place, seed)))
             .map(|((figure, wanted), seed)| walk(&engines, &rays, preset, *figure, wanted, seed))
             .collect::<Result<_, _>>()?;
-        let middle = |of: fn(&Walk) -> Option<f64>| {
+        let middle = |of: fn(&WalkBench) -> Option<f64>| {
             let mut values: Vec<f64> = walks.iter().filter_map(of).collect();
             values.sort_by(f64::total_cmp);
             // Nothing where no walk has a figure.
@@ -98,7 +98,7 @@ const BLOCK: usize = 800;
 const BLOCKS: usize = 200;
 
 /// A walk with a radio.
-struct Walk {
+struct WalkBench {
     times_real_time: f64,
     /// Mean over the octaves from 250 Hz to 4 kHz of what its end's measures are off the reference; nothing where a band lacks one.
     t30_off_percent: Option<f64>,
@@ -107,7 +107,7 @@ struct Walk {
 
 /// What is walked in a room.
 #[derive(Clone, Copy)]
-struct Figure {
+struct WalkFigure {
     /// Where the listener's way has its middle, m.
     spot: Vec3,
     /// Where that way goes to, and what is to its right; unit length, level.
@@ -115,7 +115,7 @@ struct Figure {
     right: Vec3,
 }
 
-impl Figure {
+impl WalkFigure {
     /// Turns of a figure that are tried.
     const TURNS: usize = 12;
     /// How far the listener goes to either side of the middle, m.
@@ -171,7 +171,7 @@ impl Figure {
 fn wanted(
     engines: &Engines,
     rays: &RayScene,
-    figure: Figure,
+    figure: WalkFigure,
     threads: Threads,
 ) -> Result<Metrics, WorldError> {
     let (position, head) = figure.place(BLOCKS - 1);
@@ -186,10 +186,10 @@ fn walk(
     engines: &Engines,
     rays: &RayScene,
     preset: &str,
-    figure: Figure,
+    figure: WalkFigure,
     wanted: &Metrics,
     seed: u64,
-) -> Result<Walk, WorldError> {
+) -> Result<WalkBench, WorldError> {
     let scene = engines.acoustics(preset, 16_000)?;
     let config = StreamConfig::preset(preset).unwrap_or_default();
     let mut stream = Stream::new(scene, config, RandomKey::root(seed), Threads::ONE)?;
@@ -216,7 +216,7 @@ fn walk(
         let off: Option<Vec<f64>> = bands.map(|(a, b)| off(a, b)).collect();
         off.map(|off| off.iter().sum::<f64>() / off.len() as f64)
     };
-    Ok(Walk {
+    Ok(WalkBench {
         times_real_time: 0.05 * BLOCKS as f64 / seconds,
         t30_off_percent: mean(|a, b| Some(100.0 * (a.t30_s? / b.t30_s? - 1.0).abs())),
         c80_off_db: mean(|a, b| Some((a.c80_db? - b.c80_db?).abs())),

@@ -5,7 +5,7 @@ use crate::action::DiscreteAction;
 use crate::batch::Batch;
 use crate::env::{Env, EnvConfig};
 use crate::error::WorldError;
-use crate::sensors::{Dtype, Out, SensorSpec};
+use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_scene::parallel::Threads;
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -60,14 +60,14 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
             .zip(&mut floats)
             .zip(&mut ints)
             .zip(&mut texts);
-        let mut outs: Vec<Out<'_>> = specs
+        let mut outs: Vec<ObservationBuffer<'_>> = specs
             .iter()
             .zip(buffers)
             .map(|(spec, (((bytes, floats), ints), text))| match spec.dtype {
-                Dtype::Uint8 => Out::Uint8(bytes),
-                Dtype::Float32 => Out::Float32(floats),
-                Dtype::Int32 => Out::Int32(ints),
-                Dtype::Text => Out::Text(text),
+                Dtype::Uint8 => ObservationBuffer::Uint8(bytes),
+                Dtype::Float32 => ObservationBuffer::Float32(floats),
+                Dtype::Int32 => ObservationBuffer::Int32(ints),
+                Dtype::Text => ObservationBuffer::Text(text),
             })
             .collect();
         batch.observe(&which, &mut outs)?;

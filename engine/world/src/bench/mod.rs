@@ -19,13 +19,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 /// A stage: its name, and what measures it.
-type Stage = (
+type BenchStage = (
     &'static str,
     fn(&str, &BenchOptions) -> Result<Value, WorldError>,
 );
 
 /// All stages. A new one is one file and one line here.
-const STAGES: [Stage; 5] = [
+const STAGES: [BenchStage; 5] = [
     ("load", load::run),
     ("render", render::run),
     ("physics", physics::run),

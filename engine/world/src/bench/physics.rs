@@ -104,12 +104,12 @@ fn boxed(house: &House, boxes: &BenchBoxes) -> Result<House, WorldError> {
 
 /// A world at its start.
 #[derive(Clone)]
-struct Start {
+struct BenchStart {
     world: PhysicsWorld,
     state: State,
 }
 
-impl Start {
+impl BenchStart {
     fn new(
         house: &Arc<House>,
         model: &Arc<PhysicsModel>,
@@ -147,13 +147,13 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     config.control_rate_hz = config.physics_rate_hz / STEPS_PER_CONTROL as f32;
     let house = Arc::new(opened);
     let model = Arc::new(PhysicsModel::new(house.clone()));
-    let (start, report) = Start::new(&house, &model, &config)?;
+    let (start, report) = BenchStart::new(&house, &model, &config)?;
     let restless = PhysicsConfig {
         sleeping: false,
         ..config.clone()
     };
-    let (awake, _) = Start::new(&house, &model, &restless)?;
-    let rate = |start: &Start| -> Result<f64, WorldError> {
+    let (awake, _) = BenchStart::new(&house, &model, &restless)?;
+    let rate = |start: &BenchStart| -> Result<f64, WorldError> {
         let mut rates = Vec::new();
         for _ in 0..options.repeats {
             rates.push(start.clone().run(options.steps)?);
@@ -193,11 +193,15 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
 }
 
 /// Throughput of many worlds on `threads` threads over that of one world on one thread, of the median of interleaved pairs.
-fn together(start: &Start, options: &BenchOptions, threads: Threads) -> Result<f64, WorldError> {
+fn together(
+    start: &BenchStart,
+    options: &BenchOptions,
+    threads: Threads,
+) -> Result<f64, WorldError> {
     let mut ratios = Vec::new();
     for _ in 0..options.repeats.min(5) {
         let alone = start.clone().run(options.steps)?;
-        let mut worlds: Vec<(Start, Result<f64, WorldError>)> = (0..options.worlds)
+        let mut worlds: Vec<(BenchStart, Result<f64, WorldError>)> = (0..options.worlds)
             .map(|_| (start.clone(), Ok(0.0)))
             .collect();
         let begun = Instant::now();

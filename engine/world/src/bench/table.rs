@@ -12,14 +12,14 @@ use dwell_scene::{Pose, State};
 use serde_json::{Value, json};
 
 /// Worlds in one house, and from where each is looked at.
-struct Stage {
+struct RenderBenchStage {
     poses: Vec<Pose>,
     worlds: Vec<(RayScene, State)>,
 }
 
 /// A size of batch and of picture.
 #[derive(Clone, Copy)]
-struct Size {
+struct BenchSize {
     batch: usize,
     resolution: u32,
 }
@@ -41,7 +41,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     let engines = open(house)?;
     let threads = Threads::requested(options.threads)?;
     let most = options.batch.iter().copied().max().unwrap_or(1);
-    let stage = Stage {
+    let stage = RenderBenchStage {
         poses: render::views(&engines, options)?,
         worlds: (0..most).map(|_| world(&engines)).collect(),
     };
@@ -54,7 +54,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         }
         for resolution in &options.resolutions() {
             for batch in &options.batch {
-                let size = Size {
+                let size = BenchSize {
                     batch: *batch,
                     resolution: *resolution,
                 };
@@ -82,13 +82,13 @@ fn world(engines: &Engines) -> (RayScene, State) {
 
 /// One size of batch and picture: colour, depth and ids.
 fn row(
-    stage: &Stage,
+    stage: &RenderBenchStage,
     renderer: &Renderer,
     options: &BenchOptions,
-    size: Size,
+    size: BenchSize,
     (threads, read_back): (Threads, Option<f64>),
 ) -> Result<Value, WorldError> {
-    let Size { batch, resolution } = size;
+    let BenchSize { batch, resolution } = size;
     let camera = Camera::from_fov(resolution, resolution, 90.0)?.with_range(0.05, 50.0)?;
     let wanted = ImageChannels::default();
     let mut frames: Vec<Frame> = (0..batch).map(|_| Frame::new(&camera, wanted)).collect();
@@ -139,7 +139,7 @@ fn row(
 }
 
 fn list<'a>(
-    stage: &'a Stage,
+    stage: &'a RenderBenchStage,
     camera: Camera,
     options: &BenchOptions,
     frames: &'a mut [Frame],

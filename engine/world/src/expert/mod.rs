@@ -1,9 +1,10 @@
 //! A guide who knows the house: follows shortest ways, opens doors, turns to things.
 
-mod swing;
+mod door_opening;
 
-use crate::action::{DiscreteAction, Stride};
+use crate::action::{DiscreteAction, StepSizes};
 use crate::world::World;
+use door_opening::DoorOpening;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::wrap_angle;
 use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
@@ -11,7 +12,6 @@ use dwell_scene::space::{pitch_from_forward, yaw_from_forward};
 use dwell_scene::{AgentId, AgentState, Entity, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
-use swing::Opening;
 
 /// How far ahead of itself it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
 const DOOR_AHEAD_M: f32 = 1.4;
@@ -22,11 +22,11 @@ const PASSABLE: f32 = 0.8;
 
 /// A way for one agent to a set of cells.
 #[derive(Clone, Debug)]
-pub struct Guide {
+pub struct ShortestPathFollower {
     agent: AgentId,
     grid: Arc<NavGrid>,
     field: Arc<DistanceField>,
-    stride: Stride,
+    stride: StepSizes,
     /// How often it was blocked of late.
     blocked: u32,
     /// Steps of the manoeuvre that frees it, counted down.
@@ -34,12 +34,12 @@ pub struct Guide {
     /// Manoeuvres so far; they turn left and right by turns.
     escapes: u32,
     /// The door that it opens now.
-    opening: Option<Opening>,
+    opening: Option<DoorOpening>,
 }
 
-impl Guide {
+impl ShortestPathFollower {
     /// A guide that leads `agent` to the nearest of `goals`.
-    pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[NavCell], stride: Stride) -> Self {
+    pub fn new(agent: AgentId, grid: Arc<NavGrid>, goals: &[NavCell], stride: StepSizes) -> Self {
         let field = Arc::new(grid.distance_field(goals));
         Self {
             agent,
@@ -81,7 +81,7 @@ impl Guide {
         if self.field.at(here)? <= 0.0 {
             return None;
         }
-        if let Some(step) = self.step_aside(world, here) {
+        if let Some(step) = self.avoid_swinging_door(world, here) {
             return Some(step);
         }
         if let Some(door) = self.closed_door_ahead(world, here) {
@@ -108,20 +108,20 @@ impl Guide {
     }
 
     /// Out of the way of a door that swings towards it, and from there opens it wholly; `None` when no door is held up.
-    fn step_aside(&mut self, world: &World, here: NavCell) -> Option<DiscreteAction> {
+    fn avoid_swinging_door(&mut self, world: &World, here: NavCell) -> Option<DiscreteAction> {
         let opening = self.opening.take()?;
         let open = world.state().openness(world.house(), opening.door);
         if open.is_none_or(|open| open >= PASSABLE) {
             return None;
         }
-        let (door, aside) = (opening.door, opening.aside.clone());
+        let (door, clear_cells_field) = (opening.door, opening.clear_cells_field.clone());
         self.opening = Some(opening);
         let agent = *world.state().agents.get(self.agent)?;
-        let aside = aside?;
-        if aside.at(here)? <= 0.0 {
+        let clear_cells_field = clear_cells_field?;
+        if clear_cells_field.at(here)? <= 0.0 {
             return Some(self.open(world, door));
         }
-        self.follow(&aside, &agent, here)
+        self.follow(&clear_cells_field, &agent, here)
     }
 
     /// Grazing a corner or a door: some turns away from the way and a few steps usually free it.
@@ -203,7 +203,7 @@ impl Guide {
             return DiscreteAction::MoveForward;
         }
         let opening = self.opening.take().filter(|opening| opening.door == door);
-        let mut opening = opening.unwrap_or_else(|| Opening::of(door));
+        let mut opening = opening.unwrap_or_else(|| DoorOpening::of(door));
         opening.ordered(world, &self.grid, self.agent);
         self.opening = Some(opening);
         DiscreteAction::Open
@@ -211,7 +211,7 @@ impl Guide {
 }
 
 /// The turn that brings `direction` ahead; `None` when it already is, within half a turn's step.
-fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &Stride) -> Option<DiscreteAction> {
+fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &StepSizes) -> Option<DiscreteAction> {
     let error = wrap_angle(yaw_from_forward(direction) - yaw_rad);
     if error.abs() <= stride.turn_deg.to_radians() * 0.51 {
         return None;
@@ -228,7 +228,7 @@ fn face_point(
     world: &World,
     agent: AgentId,
     target: Vec3,
-    stride: &Stride,
+    stride: &StepSizes,
 ) -> Option<DiscreteAction> {
     let agent = world.state().agents.get(agent)?;
     let direction = target - agent.eye_position();
@@ -251,7 +251,7 @@ pub fn face(
     world: &World,
     agent: AgentId,
     object: ObjectId,
-    stride: &Stride,
+    stride: &StepSizes,
 ) -> Option<DiscreteAction> {
     face_point(
         world,

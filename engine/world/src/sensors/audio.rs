@@ -1,8 +1,10 @@
 //! What an agent's two ears hear.
 
-use super::{Dtype, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec, settings,
+};
 use crate::error::WorldError;
-use crate::requests::Requests;
+use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_scene::AgentId;
 use serde::{Deserialize, Serialize};
@@ -31,7 +33,7 @@ struct AudioConfig {
 }
 
 #[derive(Debug)]
-struct Audio {
+struct AudioSensor {
     agent: AgentId,
     samples: usize,
     /// Samples of the latest observation that were louder than it can hold.
@@ -48,7 +50,7 @@ fn clip(samples: &mut [f32]) -> u64 {
     count
 }
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let config: AudioConfig = settings(value)?;
     if config.agent as usize >= site.config.agents.len() {
         let allowed = format!("below the number of agents, {}", site.config.agents.len());
@@ -68,14 +70,14 @@ fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, W
             allowed,
         });
     }
-    Ok(Box::new(Audio {
+    Ok(Box::new(AudioSensor {
         agent: AgentId(config.agent),
         samples: samples as usize,
         clipped: AtomicU64::new(0),
     }))
 }
 
-impl Sensor for Audio {
+impl Sensor for AudioSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "audio".to_owned(),
@@ -92,8 +94,10 @@ impl Sensor for Audio {
         requests.ears(self.agent, self.samples);
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        let Out::Float32(out) = out else { return };
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        let ObservationBuffer::Float32(out) = out else {
+            return;
+        };
         let mut clipped = 0;
         for (channel, window) in out.chunks_exact_mut(self.samples).enumerate() {
             seen.world.heard(self.agent, channel, window);

@@ -1,8 +1,8 @@
 //! Boxes around things in the image.
 
-use super::image::{self, Kind, Look, Shape};
-use super::list;
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::object_list;
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -16,10 +16,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_2d",
     about: ABOUT,
-    shape: Shape::List(6),
+    shape: ObservationShape::List(6),
     dtype: Dtype::Int32,
     unit: "id, px",
     low: 0.0,
@@ -31,13 +31,15 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    let Out::Int32(out) = out else { return };
-    list::fill(&look, out, |sighting| {
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    let ObservationBuffer::Int32(out) = out else {
+        return;
+    };
+    object_list::fill(&look, out, |sighting| {
         let ([left, top], [right, bottom]) = (sighting.first, sighting.end);
         [
             sighting.entity.0 as u32,

@@ -1,8 +1,8 @@
 //! Oriented boxes around things in view.
 
-use super::image::{self, Kind, Look, Shape};
-use super::list;
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::object_list;
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -16,10 +16,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_3d",
     about: ABOUT,
-    shape: Shape::List(11),
+    shape: ObservationShape::List(11),
     dtype: Dtype::Float32,
     unit: "id, m, m, 1",
     low: -1e9,
@@ -31,15 +31,17 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    let Out::Float32(out) = out else { return };
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    let ObservationBuffer::Float32(out) = out else {
+        return;
+    };
     let world = look.world;
     let camera_from_world = look.view().world_from_camera.inverse();
-    list::fill(&look, out, |sighting| {
+    object_list::fill(&look, out, |sighting| {
         let renderer = world.engines().renderer();
         let mut row = [0.0; 11];
         row[0] = sighting.entity.0 as f32;

@@ -1,7 +1,7 @@
 //! The settings that all camera sensors share. Sensors with equal settings share one picture.
 
 use crate::error::WorldError;
-use crate::pictures::{PictureRequest, Place};
+use crate::picture::{CameraMount, PictureRequest};
 use dwell_render::{Camera, Preset, Projection};
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, Pose, State, math};
@@ -100,7 +100,7 @@ impl EyeCamera {
     pub fn request(&self, state: &State) -> PictureRequest {
         PictureRequest {
             camera: self.camera_in(state),
-            place: Place::Agent(self.agent, self.eye_from_camera),
+            place: CameraMount::Agent(self.agent, self.eye_from_camera),
             preset: self.preset,
         }
     }

@@ -1,6 +1,9 @@
 //! Where an agent faces, relative to where it faced at the start.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 use dwell_scene::space::yaw_from_forward;
 use dwell_scene::{AgentId, Id, math};
@@ -17,14 +20,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct Compass;
+struct CompassSensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(Compass))
+    Ok(Box::new(CompassSensor))
 }
 
-impl Sensor for Compass {
+impl Sensor for CompassSensor {
     fn spec(&self) -> SensorSpec {
         let pi = std::f64::consts::PI;
         SensorSpec {
@@ -38,8 +41,8 @@ impl Sensor for Compass {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(agent), Out::Float32(out)) =
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let (Some(agent), ObservationBuffer::Float32(out)) =
             (seen.world.state().agents.get(AgentId::from_index(0)), out)
         {
             let start_yaw = yaw_from_forward(seen.episode.start.transform_vector(Vec3::NEG_Z));

@@ -1,7 +1,7 @@
 //! Depth image.
 
-use super::image::{self, Kind, Look, Shape};
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -15,10 +15,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "depth",
     about: ABOUT,
-    shape: Shape::Image(1),
+    shape: ObservationShape::Image(1),
     dtype: Dtype::Float32,
     unit: "m",
     low: 0.0,
@@ -30,12 +30,12 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    if let Out::Float32(out) = out {
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    if let ObservationBuffer::Float32(out) = out {
         let (frame, camera) = (look.frame, look.camera);
         out.copy_from_slice(&frame.depth);
         look.optics().depth(camera, &frame.normals, look.key, out);

@@ -1,7 +1,7 @@
 //! Optical flow.
 
-use super::image::{self, Kind, Look, Shape};
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -15,10 +15,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "flow",
     about: ABOUT,
-    shape: Shape::Image(2),
+    shape: ObservationShape::Image(2),
     dtype: Dtype::Float32,
     unit: "px",
     low: -1e9,
@@ -30,12 +30,12 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    if let Out::Float32(out) = out {
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    if let ObservationBuffer::Float32(out) = out {
         for (out, flow) in out.iter_mut().zip(&look.frame.flow) {
             *out = flow.clamp(-1e9, 1e9);
         }

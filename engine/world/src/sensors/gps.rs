@@ -1,6 +1,9 @@
 //! Where an agent is, relative to where it started.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id};
 
@@ -14,14 +17,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct Gps;
+struct GpsSensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(Gps))
+    Ok(Box::new(GpsSensor))
 }
 
-impl Sensor for Gps {
+impl Sensor for GpsSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "gps".to_owned(),
@@ -34,8 +37,8 @@ impl Sensor for Gps {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(agent), Out::Float32(out)) =
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let (Some(agent), ObservationBuffer::Float32(out)) =
             (seen.world.state().agents.get(AgentId::from_index(0)), out)
         {
             let moved = seen.episode.start.inverse().transform_point(agent.position);

@@ -1,6 +1,9 @@
 //! What an agent's gyro reads.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id};
 
@@ -18,14 +21,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct Gyro;
+struct GyroSensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(Gyro))
+    Ok(Box::new(GyroSensor))
 }
 
-impl Sensor for Gyro {
+impl Sensor for GyroSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "gyro".to_owned(),
@@ -38,8 +41,8 @@ impl Sensor for Gyro {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(agent), Out::Float32(out)) =
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let (Some(agent), ObservationBuffer::Float32(out)) =
             (seen.world.state().agents.get(AgentId::from_index(0)), out)
         {
             out[0] = agent.gyro_rad_s.clamp(-FULL_SCALE_RAD_S, FULL_SCALE_RAD_S);

@@ -1,10 +1,10 @@
 //! What all sensors of pictures have in common.
 
 use super::camera::{CameraConfig, EyeCamera};
-use super::{Dtype, Out, Seen, Sensor, SensorSpec, Site, settings};
+use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
 use crate::error::WorldError;
-use crate::pictures::PictureRequest;
-use crate::requests::Requests;
+use crate::picture::PictureRequest;
+use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
 use dwell_scene::parallel::Threads;
@@ -12,10 +12,10 @@ use dwell_scene::random::RandomKey;
 
 /// What tells one sensor of pictures from another.
 #[derive(Debug)]
-pub(crate) struct Kind {
+pub(crate) struct ImageSensorKind {
     pub(super) name: &'static str,
     pub(super) about: &'static str,
-    pub(super) shape: Shape,
+    pub(super) shape: ObservationShape,
     pub(super) dtype: Dtype,
     pub(super) unit: &'static str,
     pub(super) low: f64,
@@ -24,27 +24,27 @@ pub(crate) struct Kind {
     /// The images that it is made of.
     pub(super) channels: ImageChannels,
     /// Writes the observation.
-    pub(super) write: fn(Look<'_>, Out<'_>),
+    pub(super) write: fn(ImageContext<'_>, ObservationBuffer<'_>),
 }
 
 /// The shape of an observation.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Shape {
+pub(super) enum ObservationShape {
     /// (height, width, so many numbers).
     Image(usize),
     /// (`max_objects`, so many numbers).
     List(usize),
 }
 
-impl Kind {
+impl ImageSensorKind {
     fn spec(&self, name: &str, camera: &Camera, max_objects: u32) -> SensorSpec {
         SensorSpec {
             name: name.to_owned(),
             shape: match self.shape {
-                Shape::Image(parts) => {
+                ObservationShape::Image(parts) => {
                     vec![camera.height() as usize, camera.width() as usize, parts]
                 }
-                Shape::List(parts) => vec![max_objects as usize, parts],
+                ObservationShape::List(parts) => vec![max_objects as usize, parts],
             },
             dtype: self.dtype,
             unit: self.unit,
@@ -61,7 +61,7 @@ impl Kind {
 
 /// What a sensor of pictures looks at when it writes.
 #[derive(Clone, Copy)]
-pub(super) struct Look<'a> {
+pub(super) struct ImageContext<'a> {
     pub(super) world: &'a World,
     pub(super) request: PictureRequest,
     /// The camera as it was for the picture.
@@ -72,7 +72,7 @@ pub(super) struct Look<'a> {
     pub(super) key: RandomKey,
 }
 
-impl Look<'_> {
+impl ImageContext<'_> {
     /// The laws of the camera.
     pub(super) fn optics(&self) -> Optics<'_> {
         self.world.optics(&self.request.place)
@@ -84,8 +84,8 @@ impl Look<'_> {
     }
 
     /// The class of what each pixel shows.
-    pub(super) fn write_classes(&self, classes: ClassSet, out: Out<'_>) {
-        if let Out::Int32(out) = out {
+    pub(super) fn write_classes(&self, classes: ClassSet, out: ObservationBuffer<'_>) {
+        if let ObservationBuffer::Int32(out) = out {
             let renderer = self.world.engines().renderer();
             let classes = renderer.classes(classes);
             for (class, id) in out.iter_mut().zip(&self.frame.instance) {
@@ -97,24 +97,24 @@ impl Look<'_> {
 
 /// One sensor.
 #[derive(Debug)]
-struct Image {
-    kind: &'static Kind,
+struct ImageSensor {
+    kind: &'static ImageSensorKind,
     config: CameraConfig,
     eye: EyeCamera,
 }
 
 /// Builds a sensor from its settings.
 pub(super) fn build(
-    kind: &'static Kind,
+    kind: &'static ImageSensorKind,
     value: &serde_json::Value,
-    site: Site<'_>,
+    site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
     let config: CameraConfig = settings(value)?;
     let eye = config.build(&site.config.agents)?;
-    Ok(Box::new(Image { kind, config, eye }))
+    Ok(Box::new(ImageSensor { kind, config, eye }))
 }
 
-impl Sensor for Image {
+impl Sensor for ImageSensor {
     fn spec(&self) -> SensorSpec {
         let name = self.config.name.as_deref().unwrap_or(self.kind.name);
         let camera = &self.eye.camera;
@@ -129,9 +129,9 @@ impl Sensor for Image {
         requests.view(&self.eye, self.kind.channels);
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let Some(picture) = seen.results.view(&self.eye) {
-            let look = Look {
+            let look = ImageContext {
                 world: seen.world,
                 request: self.eye.request(seen.world.state()),
                 camera: &picture.camera,
@@ -145,7 +145,7 @@ impl Sensor for Image {
 
 /// The numbers of an observation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Data {
+pub enum ObservationData {
     /// Of [`Dtype::Uint8`].
     Uint8(Vec<u8>),
     /// Of [`Dtype::Float32`].
@@ -160,7 +160,7 @@ pub struct Observation {
     /// Shape, type, unit and range.
     pub spec: SensorSpec,
     /// Its numbers.
-    pub data: Data,
+    pub data: ObservationData,
 }
 
 impl World {
@@ -197,14 +197,14 @@ impl World {
                 known: images().map(|kind| kind.name.to_owned()).collect(),
             })
         };
-        let kinds: Vec<&Kind> = names.iter().map(find).collect::<Result<_, _>>()?;
+        let kinds: Vec<&ImageSensorKind> = names.iter().map(find).collect::<Result<_, _>>()?;
         let wanted = kinds.iter().map(|kind| kind.channels);
         let channels = wanted.fold(ImageChannels::NONE, ImageChannels::and);
         let (camera, frame) = self.picture(request, channels, threads)?;
         let key = self.key.child("picture").child(self.state().step);
-        let observe = |kind: &&Kind| {
+        let observe = |kind: &&ImageSensorKind| {
             let spec = kind.spec(kind.name, &camera, max_objects);
-            let look = Look {
+            let look = ImageContext {
                 world: self,
                 request: *request,
                 camera: &camera,
@@ -214,18 +214,18 @@ impl World {
             let data = match kind.dtype {
                 Dtype::Uint8 => {
                     let mut data = vec![0; spec.len()];
-                    (kind.write)(look, Out::Uint8(&mut data));
-                    Data::Uint8(data)
+                    (kind.write)(look, ObservationBuffer::Uint8(&mut data));
+                    ObservationData::Uint8(data)
                 }
                 Dtype::Int32 => {
                     let mut data = vec![0; spec.len()];
-                    (kind.write)(look, Out::Int32(&mut data));
-                    Data::Int32(data)
+                    (kind.write)(look, ObservationBuffer::Int32(&mut data));
+                    ObservationData::Int32(data)
                 }
                 Dtype::Float32 | Dtype::Text => {
                     let mut data = vec![0.0; spec.len()];
-                    (kind.write)(look, Out::Float32(&mut data));
-                    Data::Float32(data)
+                    (kind.write)(look, ObservationBuffer::Float32(&mut data));
+                    ObservationData::Float32(data)
                 }
             };
             Observation { spec, data }

@@ -1,7 +1,7 @@
 //! Instance ids.
 
-use super::image::{self, Kind, Look, Shape};
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -15,10 +15,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "instance",
     about: ABOUT,
-    shape: Shape::Image(1),
+    shape: ObservationShape::Image(1),
     dtype: Dtype::Int32,
     unit: "id",
     low: 0.0,
@@ -30,12 +30,12 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    if let Out::Int32(out) = out {
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    if let ObservationBuffer::Int32(out) = out {
         out.copy_from_slice(&look.frame.instance);
     }
 }

@@ -1,6 +1,9 @@
 //! The instruction of the episode as text.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 
 const ABOUT: &str =
@@ -14,14 +17,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct Instruction;
+struct InstructionSensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(Instruction))
+    Ok(Box::new(InstructionSensor))
 }
 
-impl Sensor for Instruction {
+impl Sensor for InstructionSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "instruction".to_owned(),
@@ -34,8 +37,8 @@ impl Sensor for Instruction {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let Out::Text(out) = out {
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let ObservationBuffer::Text(out) = out {
             out.clear();
             out.push_str(&seen.episode.instruction);
         }

@@ -1,6 +1,9 @@
 //! The instruction of the episode as numbers of a versioned vocabulary.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 
 const ABOUT: &str =
@@ -14,14 +17,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct InstructionTokens;
+struct InstructionTokensSensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(InstructionTokens))
+    Ok(Box::new(InstructionTokensSensor))
 }
 
-impl Sensor for InstructionTokens {
+impl Sensor for InstructionTokensSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "instruction_tokens".to_owned(),
@@ -34,8 +37,8 @@ impl Sensor for InstructionTokens {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let Out::Int32(out) = out {
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let ObservationBuffer::Int32(out) = out {
             out.copy_from_slice(&seen.episode.tokens);
         }
     }

@@ -17,8 +17,8 @@ mod image;
 mod instance;
 mod instruction;
 mod instruction_tokens;
-mod list;
 mod normals;
+mod object_list;
 mod rgb;
 mod semantic;
 mod semantic_fine;
@@ -29,11 +29,11 @@ mod wheel_odometry;
 
 pub(crate) use camera::mount;
 pub use camera::{CameraConfig, EyeCamera};
-pub use image::{Data, Observation};
+pub use image::{Observation, ObservationData};
 
 use crate::env::Episode;
 use crate::error::WorldError;
-use crate::requests::{Requests, Results};
+use crate::sensor_requests::{Requests, Results};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
@@ -86,7 +86,7 @@ impl SensorSpec {
 
 /// Where a sensor writes.
 #[derive(Debug)]
-pub enum Out<'a> {
+pub enum ObservationBuffer<'a> {
     /// For [`Dtype::Uint8`].
     Uint8(&'a mut [u8]),
     /// For [`Dtype::Float32`].
@@ -99,7 +99,7 @@ pub enum Out<'a> {
 
 /// What a sensor may look at when it finishes.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct SensorContext<'a> {
     /// The world after the step.
     pub world: &'a World,
     /// The episode.
@@ -124,7 +124,7 @@ pub trait Sensor: Debug + Send + Sync {
     fn plan(&self, _world: &World, _requests: &mut Requests) {}
 
     /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>);
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>);
 
     /// How many samples of the latest observation were beyond its range and are cut off there.
     fn clipped(&self) -> u64 {
@@ -134,13 +134,14 @@ pub trait Sensor: Debug + Send + Sync {
 
 /// What a sensor is built from: the world's fixed numbers.
 #[derive(Clone, Copy, Debug)]
-pub struct Site<'a> {
+pub struct SensorSetup<'a> {
     /// The world's settings.
     pub config: &'a crate::config::WorldConfig,
 }
 
 /// Builds a sensor from its settings (a JSON object; `null` gives the defaults).
-pub type Builder = fn(&serde_json::Value, Site<'_>) -> Result<Box<dyn Sensor>, WorldError>;
+pub type SensorBuilder =
+    fn(&serde_json::Value, SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError>;
 
 /// A kind of sensor that can be asked for by name.
 #[derive(Clone, Copy, Debug)]
@@ -150,9 +151,9 @@ pub struct SensorKind {
     /// One sentence about it.
     pub about: &'static str,
     /// Builds one from its settings (a JSON object; `{}` gives the defaults).
-    pub build: Builder,
+    pub build: SensorBuilder,
     /// What [`World::look`] needs of a sensor of pictures.
-    pub(crate) image: Option<&'static image::Kind>,
+    pub(crate) image: Option<&'static image::ImageSensorKind>,
 }
 
 impl SensorKind {
@@ -195,7 +196,7 @@ pub fn all() -> &'static [SensorKind] {
 pub fn build(
     name: &str,
     settings: &serde_json::Value,
-    site: Site<'_>,
+    site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
     let Some(kind) = all().iter().find(|kind| kind.name == name) else {
         let known = all().iter().map(|kind| kind.name.to_owned()).collect();
@@ -229,7 +230,7 @@ pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
     if value.is_null() {
         return Ok(T::default());
     }
-    crate::settings::read("sensor settings", value)
+    crate::parse_settings::read("sensor settings", value)
 }
 
 /// The settings of a sensor that has none.
@@ -246,7 +247,7 @@ mod tests {
     #[test]
     fn a_name_for_what_has_none_leads_to_the_settings_that_are_meant() {
         let config = WorldConfig::default();
-        let site = Site { config: &config };
+        let site = SensorSetup { config: &config };
         let told = |kind: &str, settings: serde_json::Value| {
             build(kind, &settings, site).unwrap_err().to_string()
         };

@@ -1,7 +1,7 @@
 //! Colour image.
 
-use super::image::{self, Kind, Look, Shape};
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -14,10 +14,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "rgb",
     about: ABOUT,
-    shape: Shape::Image(3),
+    shape: ObservationShape::Image(3),
     dtype: Dtype::Uint8,
     unit: "sRGB",
     low: 0.0,
@@ -29,12 +29,12 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    if let Out::Uint8(out) = out {
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    if let ObservationBuffer::Uint8(out) = out {
         out.copy_from_slice(&look.frame.rgb);
         look.optics().color(look.camera, look.key, out);
     }

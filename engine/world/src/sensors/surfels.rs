@@ -1,7 +1,7 @@
 //! Surface elements.
 
-use super::image::{self, Kind, Look, Shape};
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 use glam::Vec2;
@@ -16,10 +16,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "surfels",
     about: ABOUT,
-    shape: Shape::Image(9),
+    shape: ObservationShape::Image(9),
     dtype: Dtype::Float32,
     unit: "m, 1, 1",
     low: -1e6,
@@ -34,12 +34,14 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    let Out::Float32(out) = out else { return };
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    let ObservationBuffer::Float32(out) = out else {
+        return;
+    };
     let (frame, camera) = (look.frame, look.camera);
     let width = camera.width() as usize;
     for (pixel, out) in out.chunks_exact_mut(9).enumerate() {

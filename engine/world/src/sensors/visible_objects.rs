@@ -1,8 +1,8 @@
 //! What is in view, and how much of it is hidden.
 
-use super::image::{self, Kind, Look, Shape};
-use super::list;
-use super::{Dtype, Out, Sensor, SensorKind, Site};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::object_list;
+use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
 
@@ -16,10 +16,10 @@ pub(super) const KIND: SensorKind = SensorKind {
     image: Some(&IMAGE),
 };
 
-static IMAGE: Kind = Kind {
+static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "visible_objects",
     about: ABOUT,
-    shape: Shape::List(3),
+    shape: ObservationShape::List(3),
     dtype: Dtype::Float32,
     unit: "id, px, 1",
     low: 0.0,
@@ -31,15 +31,17 @@ static IMAGE: Kind = Kind {
     write,
 };
 
-fn build(value: &serde_json::Value, site: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     image::build(&IMAGE, value, site)
 }
 
-fn write(look: Look<'_>, out: Out<'_>) {
-    let Out::Float32(out) = out else { return };
+fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+    let ObservationBuffer::Float32(out) = out else {
+        return;
+    };
     let world = look.world;
     let view = look.view();
-    list::fill(&look, out, |sighting| {
+    object_list::fill(&look, out, |sighting| {
         let renderer = world.engines().renderer();
         let (scene, state) = (world.rays(), world.state());
         let alone = renderer.unoccluded_pixels(scene, state, &view, sighting.entity);

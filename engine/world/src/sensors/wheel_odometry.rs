@@ -1,6 +1,9 @@
 //! Where a base believes to be, from its wheels alone.
 
-use super::{Dtype, NoSettings, Out, Seen, Sensor, SensorKind, SensorSpec, Site, settings};
+use super::{
+    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
+    SensorSpec, settings,
+};
 use crate::error::WorldError;
 use dwell_scene::{AgentId, Id, math};
 
@@ -18,14 +21,14 @@ pub(super) const KIND: SensorKind = SensorKind {
 };
 
 #[derive(Debug)]
-struct WheelOdometry;
+struct WheelOdometrySensor;
 
-fn build(value: &serde_json::Value, _: Site<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let NoSettings {} = settings(value)?;
-    Ok(Box::new(WheelOdometry))
+    Ok(Box::new(WheelOdometrySensor))
 }
 
-impl Sensor for WheelOdometry {
+impl Sensor for WheelOdometrySensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
             name: "wheel_odometry".to_owned(),
@@ -38,8 +41,8 @@ impl Sensor for WheelOdometry {
         }
     }
 
-    fn finish(&self, seen: Seen<'_>, out: Out<'_>) {
-        if let (Some(agent), Out::Float32(out)) =
+    fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
+        if let (Some(agent), ObservationBuffer::Float32(out)) =
             (seen.world.state().agents.get(AgentId::from_index(0)), out)
         {
             let [forward, left, heading] = agent.base.odometry;

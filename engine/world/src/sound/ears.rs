@@ -1,6 +1,6 @@
 //! One agent's ears: a stream, and the newest samples that it gave.
 
-use super::Sounding;
+use super::BlockSource;
 use crate::error::WorldError;
 use dwell_acoustics::{ActiveSource, HeadId, Receiver, Stream};
 use dwell_scene::rays::RayScene;
@@ -15,7 +15,7 @@ const INAUDIBLE_DB: f32 = 15.0;
 
 /// One agent's ears.
 #[derive(Debug)]
-pub(super) struct Ears {
+pub(super) struct AgentEars {
     pub(super) agent: AgentId,
     pub(super) stream: Stream,
     /// On which they are; `None`: the built-in sphere.
@@ -25,14 +25,14 @@ pub(super) struct Ears {
     pub(super) length: usize,
 }
 
-impl Ears {
+impl AgentEars {
     /// Hears the next block.
     pub(super) fn hear(
         &mut self,
         house: &House,
         rays: &RayScene,
         state: &State,
-        sources: &[Sounding],
+        sources: &[BlockSource],
     ) -> Result<(), WorldError> {
         let Some(agent) = state.agents.get(self.agent) else {
             return Ok(());
@@ -42,7 +42,7 @@ impl Ears {
             Some(head) => Receiver::wearing(head, pose),
             None => Receiver::binaural(pose),
         };
-        let active = loudest_first(house, sources, agent.eye_position());
+        let active = sort_by_loudness(house, sources, agent.eye_position());
         let size = self.stream.config().block_samples;
         let mut heard = vec![0.0; 2 * size];
         self.stream
@@ -83,7 +83,11 @@ impl Ears {
 }
 
 /// The sources that can be heard at `ear`, the loudest first: a stream follows only so many.
-fn loudest_first<'a>(house: &House, sources: &'a [Sounding], ear: Vec3) -> Vec<ActiveSource<'a>> {
+fn sort_by_loudness<'a>(
+    house: &House,
+    sources: &'a [BlockSource],
+    ear: Vec3,
+) -> Vec<ActiveSource<'a>> {
     let room = house.room_at(ear);
     let mut heard: Vec<(f32, ActiveSource<'a>)> = sources
         .iter()

@@ -1,6 +1,6 @@
 //! The sounds of the house's own objects.
 
-use super::fade::Fade;
+use super::fade::GainRamp;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_acoustics::signals::Signal;
@@ -42,21 +42,21 @@ pub(super) fn read(
 
 /// What was told to an object's own sound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Told {
+pub(super) struct EmitterOverride {
     pub(super) silent: bool,
     pub(super) level_db: Option<f32>,
 }
 
 /// What changes about them.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Emitters {
+pub(super) struct EmitterStates {
     /// By number; who was told nothing is as the house says.
-    pub(super) told: BTreeMap<u64, Told>,
+    pub(super) told: BTreeMap<u64, EmitterOverride>,
     /// Shape (emitter,); empty before the first step.
-    pub(super) fades: Vec<Fade>,
+    pub(super) fades: Vec<GainRamp>,
 }
 
-impl Emitters {
+impl EmitterStates {
     pub(super) fn level_db(&self, house: &House, k: usize) -> f32 {
         let told = self.told.get(&(k as u64)).and_then(|told| told.level_db);
         told.unwrap_or(house.emitters[k].level_db)
@@ -68,22 +68,22 @@ impl Emitters {
     }
 
     /// The block that ends now goes to where the state has them.
-    pub(super) fn go(&mut self, house: &House, state: &State) {
+    pub(super) fn update(&mut self, house: &House, state: &State) {
         let targets = self.targets(house, state);
         if self.fades.is_empty() {
-            self.fades = targets.into_iter().map(Fade::steady).collect();
+            self.fades = targets.into_iter().map(GainRamp::steady).collect();
             return;
         }
         for (fade, target) in self.fades.iter_mut().zip(targets) {
-            fade.go(target);
+            fade.update(target);
         }
     }
 
     /// How loud each was in the block that ended last. Shape (emitter,).
-    pub(super) fn fades(&self, house: &House, state: &State) -> Vec<Fade> {
+    pub(super) fn fades(&self, house: &House, state: &State) -> Vec<GainRamp> {
         if self.fades.is_empty() {
             let targets = self.targets(house, state).into_iter();
-            return targets.map(Fade::steady).collect();
+            return targets.map(GainRamp::steady).collect();
         }
         self.fades.clone()
     }

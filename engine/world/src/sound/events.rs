@@ -1,8 +1,8 @@
 //! What touches, swings and walks becomes sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
-use super::Sound;
-use super::clear::clear_of_surfaces;
-use super::gait::{Stride, mass_kg};
+use super::WorldSound;
+use super::air_position::air_position;
+use super::gait::{FootEvent, mass_kg};
 use dwell_acoustics::contact::{
     ContactPartner, ContactSound, CreakSound, FootstepSound, FrictionSound, FrictionSoundKind,
     ImpactSound,
@@ -48,7 +48,7 @@ const LATCH_M_S: f32 = 0.5;
 
 /// A sound of touch that is still heard.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Touch {
+pub(super) struct ActiveContactSound {
     pub(super) id: u64,
     pub(super) sound: ContactSound,
     /// The place in the air beside where it was, m.
@@ -62,7 +62,7 @@ pub(super) struct Touch {
     rendered: OnceLock<Vec<f32>>,
 }
 
-impl Touch {
+impl ActiveContactSound {
     /// Writes the block that begins at `start`.
     pub(super) fn read(&self, rate_hz: u32, start: u64, out: &mut [f32]) {
         let samples = self.rendered.get_or_init(|| self.sound.render(rate_hz));
@@ -74,7 +74,7 @@ impl Touch {
 }
 
 /// The world at the end of a step, and what was before it.
-pub(crate) struct Step<'a> {
+pub(crate) struct StepContext<'a> {
     pub(crate) house: &'a House,
     pub(crate) rays: &'a RayScene,
     pub(crate) state: &'a State,
@@ -89,42 +89,42 @@ pub(crate) struct Step<'a> {
     pub(crate) key: RandomKey,
 }
 
-impl Sound {
+impl WorldSound {
     /// Lets what touched, swung and walked in the last step sound in the block that ends now.
-    pub(crate) fn take_events(&mut self, step: &Step<'_>) {
-        self.take_blows(step);
-        self.take_rubs(step);
+    pub(crate) fn add_contact_sounds(&mut self, step: &StepContext<'_>) {
+        self.add_impacts(step);
+        self.add_friction_sounds(step);
         for (joint, articulation) in step.house.joints.iter_ids() {
             if articulation.opens() {
-                self.take_joint(step, joint, articulation);
+                self.add_joint_sounds(step, joint, articulation);
             }
         }
-        self.take_steps(step);
+        self.add_footsteps(step);
     }
 
-    fn add(&mut self, step: &Step<'_>, id: u64, late_s: f64, sound: ContactSound) {
+    fn add(&mut self, step: &StepContext<'_>, id: u64, late_s: f64, sound: ContactSound) {
         let late = ((late_s.max(0.0) * f64::from(self.rate_hz)) as u64).min(self.block as u64 - 1);
         let length = (sound.duration_s() * f64::from(self.rate_hz)).ceil() as u64;
         if self.touches.len() == MOST_RINGING {
             self.touches.remove(0);
         }
-        self.touches.push(Touch {
+        self.touches.push(ActiveContactSound {
             id,
             start: self.blocks * self.block as u64 + late,
             length,
             rendered: OnceLock::new(),
-            heard_from: clear_of_surfaces(step.rays, sound.position()),
+            heard_from: air_position(step.rays, sound.position()),
             sound,
         });
     }
 
-    fn add_blow(&mut self, step: &Step<'_>, late_s: f64, sound: ImpactSound) {
+    fn add_impact(&mut self, step: &StepContext<'_>, late_s: f64, sound: ImpactSound) {
         let id = FIRST_BLOW_ID + self.next_blow % FIRST_BLOW_ID;
         self.next_blow += 1;
         self.add(step, id, late_s, ContactSound::Impact(sound));
     }
 
-    fn take_blows(&mut self, step: &Step<'_>) {
+    fn add_impacts(&mut self, step: &StepContext<'_>) {
         let blows = step
             .events
             .iter()
@@ -137,11 +137,11 @@ impl Sound {
                 partners: partners(step, event),
                 key: step.key.child("blow").child(self.next_blow),
             };
-            self.add_blow(step, event.time_s - step.start_s, sound);
+            self.add_impact(step, event.time_s - step.start_s, sound);
         }
     }
 
-    fn take_rubs(&mut self, step: &Step<'_>) {
+    fn add_friction_sounds(&mut self, step: &StepContext<'_>) {
         let rubs = step.events.iter().filter(|event| {
             let rubs = matches!(event.kind, ContactKind::Scrape | ContactKind::Roll);
             rubs && event.phase != ContactPhase::End && event.duration_s > 0.0
@@ -173,7 +173,7 @@ impl Sound {
     }
 
     /// A hinge that creaks, a drawer that rubs, a door that slams.
-    fn take_joint(&mut self, step: &Step<'_>, joint: JointId, of: &Articulation) {
+    fn add_joint_sounds(&mut self, step: &StepContext<'_>, joint: JointId, of: &Articulation) {
         let (house, state) = (step.house, step.state);
         let Some((before, speed_before)) = step.joints_before.get(joint.index()).copied() else {
             return;
@@ -246,13 +246,13 @@ impl Sound {
         let blow = slam(impulse_n_s, speed_m_s, partners, "slam");
         let tongue = ContactPartner::body("steel", LATCH_KG, LATCH_M);
         let latch = slam(LATCH_KG * LATCH_M_S, LATCH_M_S, [tongue, leaf], "latch");
-        self.add_blow(step, 0.0, blow);
+        self.add_impact(step, 0.0, blow);
         if of.kind == JointKind::Hinge && of.parent.is_none() {
-            self.add_blow(step, 0.01, latch);
+            self.add_impact(step, 0.01, latch);
         }
     }
 
-    fn take_steps(&mut self, step: &Step<'_>) {
+    fn add_footsteps(&mut self, step: &StepContext<'_>) {
         self.gaits
             .resize_with(step.state.agents.len(), Default::default);
         for (id, agent) in step.state.agents.iter_ids() {
@@ -264,18 +264,18 @@ impl Sound {
                 continue;
             };
             let foot = match stride {
-                Stride::Step { side_m, .. } => {
+                FootEvent::Step { side_m, .. } => {
                     let left = Pose::from_position_yaw(agent.position, agent.yaw_rad);
                     left.transform_point(Vec3::new(-side_m, 0.0, 0.0))
                 }
-                Stride::Wheels { .. } => agent.position,
+                FootEvent::Wheels { .. } => agent.position,
             };
             let Some(floor) = floor_at(step, foot) else {
                 continue;
             };
             let key = step.key.child("foot").child(u64::from(id.0));
             let (late_s, sound) = match stride {
-                Stride::Step {
+                FootEvent::Step {
                     late_s,
                     speed_m_s,
                     period_s,
@@ -291,7 +291,7 @@ impl Sound {
                         key: key.child(self.blocks),
                     }),
                 ),
-                Stride::Wheels { speed_m_s } => (
+                FootEvent::Wheels { speed_m_s } => (
                     0.0,
                     ContactSound::Rub(FrictionSound {
                         position: foot,
@@ -337,7 +337,7 @@ fn number(toucher: ContactEntity) -> u64 {
     }
 }
 
-fn partners(step: &Step<'_>, event: &ContactEvent) -> [ContactPartner; 2] {
+fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2] {
     let partner = |toucher, substance: &str| match toucher {
         ContactEntity::Structure(id) => {
             let floor = matches!(
@@ -413,7 +413,7 @@ fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
 }
 
 /// What is under a foot.
-fn floor_at(step: &Step<'_>, foot: Vec3) -> Option<ContactPartner> {
+fn floor_at(step: &StepContext<'_>, foot: Vec3) -> Option<ContactPartner> {
     let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;
     let material = step.rays.surface(&hit).material;

@@ -7,12 +7,12 @@ const RAMP_S: f64 = 0.005;
 
 /// The amplitude at the beginning and at the end of the block that ended last.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Fade {
+pub(super) struct GainRamp {
     before: f32,
     now: f32,
 }
 
-impl Fade {
+impl GainRamp {
     pub(super) fn steady(amplitude: f32) -> Self {
         Self {
             before: amplitude,
@@ -21,7 +21,7 @@ impl Fade {
     }
 
     /// The block that ends now goes to `target`.
-    pub(super) fn go(&mut self, target: f32) {
+    pub(super) fn update(&mut self, target: f32) {
         (self.before, self.now) = (self.now, target);
     }
 
@@ -50,17 +50,17 @@ mod tests {
 
     #[test]
     fn a_level_changes_within_five_milliseconds_and_in_small_steps() {
-        let mut fade = Fade::steady(1.0);
+        let mut fade = GainRamp::steady(1.0);
         let mut block = vec![1.0; 800];
         fade.apply(16_000, &mut block);
         assert!(block.iter().all(|x| *x == 1.0));
-        fade.go(0.0);
+        fade.update(0.0);
         fade.apply(16_000, &mut block);
         let largest = block.windows(2).map(|w| (w[1] - w[0]).abs());
         assert!(largest.fold(1.0 - block[0], f32::max) < 0.0126);
         assert!(block[78] > 0.0 && block[79..].iter().all(|x| *x == 0.0));
         assert!(!fade.is_silent());
-        fade.go(0.0);
+        fade.update(0.0);
         assert!(fade.is_silent());
     }
 }

@@ -27,14 +27,14 @@ pub(super) fn mass_kg(height_m: f32) -> f32 {
 
 /// Where in its gait an agent is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Gait {
+pub(super) struct GaitPhase {
     /// Of the step that is made, 0 to 1.
     phase: f32,
     /// Whether the left foot comes down next.
     left: bool,
 }
 
-impl Default for Gait {
+impl Default for GaitPhase {
     fn default() -> Self {
         Self {
             phase: STANDING,
@@ -48,7 +48,7 @@ const STANDING: f32 = 0.5;
 
 /// What an agent's feet or wheels do in a control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Stride {
+pub(super) enum FootEvent {
     /// A foot comes down.
     Step {
         /// From the beginning of the control step, s.
@@ -67,7 +67,7 @@ pub(super) enum Stride {
     },
 }
 
-impl Gait {
+impl GaitPhase {
     /// Goes on from where the agent was, `feet` and `yaw_rad`, a control step ago.
     pub(super) fn follow(
         &mut self,
@@ -75,14 +75,14 @@ impl Gait {
         feet: Vec3,
         yaw_rad: f32,
         step_s: f64,
-    ) -> Option<Stride> {
+    ) -> Option<FootEvent> {
         let way = agent.position - feet;
         let speed_m_s = Vec3::new(way.x, 0.0, way.z).length() / step_s as f32;
         if !agent.grounded {
             return None;
         }
         if !matches!(agent.body.locomotion, Locomotion::Walking(_)) {
-            return (speed_m_s > SLOWEST_M_S).then_some(Stride::Wheels { speed_m_s });
+            return (speed_m_s > SLOWEST_M_S).then_some(FootEvent::Wheels { speed_m_s });
         }
         let height = agent.body.height_m / 1.7;
         let length_m = (WALK_RATIO * speed_m_s).sqrt() * height;
@@ -108,7 +108,7 @@ impl Gait {
         self.phase -= self.phase.floor();
         let side_m = if self.left { SIDE_M } else { -SIDE_M } * height;
         self.left = !self.left;
-        Some(Stride::Step {
+        Some(FootEvent::Step {
             late_s,
             speed_m_s: speed_m_s.max(TURN_M_S),
             period_s: (step_s as f32 / steps).min(2.0),
@@ -123,7 +123,7 @@ mod tests {
     use dwell_scene::AgentBody;
 
     fn steps(speed_m_s: f32, yaw_rate_rad_s: f32, seconds: f32) -> Vec<(f64, f32)> {
-        let (mut gait, step_s) = (Gait::default(), 0.05);
+        let (mut gait, step_s) = (GaitPhase::default(), 0.05);
         let body = AgentBody {
             height_m: 1.7,
             ..AgentBody::default()
@@ -135,10 +135,10 @@ mod tests {
             agent.position.z -= speed_m_s * 0.05;
             agent.yaw_rad = wrap_angle(agent.yaw_rad + yaw_rate_rad_s * 0.05);
             match gait.follow(&agent, before.0, before.1, step_s) {
-                Some(Stride::Step { late_s, side_m, .. }) => {
+                Some(FootEvent::Step { late_s, side_m, .. }) => {
                     heard.push((k as f64 * step_s + late_s, side_m));
                 }
-                Some(Stride::Wheels { .. }) => panic!("legs have no wheels"),
+                Some(FootEvent::Wheels { .. }) => panic!("legs have no wheels"),
                 None => {}
             }
         }

@@ -1,40 +1,40 @@
 //! What sounds in a world, and what its agents hear.
 //!
-//! - `emitters`: the sounds of the house's own objects; `playing`: what was told to play; `control`: how both are told.
+//! - `emitters`: the sounds of the house's own objects; `playback`: what was told to play; `api`: how both are told.
 //! - `events`: the one file that turns what touches, swings and walks into sounds; `gait`: when feet come down.
-//! - `clear`: from where in the air what lies on a surface is heard.
-//! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `memory`: all of it as bytes.
+//! - `air_position`: from where in the air what lies on a surface is heard.
+//! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
 
-mod clear;
-mod control;
+mod air_position;
+mod api;
 mod ears;
 mod emitters;
 mod events;
 mod fade;
 mod gait;
-mod memory;
-mod playing;
+mod playback;
+mod snapshot;
 
-pub(crate) use clear::emitter_places;
-pub use control::SoundNow;
-pub(crate) use events::Step;
-pub use playing::{PlayRequest, SoundName, SoundPlace, usual_level_db};
+pub(crate) use air_position::emitter_places;
+pub use api::SoundState;
+pub(crate) use events::StepContext;
+pub use playback::{PlayRequest, SoundName, SoundPlace, usual_level_db};
 
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use clear::clear_of_surfaces;
+use air_position::air_position;
 use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, House, State};
-use ears::Ears;
-use emitters::Emitters;
-use events::Touch;
-use gait::Gait;
+use ears::AgentEars;
+use emitters::EmitterStates;
+use events::ActiveContactSound;
+use gait::GaitPhase;
 use glam::Vec3;
-use playing::Playing;
+use playback::Playback;
 use std::collections::BTreeSet;
 
 /// Handles of sounds that are played begin here, and so do their source ids; those of emitters are their numbers.
@@ -42,7 +42,7 @@ const FIRST_PLAYED_ID: u64 = 1 << 48;
 
 /// The sounds of a world and the ears that listen.
 #[derive(Debug)]
-pub(crate) struct Sound {
+pub(crate) struct WorldSound {
     rate_hz: u32,
     block: usize,
     preset: String,
@@ -50,18 +50,18 @@ pub(crate) struct Sound {
     head: Option<HeadId>,
     /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,
-    touches: Vec<Touch>,
+    touches: Vec<ActiveContactSound>,
     next_blow: u64,
     /// Shape (agent,).
-    gaits: Vec<Gait>,
-    emitters: Emitters,
-    playing: Vec<Playing>,
+    gaits: Vec<GaitPhase>,
+    emitters: EmitterStates,
+    playing: Vec<Playback>,
     next_played: u64,
-    ears: Vec<Ears>,
+    ears: Vec<AgentEars>,
 }
 
 /// What sounds in a block.
-struct Sounding {
+struct BlockSource {
     id: u64,
     /// m.
     position: Vec3,
@@ -69,7 +69,7 @@ struct Sounding {
     signal: Vec<f32>,
 }
 
-impl Sound {
+impl WorldSound {
     pub(crate) fn new(config: &WorldConfig) -> Self {
         Self {
             rate_hz: config.sound_rate_hz,
@@ -80,7 +80,7 @@ impl Sound {
             touches: Vec::new(),
             next_blow: 0,
             gaits: Vec::new(),
-            emitters: Emitters::default(),
+            emitters: EmitterStates::default(),
             playing: Vec::new(),
             next_played: 0,
             ears: Vec::new(),
@@ -93,7 +93,7 @@ impl Sound {
         self.touches.clear();
         self.next_blow = 0;
         self.gaits.clear();
-        self.emitters = Emitters::default();
+        self.emitters = EmitterStates::default();
         self.playing.clear();
         self.next_played = 0;
         self.ears.clear();
@@ -116,10 +116,10 @@ impl Sound {
         rays: &RayScene,
         state: &State,
     ) -> Result<(), WorldError> {
-        self.emitters.go(engines.house(), state);
+        self.emitters.update(engines.house(), state);
         for playing in &mut self.playing {
             let target = playing.target();
-            playing.told.fade.go(target);
+            playing.told.fade.update(target);
         }
         if !self.ears.is_empty() {
             let sources = self.sources(engines, rays, state, self.blocks)?;
@@ -152,7 +152,7 @@ impl Sound {
                 ears.lengthen(length);
                 continue;
             }
-            let mut ears = Ears {
+            let mut ears = AgentEars {
                 agent: *agent,
                 stream: self.stream(engines, *agent, key)?,
                 head: self.head,
@@ -202,7 +202,7 @@ impl Sound {
         rays: &RayScene,
         state: &State,
         block: u64,
-    ) -> Result<Vec<Sounding>, WorldError> {
+    ) -> Result<Vec<BlockSource>, WorldError> {
         let house = engines.house();
         let start = block * self.block as u64;
         let mut sources = Vec::new();
@@ -216,7 +216,7 @@ impl Sound {
             let time = (self.rate_hz, self.block as u64, start);
             emitters::read(engines, emitter, time, &mut signal)?;
             fade.apply(self.rate_hz, &mut signal);
-            sources.push(Sounding {
+            sources.push(BlockSource {
                 id: k as u64,
                 position: state.part_pose[emitter.part].transform_point(places[k]),
                 signal,
@@ -226,16 +226,16 @@ impl Sound {
             let mut signal = vec![0.0; self.block];
             playing.read(start, &mut signal);
             playing.told.fade.apply(self.rate_hz, &mut signal);
-            sources.push(Sounding {
+            sources.push(BlockSource {
                 id: playing.told.id,
-                position: clear_of_surfaces(rays, playing.heard_from(house, state)),
+                position: air_position(rays, playing.heard_from(house, state)),
                 signal,
             });
         }
         for touch in &self.touches {
             let mut signal = vec![0.0; self.block];
             touch.read(self.rate_hz, start, &mut signal);
-            sources.push(Sounding {
+            sources.push(BlockSource {
                 id: touch.id,
                 position: touch.heard_from,
                 signal,
@@ -263,7 +263,7 @@ impl Sound {
     ) -> Result<u64, WorldError> {
         let id = FIRST_PLAYED_ID + self.next_played;
         let start = self.blocks * self.block as u64;
-        let playing = Playing::new(at, self.rate_hz, request, (id, start))?;
+        let playing = Playback::new(at, self.rate_hz, request, (id, start))?;
         self.playing.push(playing);
         self.next_played += 1;
         Ok(id)
@@ -295,12 +295,16 @@ impl Sound {
         Ok(())
     }
 
-    fn played(&mut self, handle: u64) -> Option<&mut Playing> {
+    fn played(&mut self, handle: u64) -> Option<&mut Playback> {
         let mut playing = self.playing.iter_mut();
         playing.find(|playing| playing.told.id == handle)
     }
 
-    fn emitter(&mut self, house: &House, handle: u64) -> Result<&mut emitters::Told, WorldError> {
+    fn emitter(
+        &mut self,
+        house: &House,
+        handle: u64,
+    ) -> Result<&mut emitters::EmitterOverride, WorldError> {
         let count = house.emitters.len();
         if handle < count as u64 {
             return Ok(self.emitters.told.entry(handle).or_default());
@@ -311,12 +315,12 @@ impl Sound {
         )))
     }
 
-    pub(crate) fn list(&self, house: &House, state: &State) -> Vec<SoundNow> {
+    pub(crate) fn list(&self, house: &House, state: &State) -> Vec<SoundState> {
         let own = house
             .emitters
             .iter()
             .enumerate()
-            .map(|(k, emitter)| SoundNow {
+            .map(|(k, emitter)| SoundState {
                 handle: k as u64,
                 sound: match emitter.sound_file {
                     Some(_) => SoundName::File(emitter.signal.clone()),
@@ -330,7 +334,7 @@ impl Sound {
                 on: self.emitters.is_on(house, state, k),
                 object: Some(house.objects[emitter.object].name.clone()),
             });
-        let played = self.playing.iter().map(|playing| SoundNow {
+        let played = self.playing.iter().map(|playing| SoundState {
             handle: playing.told.id,
             sound: playing.told.request.sound.clone(),
             position: playing.position(house, state).to_array(),

@@ -3,12 +3,12 @@
 //! The agent starts where the house says; without that, or where the settings ask for it, anywhere on the largest piece of
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
-use super::leaves::Leaves;
+use super::door_leaves::DoorLeaves;
 use super::{Task, TaskKind};
-use crate::action::{DiscreteAction, Stride};
+use crate::action::{DiscreteAction, StepSizes};
 use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
-use crate::metrics::Progress;
+use crate::metrics::NavigationMetrics;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, Pose};
@@ -33,16 +33,16 @@ pub(super) const KIND: TaskKind = TaskKind {
 /// The task's settings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct Settings {
+struct FreeSettings {
     /// Where an episode starts: `"house"` (default), where the house has its first agent start, if it says so; `"anywhere"`,
     /// another place each time.
-    start: StartFrom,
+    start: StartChoice,
 }
 
 /// Where an episode starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum StartFrom {
+enum StartChoice {
     /// At the house's start of the first agent, where it has one; else anywhere.
     #[default]
     House,
@@ -53,21 +53,21 @@ enum StartFrom {
 /// How far the place where one can stand may be from the house's start, m.
 const NEAR_M: f32 = 0.3;
 
-fn build(value: &serde_json::Value, _: Stride) -> Result<Box<dyn Task>, WorldError> {
+fn build(value: &serde_json::Value, _: StepSizes) -> Result<Box<dyn Task>, WorldError> {
     let settings = if value.is_null() {
-        Settings::default()
+        FreeSettings::default()
     } else {
-        crate::settings::read("task_settings", value)?
+        crate::parse_settings::read("task_settings", value)?
     };
-    Ok(Box::new(Free { settings }))
+    Ok(Box::new(FreeTask { settings }))
 }
 
 #[derive(Debug)]
-struct Free {
-    settings: Settings,
+struct FreeTask {
+    settings: FreeSettings,
 }
 
-impl Free {
+impl FreeTask {
     /// Where an episode starts: the place, and where to look, rad.
     fn start(
         &self,
@@ -82,7 +82,7 @@ impl Free {
         };
         let grid = world.engines().navigation(body)?;
         let of_house = world.house().agent_starts.first();
-        if let Some(start) = of_house.filter(|_| self.settings.start == StartFrom::House) {
+        if let Some(start) = of_house.filter(|_| self.settings.start == StartChoice::House) {
             if grid.nearest(start.position, NEAR_M).is_none() {
                 let at = start.position.to_array();
                 return Err(unplayable(format!(
@@ -91,7 +91,7 @@ impl Free {
             }
             return Ok((start.position, start.yaw_rad));
         }
-        let leaves = Leaves::of(world, &grid);
+        let leaves = DoorLeaves::of(world, &grid);
         let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
         let start = grid.sample(key.child("start"), on_island);
         let Some(cell) = start else {
@@ -104,7 +104,7 @@ impl Free {
     }
 }
 
-impl Task for Free {
+impl Task for FreeTask {
     fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
         let agent = AgentId(0);
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
@@ -118,7 +118,7 @@ impl Task for Free {
             instruction: INSTRUCTION.to_owned(),
             tokens: vocabulary::tokenize(INSTRUCTION)?,
             start: Pose::from_position_yaw(position, yaw_rad),
-            progress: Progress::new(position, None),
+            progress: NavigationMetrics::new(position, None),
         })
     }
 

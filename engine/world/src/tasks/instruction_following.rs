@@ -3,14 +3,14 @@
 //! Reward: by how much the geodesic distance to the goal fell (m), minus 0.01 a step, plus 2.5 for stopping where the
 //! instruction is fulfilled. The episode ends with `stop`.
 
-use super::goal_ground::GoalGround;
-use super::leaves::Leaves;
+use super::door_leaves::DoorLeaves;
+use super::goal_cells::GoalCells;
 use super::{Task, TaskKind};
-use crate::action::{DiscreteAction, Stride};
+use crate::action::{DiscreteAction, StepSizes};
 use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
-use crate::expert::{Guide, face};
-use crate::metrics::Progress;
+use crate::expert::{ShortestPathFollower, face};
+use crate::metrics::NavigationMetrics;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt::{self, PollEvery};
@@ -50,7 +50,7 @@ pub(super) const KIND: TaskKind = TaskKind {
 /// The task's settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct Settings {
+struct InstructionFollowingSettings {
     /// Kinds of instructions to draw from; default all.
     kinds: Vec<InstructionKind>,
     /// The nearest a start may lie to the goal, geodesic m; default 1.
@@ -59,7 +59,7 @@ struct Settings {
     max_distance_m: f64,
 }
 
-impl Default for Settings {
+impl Default for InstructionFollowingSettings {
     fn default() -> Self {
         Self {
             kinds: InstructionKind::ALL.to_vec(),
@@ -69,11 +69,11 @@ impl Default for Settings {
     }
 }
 
-fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, WorldError> {
-    let settings: Settings = if value.is_null() {
-        Settings::default()
+fn build(value: &serde_json::Value, stride: StepSizes) -> Result<Box<dyn Task>, WorldError> {
+    let settings: InstructionFollowingSettings = if value.is_null() {
+        InstructionFollowingSettings::default()
     } else {
-        crate::settings::read("task_settings", value)?
+        crate::parse_settings::read("task_settings", value)?
     };
     if settings.kinds.is_empty() {
         let allowed = "at least one of go_to_room, find_object".to_owned();
@@ -95,61 +95,61 @@ fn build(value: &serde_json::Value, stride: Stride) -> Result<Box<dyn Task>, Wor
         settings,
         stride,
         offers: Vec::new(),
-        now: None,
+        active: None,
     }))
 }
 
 /// An instruction that can be played, and the cells where it is fulfilled.
 #[derive(Clone, Debug)]
-struct Offer {
+struct PlayableInstruction {
     instruction: Instruction,
     goals: Vec<NavCell>,
 }
 
 #[derive(Clone, Debug)]
-struct Now {
+struct ActiveInstruction {
     instruction: Instruction,
     /// Measures the way that is left.
-    guide: Guide,
+    guide: ShortestPathFollower,
     /// Leads the expert, to those goals from which it has not looked in vain.
-    lead: Guide,
+    expert_path: ShortestPathFollower,
     goals: Vec<NavCell>,
 }
 
-impl Now {
+impl ActiveInstruction {
     /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
     /// thing may be hidden, though it is seen from the middle.
-    fn leave_out_goals_here(&mut self, world: &World, stride: &Stride) -> bool {
+    fn leave_out_goals_here(&mut self, world: &World, stride: &StepSizes) -> bool {
         let Some(agent) = world.state().agents.get(AgentId(0)) else {
             return false;
         };
-        let grid = self.lead.grid().clone();
+        let grid = self.expert_path.grid().clone();
         let before = self.goals.len();
         self.goals
             .retain(|cell| (grid.position(*cell) - agent.position).length() > ELSEWHERE_M);
         if self.goals.is_empty() || self.goals.len() == before {
             return false;
         }
-        self.lead = Guide::new(AgentId(0), grid, &self.goals, *stride);
+        self.expert_path = ShortestPathFollower::new(AgentId(0), grid, &self.goals, *stride);
         true
     }
 }
 
 #[derive(Debug)]
 struct InstructionFollowing {
-    settings: Settings,
+    settings: InstructionFollowingSettings,
     /// How far the agent's steps go, for the expert.
-    stride: Stride,
+    stride: StepSizes,
     /// What the house offers at its start; found once.
-    offers: Vec<Offer>,
-    now: Option<Now>,
+    offers: Vec<PlayableInstruction>,
+    active: Option<ActiveInstruction>,
 }
 
 impl InstructionFollowing {
     /// All at once: who is stopped on the way has found nothing.
-    fn find_offers(&self, world: &World, grid: &NavGrid) -> Vec<Offer> {
+    fn find_playable(&self, world: &World, grid: &NavGrid) -> Vec<PlayableInstruction> {
         let mut offers = Vec::new();
-        let ground = GoalGround::of(grid);
+        let ground = GoalCells::of(grid);
         let engines = world.engines().clone();
         let state: &State = world.state();
         let scene = engines.semantics().scene(state);
@@ -157,7 +157,7 @@ impl InstructionFollowing {
             for instruction in instruct::candidates(&scene, *kind) {
                 let goals = goal_cells(world, &ground, &instruction);
                 if !goals.is_empty() {
-                    offers.push(Offer { instruction, goals });
+                    offers.push(PlayableInstruction { instruction, goals });
                 }
             }
         }
@@ -166,7 +166,7 @@ impl InstructionFollowing {
 }
 
 /// The walkable cells of the largest island in which an instruction is fulfilled by someone who looks the right way.
-fn goal_cells(world: &World, ground: &GoalGround<'_>, instruction: &Instruction) -> Vec<NavCell> {
+fn goal_cells(world: &World, ground: &GoalCells<'_>, instruction: &Instruction) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {
         return ground.within(world.house(), &instruction.goal.rooms);
     }
@@ -216,20 +216,20 @@ impl Task for InstructionFollowing {
         };
         let grid = world.engines().navigation(&body)?;
         if self.offers.is_empty() {
-            self.offers = self.find_offers(world, &grid);
+            self.offers = self.find_playable(world, &grid);
         }
         let unplayable = |why: &str| WorldError::Unplayable {
             task: NAME,
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
-        let leaves = Leaves::of(world, &grid);
+        let leaves = DoorLeaves::of(world, &grid);
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
             interrupt::check();
             let offer = &self.offers[k];
-            let guide = Guide::new(agent, grid.clone(), &offer.goals, self.stride);
+            let guide = ShortestPathFollower::new(agent, grid.clone(), &offer.goals, self.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
             let allowed = |cell: NavCell| {
                 grid.island(cell) == Some(0)
@@ -257,33 +257,35 @@ impl Task for InstructionFollowing {
             instruction: instruction.text.clone(),
             tokens: instruction.tokens()?,
             start: Pose::from_position_yaw(position, yaw_rad),
-            progress: Progress::new(position, distance_m),
+            progress: NavigationMetrics::new(position, distance_m),
         };
-        let (lead, goals) = (guide.clone(), offer.goals.clone());
-        self.now = Some(Now {
+        let (expert_path, goals) = (guide.clone(), offer.goals.clone());
+        self.active = Some(ActiveInstruction {
             instruction,
             guide,
-            lead,
+            expert_path,
             goals,
         });
         Ok(episode)
     }
 
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
-        let (Some(now), Some(agent)) = (&self.now, world.state().agents.get(AgentId(0))) else {
+        let (Some(active), Some(agent)) = (&self.active, world.state().agents.get(AgentId(0)))
+        else {
             return Verdict::default();
         };
-        let gain =
-            episode
-                .progress
-                .advance(agent.position, now.guide.distance_m(world), agent.collided);
+        let gain = episode.progress.advance(
+            agent.position,
+            active.guide.distance_m(world),
+            agent.collided,
+        );
         let mut verdict = Verdict {
             reward: gain + SLACK_REWARD,
             ..Verdict::default()
         };
         if action == DiscreteAction::Stop {
             let scene = world.engines().semantics().scene(world.state());
-            let judged = now
+            let judged = active
                 .instruction
                 .verify_at_stop(&scene, world.rays(), AgentId(0));
             verdict.terminated = true;
@@ -296,22 +298,22 @@ impl Task for InstructionFollowing {
     }
 
     fn expert(&mut self, world: &mut World, _episode: &Episode) -> DiscreteAction {
-        let Some(now) = &mut self.now else {
+        let Some(active) = &mut self.active else {
             return DiscreteAction::Stop;
         };
-        if let Some(step) = now.lead.walk(world) {
+        if let Some(step) = active.expert_path.walk(world) {
             return step;
         }
-        let Some(object) = now.instruction.goal.objects.first() else {
+        let Some(object) = active.instruction.goal.objects.first() else {
             return DiscreteAction::Stop;
         };
         if let Some(turn) = face(world, AgentId(0), *object, &self.stride) {
             return turn;
         }
         let scene = world.engines().semantics().scene(world.state());
-        let judged = (now.instruction).verify(&scene, world.rays(), AgentId(0));
+        let judged = (active.instruction).verify(&scene, world.rays(), AgentId(0));
         if judged == instruct::InstructionProgress::Continue
-            && now.leave_out_goals_here(world, &self.stride)
+            && active.leave_out_goals_here(world, &self.stride)
         {
             return DiscreteAction::Wait;
         }
@@ -326,7 +328,7 @@ mod tests {
 
     #[test]
     fn a_nearest_start_beyond_the_furthest_is_refused() {
-        let made = |settings| build(&settings, Stride::default()).map(|_| ());
+        let made = |settings| build(&settings, StepSizes::default()).map(|_| ());
         made(json!({"min_distance_m": 3.0, "max_distance_m": 3.0})).unwrap();
         let told = made(json!({"min_distance_m": 5.0, "max_distance_m": 2.0}));
         assert_eq!(

@@ -1,11 +1,11 @@
 //! Tasks: what an episode asks for and how it is judged. One file each, and one line in [`all`].
 
+mod door_leaves;
 mod free;
-mod goal_ground;
+mod goal_cells;
 mod instruction_following;
-mod leaves;
 
-use crate::action::{DiscreteAction, Stride};
+use crate::action::{DiscreteAction, StepSizes};
 use crate::env::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::world::World;
@@ -31,7 +31,7 @@ pub trait Task: Debug + Send + Sync {
 }
 
 /// Builds a task from its settings (a JSON object; `null` gives the defaults) for an agent that walks so.
-pub type Build = fn(&serde_json::Value, Stride) -> Result<Box<dyn Task>, WorldError>;
+pub type TaskBuilder = fn(&serde_json::Value, StepSizes) -> Result<Box<dyn Task>, WorldError>;
 
 /// A kind of task that can be asked for by name.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub struct TaskKind {
     /// The sensors that its environment has when nobody says otherwise.
     pub sensors: &'static [&'static str],
     /// Builds one.
-    pub build: Build,
+    pub build: TaskBuilder,
 }
 
 /// All tasks.

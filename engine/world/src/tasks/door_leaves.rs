@@ -6,12 +6,12 @@ use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
 
 /// A door's leaf as it stands now: a box in its own frame.
-struct Leaf {
+struct DoorLeafBox {
     leaf_from_world: Pose,
     bounds: Aabb,
 }
 
-impl Leaf {
+impl DoorLeafBox {
     fn of(world: &World, door: &NavDoor) -> Self {
         let house = world.house();
         let child = house.joints[door.joint].child;
@@ -24,7 +24,7 @@ impl Leaf {
     }
 
     /// Distance from feet that stand at `at`, seen from above, m; leaves of other storeys are far.
-    fn apart_m(&self, at: Vec3) -> f32 {
+    fn distance_m(&self, at: Vec3) -> f32 {
         // At half the height of a leaf, where handles stand out.
         let point = self.leaf_from_world.transform_point(at + Vec3::Y);
         (point.clamp(self.bounds.min, self.bounds.max) - point).length()
@@ -32,16 +32,19 @@ impl Leaf {
 }
 
 /// The leaves of all doors of a grid.
-pub(super) struct Leaves {
-    leaves: Vec<Leaf>,
+pub(super) struct DoorLeaves {
+    leaves: Vec<DoorLeafBox>,
     apart_m: f32,
 }
 
-impl Leaves {
+impl DoorLeaves {
     pub(super) fn of(world: &World, grid: &NavGrid) -> Self {
         let doors = grid.doors();
         Self {
-            leaves: doors.iter().map(|door| Leaf::of(world, door)).collect(),
+            leaves: doors
+                .iter()
+                .map(|door| DoorLeafBox::of(world, door))
+                .collect(),
             apart_m: grid.config().radius_m + 0.5 * grid.config().cell_m,
         }
     }
@@ -51,6 +54,6 @@ impl Leaves {
         let at = grid.position(cell);
         self.leaves
             .iter()
-            .any(|leaf| leaf.apart_m(at) < self.apart_m)
+            .any(|leaf| leaf.distance_m(at) < self.apart_m)
     }
 }

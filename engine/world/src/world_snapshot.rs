@@ -6,9 +6,9 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::past::Past;
-use crate::sound::Sound;
-use crate::start::Start;
+use crate::initial_state::InitialWorld;
+use crate::motion_history::MotionHistory;
+use crate::sound::WorldSound;
 use crate::world::World;
 use dwell_physics::PhysicsWorld;
 use dwell_scene::packing::{pack_within, unpack};
@@ -22,7 +22,7 @@ const MAGIC: &[u8] = b"dwworld6";
 
 /// What is told before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
-struct Head {
+struct SnapshotHeader {
     /// The house's fingerprint.
     house: u64,
     /// The agents' bodies as the world was made with them.
@@ -32,22 +32,22 @@ struct Head {
 }
 
 #[derive(serde::Serialize, serde::Deserialize)]
-struct Parts {
+struct SnapshotParts {
     state: Vec<u8>,
     physics: Vec<u8>,
     sound: Vec<u8>,
     key: RandomKey,
-    past: Past,
+    past: MotionHistory,
 }
 
 /// The bytes of worlds' common beginning.
 #[derive(Debug)]
-pub(crate) struct Base {
+pub(crate) struct SnapshotBase {
     bytes: Vec<u8>,
     sum: u64,
 }
 
-impl Base {
+impl SnapshotBase {
     /// Of worlds with the same house, agents and rates: with whatever parameters and laws.
     pub(crate) fn of(engines: &Engines, config: &WorldConfig) -> Self {
         let plain = WorldConfig {
@@ -57,7 +57,7 @@ impl Base {
             ..config.clone()
         };
         // Bodies that only the world's own parameters make small enough have no such beginning: theirs has no bytes.
-        let start = Start::new(engines, &plain);
+        let start = InitialWorld::new(engines, &plain);
         let bytes = start.map_or_else(
             |_| Vec::new(),
             |start| {
@@ -65,7 +65,7 @@ impl Base {
                     engines.house(),
                     &start.state,
                     &start.physics,
-                    (Vec::new(), RandomKey::root(0), Past::default()),
+                    (Vec::new(), RandomKey::root(0), MotionHistory::default()),
                 )
             },
         );
@@ -78,9 +78,9 @@ fn body(
     house: &House,
     state: &State,
     physics: &PhysicsWorld,
-    (sound, key, past): (Vec<u8>, RandomKey, Past),
+    (sound, key, past): (Vec<u8>, RandomKey, MotionHistory),
 ) -> Vec<u8> {
-    let parts = Parts {
+    let parts = SnapshotParts {
         state: state.to_bytes(house),
         physics: physics.moment(),
         sound,
@@ -98,7 +98,7 @@ impl World {
     /// Never: plain bytes can always be written to memory.
     pub fn snapshot(&self) -> Vec<u8> {
         let base = self.base();
-        let head = Head {
+        let head = SnapshotHeader {
             house: self.house().fingerprint(),
             agents: self.config().agents.clone(),
             base: base.sum,
@@ -137,7 +137,7 @@ impl World {
                 "its check sum does not fit: it is damaged".to_owned(),
             ));
         }
-        let (head, packed): (Head, &[u8]) =
+        let (head, packed): (SnapshotHeader, &[u8]) =
             postcard::take_from_bytes(told).map_err(|error| refuse(error.to_string()))?;
         if head.house != self.house().fingerprint() {
             let name = &self.house().name;
@@ -158,13 +158,13 @@ impl World {
             ));
         }
         let body = unpack(packed, &base.bytes)?;
-        let parts: Parts =
+        let parts: SnapshotParts =
             postcard::from_bytes(&body).map_err(|error| refuse(error.to_string()))?;
         let mut state = State::from_bytes(self.house(), &parts.state)?;
         if state.agents.len() != head.agents.len() {
             return Err(refuse("its state has other agents than it says".to_owned()));
         }
-        let sound = Sound::from_bytes(
+        let sound = WorldSound::from_bytes(
             &self.config,
             (&self.engines, &state),
             parts.key.child("sound"),
@@ -186,7 +186,7 @@ impl World {
         Ok(())
     }
 
-    fn base(&self) -> &Base {
+    fn base(&self) -> &SnapshotBase {
         self.start.base(&self.engines, &self.config)
     }
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::collections::BTreeSet;
 
 /// The agents as they are now: their bodies have the numbers that are in force, whatever set them.
-pub fn agents_now(world: &World) -> Vec<AgentState> {
+pub fn effective_agents(world: &World) -> Vec<AgentState> {
     let state = world.state();
     let agents = state.agents.iter().enumerate();
     let now = agents.map(|(k, agent)| {
@@ -21,7 +21,7 @@ pub fn agents_now(world: &World) -> Vec<AgentState> {
 
 /// An object as it is now.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ObjectNow {
+pub struct ObjectState {
     /// The sensors' id.
     pub id: i32,
     /// The name.
@@ -51,8 +51,8 @@ pub struct ObjectNow {
 }
 
 /// All objects as they are now.
-pub fn objects_now(world: &World) -> Vec<ObjectNow> {
-    let around = Around::of(world);
+pub fn object_states(world: &World) -> Vec<ObjectState> {
+    let around = SharedQueries::of(world);
     world
         .house()
         .objects
@@ -65,12 +65,12 @@ pub fn objects_now(world: &World) -> Vec<ObjectNow> {
 ///
 /// # Panics
 /// For an object that does not exist.
-pub fn object_now(world: &World, id: ObjectId) -> ObjectNow {
-    Around::of(world).tell(id)
+pub fn object_state(world: &World, id: ObjectId) -> ObjectState {
+    SharedQueries::of(world).tell(id)
 }
 
 /// What each object is told beside: found once for all of them.
-struct Around<'a> {
+struct SharedQueries<'a> {
     world: &'a World,
     /// Shape (object,).
     boxes: Vec<Aabb>,
@@ -79,7 +79,7 @@ struct Around<'a> {
     sounding: BTreeSet<ObjectId>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> SharedQueries<'a> {
     fn of(world: &'a World) -> Self {
         let (house, state) = (world.house(), world.state());
         Self {
@@ -94,7 +94,7 @@ impl<'a> Around<'a> {
         }
     }
 
-    fn tell(&self, id: ObjectId) -> ObjectNow {
+    fn tell(&self, id: ObjectId) -> ObjectState {
         let (house, state) = (self.world.house(), self.world.state());
         let object = &house.objects[id];
         let bounds = &self.boxes[id.index()];
@@ -106,7 +106,7 @@ impl<'a> Around<'a> {
         } else {
             Vec::new()
         };
-        ObjectNow {
+        ObjectState {
             id: house.entity_of_object(id).0,
             name: object.name.clone(),
             category: object.category.coarse.clone(),
@@ -141,10 +141,10 @@ mod tests {
         let world = World::new(engines, &WorldConfig::default()).unwrap();
         let (house, state) = (world.house(), world.state());
         let boxes = house.object_boxes(state);
-        let all = objects_now(&world);
+        let all = object_states(&world);
         assert_eq!(all.len(), house.objects.len());
         for (id, now) in house.objects.ids().zip(&all) {
-            assert_eq!(*now, object_now(&world, id));
+            assert_eq!(*now, object_state(&world, id));
             assert_eq!(now.rests_on.len(), state.rests_on(house, id).len());
             let around = house.objects.ids().filter(|container| {
                 let outer = &boxes[container.index()];

@@ -1,7 +1,7 @@
 //! Pictures whose shutter is open or rolls: the moments that they are made of, and how those become one picture.
 
-use crate::past::between;
-use crate::pictures::{PictureRequest, Shot};
+use crate::motion_history::between;
+use crate::picture::{PictureRequest, TimedView};
 use crate::world::World;
 use dwell_render::laws::mean_color;
 use dwell_render::{Camera, Frame, FrameMut, RenderJob};
@@ -15,7 +15,7 @@ const MOMENTS: usize = 16;
 
 /// When a picture's rows are taken, in steps of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Timing {
+struct RowTiming {
     /// How much later each row is taken than the one above.
     delay: f32,
     /// How long colours are gathered for each row.
@@ -23,7 +23,7 @@ struct Timing {
 }
 
 /// Rows that are taken at one moment.
-struct Part<'a> {
+struct PictureRows<'a> {
     /// How long before the picture's time, in steps of the world.
     share: f32,
     /// The first row and the one behind the last; `None`: all.
@@ -33,21 +33,21 @@ struct Part<'a> {
 
 /// A picture that is being taken.
 #[derive(Debug)]
-pub(crate) struct Take {
-    shot: Shot,
-    timing: Timing,
-    moments: Moments,
+pub(crate) struct PendingPicture {
+    shot: TimedView,
+    timing: RowTiming,
+    moments: PastStates,
     /// Colours at each moment of the exposure; empty without one.
     exposed: Vec<Vec<u8>>,
 }
 
-impl Take {
+impl PendingPicture {
     /// A picture of a world as it stands, as the laws of its camera have it. `has_color`: whether colours are wanted.
     pub(crate) fn new(world: &World, request: &PictureRequest, has_color: bool) -> Self {
         let shot = world.shot(request);
         let shutter = world.optics(&request.place).shutter();
         let step_s = world.config().step_s() as f32;
-        let timing = Timing {
+        let timing = RowTiming {
             delay: shutter.line_s / step_s,
             exposure: shutter.exposure_s / step_s,
         };
@@ -57,7 +57,7 @@ impl Take {
         let is_exposed = has_color && timing.exposure > 0.0;
         let exposures = if is_exposed { usize::from(EXPOSED) } else { 0 };
         Self {
-            moments: Moments::new(world, longest),
+            moments: PastStates::new(world, longest),
             exposed: vec![vec![0; camera.pixels() * 3]; exposures],
             shot,
             timing,
@@ -109,7 +109,7 @@ impl Take {
     }
 
     /// Lets go of what only [`Self::jobs`] needs.
-    pub(crate) fn forget_moments(&mut self) {
+    pub(crate) fn drop_past_states(&mut self) {
         self.moments.copies = Vec::new();
     }
 
@@ -129,22 +129,22 @@ impl Take {
 /// The parts of a picture: all images at the end of the exposure, then colours at each of its moments.
 fn parts<'a>(
     camera: &Camera,
-    timing: Timing,
+    timing: RowTiming,
     exposed: &'a mut [Vec<u8>],
     mut frame: FrameMut<'a>,
-) -> Vec<Part<'a>> {
+) -> Vec<PictureRows<'a>> {
     let mut parts = Vec::new();
     if !exposed.is_empty() {
         frame.rgb = None;
     }
-    roll(camera, timing.delay, 0.0, frame, &mut parts);
+    rolling_rows(camera, timing.delay, 0.0, frame, &mut parts);
     for (k, rgb) in exposed.iter_mut().enumerate() {
         let share = (k as f32 + 0.5) / f32::from(EXPOSED);
         let frame = FrameMut {
             rgb: Some(rgb),
             ..FrameMut::default()
         };
-        roll(
+        rolling_rows(
             camera,
             timing.delay,
             share * timing.exposure,
@@ -156,15 +156,15 @@ fn parts<'a>(
 }
 
 /// All rows, `earlier` steps of the world before their time; those of one moment together.
-fn roll<'a>(
+fn rolling_rows<'a>(
     camera: &Camera,
     delay: f32,
     earlier: f32,
     mut frame: FrameMut<'a>,
-    parts: &mut Vec<Part<'a>>,
+    parts: &mut Vec<PictureRows<'a>>,
 ) {
     if delay == 0.0 {
-        parts.push(Part {
+        parts.push(PictureRows {
             share: earlier,
             rows: None,
             frame,
@@ -172,7 +172,7 @@ fn roll<'a>(
         return;
     }
     let height = camera.height();
-    parts.extend((0..height).map(|row| Part {
+    parts.extend((0..height).map(|row| PictureRows {
         share: earlier + delay * (height - 1 - row) as f32,
         rows: Some((row, row + 1)),
         frame: frame.take_pixels(camera.width() as usize),
@@ -181,14 +181,14 @@ fn roll<'a>(
 
 /// The world at moments of the step that has been made.
 #[derive(Debug)]
-struct Moments {
+struct PastStates {
     /// Even steps back from now; only now where nothing moves.
     copies: Vec<(State, RayScene)>,
     /// How far back the last one lies, in steps of the world.
     longest: f32,
 }
 
-impl Moments {
+impl PastStates {
     fn new(world: &World, longest: f32) -> Self {
         let still = longest <= 0.0 || world.past().is_still(world.state());
         let copies = (1..MOMENTS).map(|k| {

@@ -45,14 +45,18 @@ mod tests {
 
     #[derive(Debug, Default, Deserialize)]
     #[serde(default, deny_unknown_fields)]
-    struct Some {
+    struct SampleSettings {
         width: u32,
         gain: f32,
     }
 
     #[test]
     fn the_field_is_named_and_what_it_may_be() {
-        let told = |value: Value| read::<Some>("settings", &value).unwrap_err().to_string();
+        let told = |value: Value| {
+            read::<SampleSettings>("settings", &value)
+                .unwrap_err()
+                .to_string()
+        };
         assert_eq!(
             told(json!({"gain": 1.0, "width": "x"})),
             "settings: width is \"x\": found string \"x\", expected a whole number from 0"

@@ -2,7 +2,7 @@
 
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::metrics::Progress;
+use crate::metrics::NavigationMetrics;
 use dwell_scene::Pose;
 use serde::{Deserialize, Serialize};
 
@@ -11,14 +11,14 @@ const MAGIC: &[u8] = b"dwenv3";
 
 /// An episode at one moment. Its goal comes from the seed again.
 #[derive(Serialize, Deserialize)]
-struct Moment {
+struct EnvSnapshot {
     task: String,
     seed: u64,
     steps: u64,
     done: bool,
     instruction: String,
     start: Pose,
-    progress: Progress,
+    progress: NavigationMetrics,
     world: Vec<u8>,
 }
 
@@ -35,7 +35,7 @@ impl Env {
             let message = "snapshot: no episode has begun; call reset first";
             return Err(WorldError::Usage(message.to_owned()));
         };
-        let moment = Moment {
+        let moment = EnvSnapshot {
             task: self.kind.name.to_owned(),
             seed: self.seed,
             steps: self.steps,
@@ -60,7 +60,7 @@ impl Env {
         let body = bytes
             .strip_prefix(MAGIC)
             .ok_or_else(|| refuse("it does not begin with \"dwenv3\"".to_owned()))?;
-        let moment: Moment =
+        let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.task != self.kind.name {
             return Err(refuse(format!("it is of the task {}", moment.task)));
@@ -115,7 +115,7 @@ mod tests {
         let saved = env.snapshot().unwrap();
         let rest = [MoveForward, MoveForward, TurnLeft, Stop];
         let first = go(&mut env, &rest);
-        assert!(env.ready().is_err());
+        assert!(env.check_can_step().is_err());
         env.restore(&saved).unwrap();
         assert_eq!(go(&mut env, &rest), first);
         let mut other = self::env();

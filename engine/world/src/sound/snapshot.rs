@@ -1,11 +1,11 @@
 //! Sounds as bytes: what goes on bit for bit after a restore.
 
-use super::ears::Ears;
-use super::emitters::Emitters;
-use super::events::Touch;
-use super::gait::Gait;
-use super::playing::{Playing, Told};
-use super::{FIRST_PLAYED_ID, Sound};
+use super::ears::AgentEars;
+use super::emitters::EmitterStates;
+use super::events::ActiveContactSound;
+use super::gait::GaitPhase;
+use super::playback::{Playback, PlaybackState};
+use super::{FIRST_PLAYED_ID, WorldSound};
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
@@ -14,27 +14,27 @@ use dwell_scene::{AgentId, State};
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]
-struct Memory {
+struct SoundSnapshot {
     rate_hz: u32,
     /// Samples a control step.
     block: usize,
     blocks: u64,
-    touches: Vec<Touch>,
+    touches: Vec<ActiveContactSound>,
     next_blow: u64,
-    gaits: Vec<Gait>,
-    emitters: Emitters,
-    playing: Vec<Told>,
+    gaits: Vec<GaitPhase>,
+    emitters: EmitterStates,
+    playing: Vec<PlaybackState>,
     next_played: u64,
     ears: Vec<(AgentId, Vec<f32>, Vec<u8>)>,
 }
 
-impl Sound {
+impl WorldSound {
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
         let ears = self
             .ears
             .iter()
             .map(|ears| (ears.agent, ears.window.clone(), ears.stream.snapshot()));
-        let memory = Memory {
+        let memory = SoundSnapshot {
             rate_hz: self.rate_hz,
             block: self.block,
             blocks: self.blocks,
@@ -49,14 +49,14 @@ impl Sound {
         postcard::to_stdvec(&memory).expect("plain data can always be written to memory")
     }
 
-    /// The sounds that [`Sound::to_bytes`] wrote, for a world of these settings.
+    /// The sounds that [`WorldSound::to_bytes`] wrote, for a world of these settings.
     pub(crate) fn from_bytes(
         config: &WorldConfig,
         (engines, state): (&Engines, &State),
         key: RandomKey,
         bytes: &[u8],
     ) -> Result<Self, WorldError> {
-        let memory: Memory =
+        let memory: SoundSnapshot =
             postcard::from_bytes(bytes).map_err(|error| WorldError::Snapshot(error.to_string()))?;
         let mut sound = Self::new(config);
         if (memory.rate_hz, memory.block) != (sound.rate_hz, sound.block) {
@@ -85,7 +85,7 @@ impl Sound {
                 let why = format!("a sound with the handle {}", told.id);
                 return Err(WorldError::Snapshot(why));
             }
-            let playing = Playing::restore((engines, root, state), sound.rate_hz, told)?;
+            let playing = Playback::restore((engines, root, state), sound.rate_hz, told)?;
             sound.playing.push(playing);
         }
         sound.next_played = memory.next_played;
@@ -97,7 +97,7 @@ impl Sound {
                     window.len()
                 )));
             }
-            let mut ears = Ears {
+            let mut ears = AgentEars {
                 agent,
                 stream: sound.stream(engines, agent, key)?,
                 head: sound.head,

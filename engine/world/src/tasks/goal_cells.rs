@@ -13,7 +13,7 @@ const SQUARE_M: f32 = 1.0;
 const CELLS_PER_CHECK: usize = 256;
 
 /// The cells of the largest island, gathered once for all goals.
-pub(super) struct GoalGround<'a> {
+pub(super) struct GoalCells<'a> {
     pub(super) grid: &'a NavGrid,
     /// Rising.
     cells: Vec<NavCell>,
@@ -23,18 +23,18 @@ pub(super) struct GoalGround<'a> {
     sides: OnceCell<Vec<[Option<RoomId>; 4]>>,
 }
 
-fn square_of(value: f32) -> i32 {
+fn cell_block_of(value: f32) -> i32 {
     (value / SQUARE_M).floor() as i32
 }
 
-impl<'a> GoalGround<'a> {
+impl<'a> GoalCells<'a> {
     pub(super) fn of(grid: &'a NavGrid) -> Self {
         let on_island = |cell: &NavCell| grid.island(*cell) == Some(0);
         let cells: Vec<NavCell> = grid.walkable().filter(on_island).collect();
         let mut squares: BTreeMap<[i32; 2], Vec<NavCell>> = BTreeMap::new();
         for cell in &cells {
             let at = grid.position(*cell);
-            let square = squares.entry([square_of(at.x), square_of(at.z)]);
+            let square = squares.entry([cell_block_of(at.x), cell_block_of(at.z)]);
             square.or_default().push(*cell);
         }
         Self {
@@ -48,10 +48,10 @@ impl<'a> GoalGround<'a> {
     /// The cells over or under a box, and some around it.
     pub(super) fn around(&self, bounds: &Aabb) -> Vec<NavCell> {
         let (low, high) = (bounds.min, bounds.max);
-        let rows = square_of(low.x)..=square_of(high.x);
+        let rows = cell_block_of(low.x)..=cell_block_of(high.x);
         let mut found = Vec::new();
         for x in rows {
-            let row = [x, square_of(low.z)]..=[x, square_of(high.z)];
+            let row = [x, cell_block_of(low.z)]..=[x, cell_block_of(high.z)];
             found.extend(self.squares.range(row).flat_map(|(_, cells)| cells));
         }
         found
@@ -89,7 +89,7 @@ mod tests {
         let house = dwell_houses::builtin::build("studio").unwrap();
         let state = State::new(&house);
         let grid = NavGrid::build(&house, &state, &NavConfig::default()).unwrap();
-        let ground = GoalGround::of(&grid);
+        let ground = GoalCells::of(&grid);
         let all = || grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
         let mut asked = 0;
         for object in house.objects.ids() {

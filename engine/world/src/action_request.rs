@@ -29,7 +29,7 @@ const NAMES: usize = 12;
 /// A thing by its name in the house, or by the sensors' id.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Named {
+pub enum ObjectRef {
     /// The sensors' id, as instance images have it.
     Id(i32),
     /// The name.
@@ -84,7 +84,7 @@ pub struct ActionRequest {
     pub kind: String,
     /// The thing.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub object: Option<Named>,
+    pub object: Option<ObjectRef>,
     /// One part of the thing, by name: one drawer of several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub part: Option<String>,
@@ -124,7 +124,7 @@ impl ActionRequest {
     }
 
     /// What is said besides the kind.
-    fn said(&self) -> Vec<&'static str> {
+    fn given_fields(&self) -> Vec<&'static str> {
         let throws = self.kind == "throw";
         let target = self.object.is_some()
             || self.part.is_some()
@@ -154,7 +154,11 @@ impl ActionRequest {
                 known: Self::kinds().map(str::to_owned).collect(),
             });
         };
-        match self.said().into_iter().find(|said| !allowed.contains(said)) {
+        match self
+            .given_fields()
+            .into_iter()
+            .find(|said| !allowed.contains(said))
+        {
             None => Ok(()),
             Some(found) => Err(WorldError::Config {
                 field: "action",
@@ -183,8 +187,8 @@ impl ActionRequest {
         }
         if let Some(named) = &self.object {
             let target = match named {
-                Named::Id(id) => Target::Entity(EntityId(*id)),
-                Named::Name(name) => Target::Object(object_named(house, name)?),
+                ObjectRef::Id(id) => Target::Entity(EntityId(*id)),
+                ObjectRef::Name(name) => Target::Object(object_named(house, name)?),
             };
             let Some(part) = &self.part else {
                 return Ok(Some(target));
@@ -234,7 +238,7 @@ impl ActionRequest {
 }
 
 /// The names that may have been meant.
-fn near<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
+fn similar_names<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
     let near = dwell_houses::nearest(name, known, NAMES);
     near.into_iter().map(str::to_owned).collect()
 }
@@ -243,7 +247,7 @@ fn object_named(house: &House, name: &str) -> Result<ObjectId, WorldError> {
     house.object_named(name).ok_or_else(|| WorldError::Unknown {
         kind: "object",
         name: name.to_owned(),
-        known: near(
+        known: similar_names(
             name,
             house.objects.iter().map(|object| object.name.as_str()),
         ),
@@ -257,7 +261,7 @@ fn part_named(house: &House, object: ObjectId, name: &str) -> Result<PartId, Wor
         .ok_or_else(|| WorldError::Unknown {
             kind: "part",
             name: name.to_owned(),
-            known: near(
+            known: similar_names(
                 name,
                 house.objects[object]
                     .parts()

@@ -1,6 +1,6 @@
 //! Sounds that are started, stopped and made louder while a world runs.
 
-use super::playing::{PlayRequest, SoundName, check_level};
+use super::playback::{PlayRequest, SoundName, check_level};
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::AgentId;
@@ -8,7 +8,7 @@ use serde::Serialize;
 
 /// A source of sound, and what it does now.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SoundNow {
+pub struct SoundState {
     /// What [`World::stop_sound`] and kin call it.
     pub handle: u64,
     /// What sounds.
@@ -70,7 +70,7 @@ impl World {
 
     /// All sources: those of the house's objects, whose handles are their numbers, then what was told to play. What contacts
     /// make is not among them.
-    pub fn sounds(&self) -> Vec<SoundNow> {
+    pub fn sounds(&self) -> Vec<SoundState> {
         self.sound.list(self.engines.house(), &self.state)
     }
 

@@ -17,21 +17,21 @@ const WITHIN_REACH_M: f32 = 0.1;
 
 /// A door that is being opened.
 #[derive(Clone, Debug)]
-pub(super) struct Opening {
+pub(super) struct DoorOpening {
     pub(super) door: ObjectId,
     openness: f32,
     still: u32,
     /// The way to where the leaf does not reach, once it was held up.
-    pub(super) aside: Option<Arc<DistanceField>>,
+    pub(super) clear_cells_field: Option<Arc<DistanceField>>,
 }
 
-impl Opening {
+impl DoorOpening {
     pub(super) fn of(door: ObjectId) -> Self {
         Self {
             door,
             openness: 0.0,
             still: 0,
-            aside: None,
+            clear_cells_field: None,
         }
     }
 
@@ -46,14 +46,20 @@ impl Opening {
         self.still = if moved { 0 } else { self.still + 1 };
         if self.still > PATIENCE {
             self.still = 0;
-            let free = out_of_the_swing(world, grid, agent, self.door);
-            self.aside = (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
+            let free = cells_clear_of_leaf(world, grid, agent, self.door);
+            self.clear_cells_field =
+                (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
         }
     }
 }
 
 /// Cells on the agent's side of a hinged door from which its arm reaches the leaf and which the leaf does not sweep.
-fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectId) -> Vec<NavCell> {
+fn cells_clear_of_leaf(
+    world: &World,
+    grid: &NavGrid,
+    agent: AgentId,
+    door: ObjectId,
+) -> Vec<NavCell> {
     let (house, state) = (world.house(), world.state());
     let hinge = house.joints_of(door).find(|joint| {
         house.joints[*joint].opens() && house.joints[*joint].kind == JointKind::Hinge
@@ -83,8 +89,9 @@ fn out_of_the_swing(world: &World, grid: &NavGrid, agent: AgentId, door: ObjectI
         let apart_m = (from.clamp(leaf.min, leaf.max) - from).length();
         let reached = apart_m < agent.body.reach_m - WITHIN_REACH_M;
         let same_side = side(at.xz()) * here > 0.0;
-        let aside = (at.xz() - axis).length() > swept_m + agent.body.radius_m + CLEARANCE_M;
-        reached && same_side && aside && (at.y - agent.position.y).abs() < 0.5
+        let clear_cells_field =
+            (at.xz() - axis).length() > swept_m + agent.body.radius_m + CLEARANCE_M;
+        reached && same_side && clear_cells_field && (at.y - agent.position.y).abs() < 0.5
     };
     grid.walkable().filter(free).collect()
 }

@@ -19,14 +19,14 @@ const SAMPLE_BYTES: u64 = 256;
 
 /// What one environment takes beside what it shares with others over its house, bytes: rather more than it comes to need where
 /// most lies still.
-struct Need {
+struct MemoryEstimate {
     world: u64,
     pictures: u64,
     /// The caller's array, and a copy for who keeps it.
     observations: u64,
 }
 
-impl Need {
+impl MemoryEstimate {
     fn of(env: &Env) -> Self {
         let requests = env.requests();
         let views = requests.views.iter();
@@ -87,10 +87,12 @@ fn picture_bytes(camera: &Camera, channels: ImageChannels) -> u64 {
 /// # Errors
 /// [`WorldError::Config`] with what one takes, what is free, and how many there could be.
 pub fn check(env: &Env, count: usize) -> Result<(), WorldError> {
-    free_bytes().map_or(Ok(()), |free| check_against(&Need::of(env), count, free))
+    free_bytes().map_or(Ok(()), |free| {
+        check_against(&MemoryEstimate::of(env), count, free)
+    })
 }
 
-fn check_against(need: &Need, count: usize, free: u64) -> Result<(), WorldError> {
+fn check_against(need: &MemoryEstimate, count: usize, free: u64) -> Result<(), WorldError> {
     let fitting = free / need.bytes().max(1);
     if count as u64 <= fitting {
         return Ok(());
@@ -190,7 +192,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_held_is_refused_with_how_many_could_be() {
-        let need = Need {
+        let need = MemoryEstimate {
             world: 1 << 20,
             pictures: 3 << 20,
             observations: 6 << 20,

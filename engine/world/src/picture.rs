@@ -1,7 +1,7 @@
 //! Pictures of worlds: the views that sensors and callers ask for, taken as the laws of the cameras say.
 
 use crate::error::WorldError;
-use crate::exposure::Take;
+use crate::shutter::PendingPicture;
 use crate::world::World;
 use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousFrame, View};
 use dwell_scene::parallel::Threads;
@@ -13,14 +13,14 @@ pub struct PictureRequest {
     /// The camera as it should be; laws of the agent's cameras make it what it is.
     pub camera: Camera,
     /// From where.
-    pub place: Place,
+    pub place: CameraMount,
     /// How much light there is.
     pub preset: Preset,
 }
 
 /// Where a camera stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Place {
+pub enum CameraMount {
     /// On an agent, against its eyes: it moves along, does not see the body that carries it, and obeys the laws of its cameras.
     Agent(AgentId, Pose),
     /// Anywhere in the world, at rest and without laws.
@@ -29,7 +29,7 @@ pub enum Place {
 
 /// A view with what its camera did before.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shot {
+pub(crate) struct TimedView {
     pub(crate) view: View,
     /// Where the camera was a control step ago.
     pub(crate) was: Pose,
@@ -37,19 +37,19 @@ pub(crate) struct Shot {
 
 impl World {
     /// The laws of the cameras of a place.
-    pub(crate) fn optics(&self, place: &Place) -> Optics<'_> {
+    pub(crate) fn optics(&self, place: &CameraMount) -> Optics<'_> {
         match place {
-            Place::Agent(agent, _) => Optics::of(&self.state().laws, *agent),
-            Place::World(_) => Optics::ideal(),
+            CameraMount::Agent(agent, _) => Optics::of(&self.state().laws, *agent),
+            CameraMount::World(_) => Optics::ideal(),
         }
     }
 
-    pub(crate) fn shot(&self, request: &PictureRequest) -> Shot {
+    pub(crate) fn shot(&self, request: &PictureRequest) -> TimedView {
         let state = self.state();
         let camera = self.optics(&request.place).camera(request.camera);
         let (is, was, hide): (Pose, Pose, Option<EntityId>) = match request.place {
-            Place::World(pose) => (pose, pose, None),
-            Place::Agent(agent, eye_from_camera) => {
+            CameraMount::World(pose) => (pose, pose, None),
+            CameraMount::Agent(agent, eye_from_camera) => {
                 let is = state.agents.get(agent).map(AgentState::world_from_eye);
                 let is = is.unwrap_or_default();
                 let was = self.past().eye(agent, state).unwrap_or(is);
@@ -62,7 +62,7 @@ impl World {
             hide,
             ..View::new(camera, is)
         };
-        Shot { view, was }
+        TimedView { view, was }
     }
 
     /// One picture, without the noise that laws add to it, and the camera that took it, as laws make it.
@@ -76,7 +76,7 @@ impl World {
         threads: Threads,
     ) -> Result<(Camera, Frame), WorldError> {
         channels.normals |= channels.depth && self.optics(&request.place).needs_normals();
-        let mut take = Take::new(self, request, channels.rgb);
+        let mut take = PendingPicture::new(self, request, channels.rgb);
         let mut frame = Frame::new(&take.camera(), channels);
         let mut jobs = Vec::new();
         take.jobs(self, frame.as_mut(), &mut jobs);

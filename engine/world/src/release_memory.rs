@@ -6,9 +6,9 @@
 /// so that a process that opens house after house holds ever more: with environments over 50 houses some 250 MiB after 350 resets, a
 /// quarter of all. Other allocators give it back by themselves.
 #[derive(Debug)]
-pub(crate) struct GivesBack;
+pub(crate) struct ReleaseOnDrop;
 
-impl Drop for GivesBack {
+impl Drop for ReleaseOnDrop {
     fn drop(&mut self) {
         trim();
     }

@@ -62,7 +62,7 @@ fn openness_at(rays: &RayScene, place: Vec3) -> usize {
 }
 
 /// The place in the air at or beside `place` from which a sound there is heard: the first that is open enough, else the most open.
-pub(crate) fn clear_of_surfaces(rays: &RayScene, place: Vec3) -> Vec3 {
+pub(crate) fn air_position(rays: &RayScene, place: Vec3) -> Vec3 {
     let mut best = (openness(rays, place), place);
     for beside in STEPS_M.map(|step_m| WAYS.map(|way| place + way * step_m)) {
         for place in beside {
@@ -84,7 +84,7 @@ pub(crate) fn emitter_places(house: &Arc<House>) -> Vec<Vec3> {
     let rays = RayScene::new(house.clone());
     let place = |emitter: &SoundEmitter| {
         let pose = house.parts[emitter.part].world_from_part;
-        let clear = clear_of_surfaces(&rays, pose.transform_point(emitter.position));
+        let clear = air_position(&rays, pose.transform_point(emitter.position));
         pose.inverse().transform_point(clear)
     };
     house.emitters.iter().map(place).collect()
@@ -113,7 +113,7 @@ mod tests {
             Vec3::new(4.02, 1.0, 2.0),
             Vec3::new(1.0, 1.0, 0.0),
         ] {
-            let clear = clear_of_surfaces(&rays, place);
+            let clear = air_position(&rays, place);
             assert!(inside(clear), "{place}: {clear}");
             assert!(clear.distance(place) < 0.1, "{place}: {clear}");
         }
@@ -144,7 +144,7 @@ mod tests {
         let house = House::shoebox([4.0, 3.0, 5.0], &ShoeboxMaterials::default()).unwrap();
         let rays = RayScene::new(Arc::new(house));
         for place in [Vec3::new(2.0, 1.0, 2.0), Vec3::new(2.0, 5e-3, 2.0)] {
-            assert_eq!(clear_of_surfaces(&rays, place), place);
+            assert_eq!(air_position(&rays, place), place);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Sounds that were told to play.
 
-use super::fade::Fade;
+use super::fade::GainRamp;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_acoustics::signals::{self, Signal};
@@ -50,21 +50,21 @@ const MOUTH_IN_HEAD: Vec3 = Vec3::new(0.0, -0.08, -0.1);
 
 /// What is remembered of a sound that plays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Told {
+pub(super) struct PlaybackState {
     pub(super) id: u64,
     pub(super) request: PlayRequest,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
     pub(super) stopped: bool,
-    pub(super) fade: Fade,
+    pub(super) fade: GainRamp,
     /// Of the samples: a file may have changed when a snapshot is restored.
     pub(super) print: u64,
 }
 
 /// A sound that plays.
 #[derive(Clone, Debug)]
-pub(super) struct Playing {
-    pub(super) told: Told,
+pub(super) struct Playback {
+    pub(super) told: PlaybackState,
     signal: Signal,
 }
 
@@ -117,7 +117,7 @@ fn check_place(house: &House, state: &State, place: &SoundPlace) -> Result<(), W
     )))
 }
 
-impl Playing {
+impl Playback {
     pub(super) fn new(
         (engines, root, state): (&Engines, Option<&str>, &State),
         rate_hz: u32,
@@ -127,11 +127,11 @@ impl Playing {
         check_level(request.level_db)?;
         check_place(engines.house(), state, &request.place)?;
         let (signal, print) = open(engines, root, rate_hz, &request.sound)?;
-        let told = Told {
+        let told = PlaybackState {
             id,
             start,
             stopped: false,
-            fade: Fade::steady(pa_from_db_spl(request.level_db)),
+            fade: GainRamp::steady(pa_from_db_spl(request.level_db)),
             print,
             request,
         };
@@ -142,7 +142,7 @@ impl Playing {
     pub(super) fn restore(
         (engines, root, state): (&Engines, Option<&str>, &State),
         rate_hz: u32,
-        told: Told,
+        told: PlaybackState,
     ) -> Result<Self, WorldError> {
         check_place(engines.house(), state, &told.request.place)?;
         let (signal, print) = open(engines, root, rate_hz, &told.request.sound)?;

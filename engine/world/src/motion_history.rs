@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// What has moved in the last step, with where it was before.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Past {
+pub struct MotionHistory {
     /// Parts that have moved, by part.
     pub moved: Vec<(PartId, Pose)>,
     /// Whether there was a step since the world began.
@@ -17,9 +17,9 @@ pub struct Past {
     pub feet: Vec<Vec3>,
 }
 
-impl Past {
+impl MotionHistory {
     /// Remembers what `before` has otherwise than `now`.
-    pub(crate) fn remember(&mut self, before: &Before, now: &State) {
+    pub(crate) fn remember(&mut self, before: &PreviousState, now: &State) {
         self.known = true;
         self.moved.clear();
         let changed = before.parts.iter().zip(now.part_pose.iter_ids());
@@ -64,7 +64,7 @@ impl Past {
 
 /// What is kept of the state while a step is made. Memory is kept from step to step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Before {
+pub(crate) struct PreviousState {
     parts: Vec<Pose>,
     eyes: Vec<Pose>,
     feet: Vec<Vec3>,
@@ -74,7 +74,7 @@ pub(crate) struct Before {
     pub(crate) joints: Vec<(f32, f32)>,
 }
 
-impl Before {
+impl PreviousState {
     pub(crate) fn take(&mut self, state: &State) {
         self.parts.clear();
         self.parts.extend(state.part_pose.iter());

@@ -29,7 +29,7 @@ pub struct RoomSurface {
 /// number is [`House::triangle_count`].
 pub fn room_surfaces(world: &World) -> Vec<RoomSurface> {
     let (house, state) = (world.house(), world.state());
-    let mut all = Surfaces::new();
+    let mut all = SurfaceBuilder::new();
     for piece in &house.structure {
         let mesh = &house.meshes[piece.mesh];
         let ceiling = piece.kind == StructureKind::Ceiling;
@@ -61,12 +61,12 @@ fn room_of(house: &House, state: &State, object: dwell_scene::ObjectId) -> Optio
 }
 
 /// Room, whether it is a ceiling, material.
-type Key = (Option<RoomId>, bool, MaterialId);
+type SurfaceKey = (Option<RoomId>, bool, MaterialId);
 
 /// Meshes in the making.
-struct Surfaces(BTreeMap<Key, RoomSurface>);
+struct SurfaceBuilder(BTreeMap<SurfaceKey, RoomSurface>);
 
-impl Surfaces {
+impl SurfaceBuilder {
     fn new() -> Self {
         Self(BTreeMap::new())
     }

@@ -1,12 +1,12 @@
 //! Sensors that list what a picture shows.
 
-use super::image::Look;
+use super::image::ImageContext;
 use dwell_render::{VisibleObject, sightings};
 use dwell_scene::Entity;
 
 /// Writes a row for every object and agent in the picture, by id; of more than fit those with most pixels. Unused rows are 0.
 pub(super) fn fill<T: Copy + Default, const N: usize>(
-    look: &Look<'_>,
+    look: &ImageContext<'_>,
     out: &mut [T],
     row: impl Fn(&VisibleObject) -> [T; N],
 ) {

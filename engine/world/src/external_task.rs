@@ -2,7 +2,7 @@
 
 use crate::env::{Env, Verdict};
 use crate::error::WorldError;
-use crate::metrics::Progress;
+use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
@@ -17,7 +17,7 @@ impl Env {
     /// # Errors
     /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a text that the sensors of instructions
     /// cannot give, or a distance that is none. Nothing has changed then.
-    pub fn ask(&mut self, asked: Option<(&str, Option<f64>)>) -> Result<(), WorldError> {
+    pub fn set_goal(&mut self, asked: Option<(&str, Option<f64>)>) -> Result<(), WorldError> {
         let tokens = asked.map(|(text, _)| self.tokens_of(text)).transpose()?;
         check_distance(asked.and_then(|(_, distance_m)| distance_m))?;
         let agent = self.world.state().agents.get(AgentId(0));
@@ -32,7 +32,7 @@ impl Env {
             text.clone_into(&mut episode.instruction);
             (episode.tokens, distance_m) = (tokens, way_m);
         }
-        episode.progress = Progress::new(episode.start.position, distance_m);
+        episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
         Ok(())
     }
 
@@ -41,11 +41,11 @@ impl Env {
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a reward or a distance that is no number.
-    pub fn rule(
+    pub fn set_verdict(
         &mut self,
         verdict: Verdict,
         distance_m: Option<f64>,
-    ) -> Result<Progress, WorldError> {
+    ) -> Result<NavigationMetrics, WorldError> {
         check_distance(distance_m)?;
         if !verdict.reward.is_finite() {
             return Err(WorldError::Config {
@@ -127,30 +127,30 @@ mod tests {
             terminated: true,
             success: true,
         };
-        assert!(env.ask(None).is_err() && env.rule(ruled, None).is_err());
+        assert!(env.set_goal(None).is_err() && env.set_verdict(ruled, None).is_err());
         env.reset(3).unwrap();
         // There is no sensor of instructions here, so that any words will do.
-        env.ask(Some(("Über die Treppe!", Some(4.0)))).unwrap();
+        env.set_goal(Some(("Über die Treppe!", Some(4.0)))).unwrap();
         for distance_m in [-1.0, f64::NAN, f64::INFINITY] {
-            assert!(env.ask(Some(("x", Some(distance_m)))).is_err());
-            assert!(env.rule(ruled, Some(distance_m)).is_err());
+            assert!(env.set_goal(Some(("x", Some(distance_m)))).is_err());
+            assert!(env.set_verdict(ruled, Some(distance_m)).is_err());
         }
         env.step(DiscreteAction::MoveForward).unwrap();
         let unread = Verdict {
             reward: f64::NAN,
             ..ruled
         };
-        assert!(env.rule(unread, None).is_err() && env.ready().is_ok());
-        let progress = env.rule(ruled, Some(3.0)).unwrap();
+        assert!(env.set_verdict(unread, None).is_err() && env.check_can_step().is_ok());
+        let progress = env.set_verdict(ruled, Some(3.0)).unwrap();
         assert_eq!(progress.start_distance_m, Some(4.0));
         assert_eq!(progress.distance_m, Some(3.0));
-        assert!(env.ready().is_err());
+        assert!(env.check_can_step().is_err());
         let snapshot = env.snapshot().unwrap();
         env.reset(4).unwrap();
         env.restore(&snapshot).unwrap();
         let episode = env.episode().unwrap();
         assert_eq!(episode.instruction, "Über die Treppe!");
         assert_eq!(episode.progress, progress);
-        assert!(env.ready().is_err());
+        assert!(env.check_can_step().is_err());
     }
 }

@@ -3,7 +3,7 @@
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::saving::Base;
+use crate::world_snapshot::SnapshotBase;
 use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
 use dwell_scene::{Address, AgentStart, AgentState, House, State};
 use glam::Vec3;
@@ -12,17 +12,17 @@ use std::sync::OnceLock;
 /// The first moment of a world: nothing overlaps, things have come to rest where that was asked for, doors are shut, agents stand
 /// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to one.
 #[derive(Debug)]
-pub(crate) struct Start {
+pub(crate) struct InitialWorld {
     pub(crate) state: State,
     pub(crate) physics: PhysicsWorld,
     pub(crate) report: StartReport,
-    base: OnceLock<Base>,
+    base: OnceLock<SnapshotBase>,
 }
 
-impl Start {
+impl InitialWorld {
     /// What snapshots are packed beside, made when the first one asks.
-    pub(crate) fn base(&self, engines: &Engines, config: &WorldConfig) -> &Base {
-        self.base.get_or_init(|| Base::of(engines, config))
+    pub(crate) fn base(&self, engines: &Engines, config: &WorldConfig) -> &SnapshotBase {
+        self.base.get_or_init(|| SnapshotBase::of(engines, config))
     }
 
     /// # Errors
