@@ -17,21 +17,24 @@ pub mod bundle;
 mod error;
 pub mod example;
 mod fit;
+mod format_number;
 mod options;
 mod progress;
 mod report;
 pub mod rollout;
 mod select;
 mod twin;
-mod words;
 
 pub use error::CalibrationError;
 pub use options::Options;
-pub use report::{Candidate, Effect, Fitted, Found, Nuisance, Plot, Report, Verdict};
-pub use select::{Agreement, ChannelResidual, Gain, Remainder};
+pub use report::{
+    CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
+    NamedEffect, NuisanceParameter, ResidualPlot,
+};
+pub use select::{Agreement, ChannelResidual, HeldOutGain, UnexplainedResidual};
 
-use bundle::file::Kind;
-use progress::{Progress, Tell as _};
+use bundle::file::BundleKind;
+use progress::{CallbackProgress, ProgressReporter as _};
 use std::path::Path;
 use twin::{FlightTwin, RoomTwin, ServoTwin, Twin};
 
@@ -49,25 +52,25 @@ pub fn calibrate(
     path: &Path,
     options: &Options,
     progress: &mut dyn FnMut(f32, &str) -> bool,
-) -> Result<Report, CalibrationError> {
+) -> Result<CalibrationReport, CalibrationError> {
     options.check()?;
-    let progress = Progress::new(progress);
+    let progress = CallbackProgress::new(progress);
     progress.stage(0.0, "reading the measured data")?;
     explain(&bundle::read(path)?, options, &progress)
 }
 
 /// What comes of a bundle, by its kind.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum CalibrationOutcome {
     /// What the simulation lacks.
-    Causes(Box<Report>),
+    Causes(Box<CalibrationReport>),
     /// How well roll-outs of tosses predict, with contact parameters by cross-validation.
     RollOuts(Box<rollout::study::StudyReport>),
     /// How well roll-outs of drives predict, with parameters of the base by cross-validation.
     Series(Box<rollout::series::SeriesReport>),
 }
 
-impl Outcome {
+impl CalibrationOutcome {
     /// The report as one JSON object; its key `html` holds the page.
     pub fn to_json(&self) -> String {
         match self {
@@ -86,13 +89,13 @@ impl Outcome {
 pub fn examine(
     path: &Path,
     options: &Options,
-    peers: &[rollout::study::Peer],
+    peers: &[rollout::study::OtherSimulator],
     progress: &mut dyn FnMut(f32, &str) -> bool,
-) -> Result<Outcome, CalibrationError> {
+) -> Result<CalibrationOutcome, CalibrationError> {
     options.check()?;
     let bundle = bundle::read(path)?;
-    if bundle.kind() == Kind::PoseTrajectory {
-        let tracks = rollout::Tracks::of(&bundle)?;
+    if bundle.kind() == BundleKind::PoseTrajectory {
+        let tracks = rollout::PoseTracks::of(&bundle)?;
         let settings = rollout::study::StudyOptions {
             seed: options.seed,
             threads: options.threads,
@@ -101,10 +104,10 @@ pub fn examine(
         };
         let models = rollout::study::models();
         let report = rollout::study::run(&tracks, &models, peers, &settings, progress)?;
-        return Ok(Outcome::RollOuts(Box::new(report)));
+        return Ok(CalibrationOutcome::RollOuts(Box::new(report)));
     }
-    if bundle.kind() == Kind::Drive {
-        let drives = rollout::drive::Drives::of(&bundle)?;
+    if bundle.kind() == BundleKind::Drive {
+        let drives = rollout::drive::DriveRecordings::of(&bundle)?;
         let settings = rollout::series::SeriesOptions {
             seed: options.seed,
             threads: options.threads,
@@ -112,17 +115,17 @@ pub fn examine(
             ..rollout::series::SeriesOptions::default()
         };
         let report = rollout::series::run(&drives, &rollout::drive::models(), &settings, progress)?;
-        return Ok(Outcome::Series(Box::new(report)));
+        return Ok(CalibrationOutcome::Series(Box::new(report)));
     }
-    let report = explain(&bundle, options, &Progress::new(progress))?;
-    Ok(Outcome::Causes(Box::new(report)))
+    let report = explain(&bundle, options, &CallbackProgress::new(progress))?;
+    Ok(CalibrationOutcome::Causes(Box::new(report)))
 }
 
 /// Reads and checks a measured bundle; answers its kind and how many episodes it has.
 ///
 /// # Errors
 /// [`CalibrationError`] names file, line and field.
-pub fn check(path: &Path) -> Result<(Kind, usize), CalibrationError> {
+pub fn check(path: &Path) -> Result<(BundleKind, usize), CalibrationError> {
     let bundle = bundle::read(path)?;
     Ok((bundle.kind(), bundle.episodes.len()))
 }
@@ -130,10 +133,10 @@ pub fn check(path: &Path) -> Result<(Kind, usize), CalibrationError> {
 fn explain(
     bundle: &bundle::Bundle,
     options: &Options,
-    progress: &Progress<'_>,
-) -> Result<Report, CalibrationError> {
+    progress: &CallbackProgress<'_>,
+) -> Result<CalibrationReport, CalibrationError> {
     progress.stage(0.05, "building the simulation")?;
-    if let (Some(house), false) = (&options.house, bundle.kind() == Kind::ImpulseResponse) {
+    if let (Some(house), false) = (&options.house, bundle.kind() == BundleKind::ImpulseResponse) {
         return Err(CalibrationError::field(
             &bundle.name,
             "house",
@@ -142,10 +145,10 @@ fn explain(
         ));
     }
     let mut twin: Box<dyn Twin> = match bundle.kind() {
-        Kind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
-        Kind::Servo => Box::new(ServoTwin::new(bundle, options)?),
-        Kind::ImpulseResponse => Box::new(RoomTwin::new(bundle, options)?),
-        Kind::PoseTrajectory | Kind::Drive => {
+        BundleKind::Trajectory => Box::new(FlightTwin::new(bundle, options)?),
+        BundleKind::Servo => Box::new(ServoTwin::new(bundle, options)?),
+        BundleKind::ImpulseResponse => Box::new(RoomTwin::new(bundle, options)?),
+        BundleKind::PoseTrajectory | BundleKind::Drive => {
             return Err(CalibrationError::field(
                 bundle.name.clone(),
                 "kind",

@@ -4,10 +4,10 @@ use crate::error::CalibrationError;
 use std::cell::RefCell;
 
 /// Takes a fraction and a sentence, and answers whether to go on.
-type Listener<'a> = &'a mut dyn FnMut(f32, &str) -> bool;
+type ProgressCallback<'a> = &'a mut dyn FnMut(f32, &str) -> bool;
 
 /// Tells the caller how far the work is. A trait, so that what works need not name the caller's lifetime.
-pub(crate) trait Tell {
+pub(crate) trait ProgressReporter {
     /// Reports a new stage.
     ///
     /// # Errors
@@ -22,19 +22,19 @@ pub(crate) trait Tell {
 }
 
 /// The caller, by a function that is told.
-pub(crate) struct Progress<'a> {
-    now: RefCell<(Listener<'a>, f32, String)>,
+pub(crate) struct CallbackProgress<'a> {
+    now: RefCell<(ProgressCallback<'a>, f32, String)>,
 }
 
-impl<'a> Progress<'a> {
-    pub(crate) fn new(listener: Listener<'a>) -> Self {
+impl<'a> CallbackProgress<'a> {
+    pub(crate) fn new(listener: ProgressCallback<'a>) -> Self {
         Self {
             now: RefCell::new((listener, 0.0, String::new())),
         }
     }
 }
 
-impl Tell for Progress<'_> {
+impl ProgressReporter for CallbackProgress<'_> {
     fn stage(&self, fraction: f32, what: &str) -> Result<(), CalibrationError> {
         {
             let mut now = self.now.borrow_mut();

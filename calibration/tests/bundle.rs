@@ -5,7 +5,7 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
-use dwell_calibration::bundle::file::Kind;
+use dwell_calibration::bundle::file::BundleKind;
 use dwell_calibration::{CalibrationError, Options, calibrate};
 use std::fmt::Write as _;
 use std::fs;
@@ -245,7 +245,7 @@ fn damaged_bytes_are_refused_or_read() {
 }
 
 /// A drive whose table can be damaged: 60 samples of a robot that goes straight on.
-fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(Kind, usize), String> {
+fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(BundleKind, usize), String> {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
     put(
@@ -275,7 +275,7 @@ fn drive(change: impl Fn(usize, &mut [f64; 6])) -> Result<(Kind, usize), String>
 
 #[test]
 fn faults_of_drives_are_named() {
-    assert_eq!(drive(|_, _| ()).unwrap(), (Kind::Drive, 4));
+    assert_eq!(drive(|_, _| ()).unwrap(), (BundleKind::Drive, 4));
     let told = drive(|k, row| row[0] += if k == 7 { 0.03 } else { 0.0 }).unwrap_err();
     assert!(told.contains("t_s") && told.contains("sample 7"), "{told}");
     let told = drive(|_, row| (row[4], row[5]) = (-row[4], -row[5])).unwrap_err();

@@ -5,10 +5,12 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
-use dwell_calibration::rollout::study::{ContactModel, ContactParameter, Peer, StudyOptions, run};
+use dwell_calibration::rollout::study::{
+    ContactModel, ContactParameter, OtherSimulator, StudyOptions, run,
+};
 use dwell_calibration::rollout::{
-    HORIZONS, Motion, Noise, Nominal, Regime, Rig, Settings, Track, TrackedBody, Tracks, Windowing,
-    diverging, ends, scores, window_start, windows,
+    BoardRig, HORIZONS, MeasuredMotion, NominalContact, PoseTrack, PoseTracks, Regime, RigSettings,
+    TrackedBody, TrackerNoise, WindowOptions, diverging, ends, scores, window_start, windows,
 };
 use dwell_physics::ContactFriction;
 use dwell_scene::parallel::Threads;
@@ -19,31 +21,31 @@ const HALF_M: f64 = 0.0524;
 const RATE_HZ: f64 = 148.0;
 const GRAVITY_M_S2: f64 = 9.81;
 
-fn tracks(episodes: Vec<Track>) -> Tracks {
+fn tracks(episodes: Vec<PoseTrack>) -> PoseTracks {
     let body = TrackedBody {
         name: "cube".into(),
         mass_kg: 0.37,
         half_extents_m: [HALF_M; 3],
         inertia_kg_m2: [0.37 * 2.0 * HALF_M * HALF_M / 3.0; 3],
     };
-    Tracks {
+    PoseTracks {
         title: "made up".into(),
         licence: "CC0-1.0".into(),
         body,
-        nominal: Nominal {
+        nominal: NominalContact {
             friction: 0.3,
             restitution: 0.0,
         },
         rate_hz: RATE_HZ,
         gravity_m_s2: GRAVITY_M_S2,
-        noise: Noise::of(&episodes, 1.0 / RATE_HZ, GRAVITY_M_S2),
+        noise: TrackerNoise::of(&episodes, 1.0 / RATE_HZ, GRAVITY_M_S2),
         episodes,
     }
 }
 
-fn rig(friction: f64) -> Rig {
-    let rig = Rig::new(&tracks(Vec::new()), ContactFriction::Point).unwrap();
-    let settings = Settings {
+fn rig(friction: f64) -> BoardRig {
+    let rig = BoardRig::new(&tracks(Vec::new()), ContactFriction::Point).unwrap();
+    let settings = RigSettings {
         friction,
         restitution: 0.0,
         laws: Vec::new(),
@@ -51,8 +53,8 @@ fn rig(friction: f64) -> Rig {
     rig.set(&settings).unwrap()
 }
 
-fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> Motion {
-    Motion {
+fn motion(height_m: f64, linear: DVec3, angular: DVec3) -> MeasuredMotion {
+    MeasuredMotion {
         position: DVec3::new(0.4, height_m, -0.7),
         rotation: DQuat::IDENTITY,
         linear,
@@ -84,9 +86,9 @@ fn a_sliding_cube_stops_where_coulomb_says() {
         (ContactFriction::Patch, 0.99, 1.01),
         (ContactFriction::Point, 0.99, 1.08),
     ] {
-        let plain = Rig::new(&tracks(Vec::new()), way).unwrap();
+        let plain = BoardRig::new(&tracks(Vec::new()), way).unwrap();
         for friction in [0.15, 0.3] {
-            let settings = Settings {
+            let settings = RigSettings {
                 friction,
                 restitution: 0.0,
                 laws: Vec::new(),
@@ -102,12 +104,12 @@ fn a_sliding_cube_stops_where_coulomb_says() {
 }
 
 /// Tosses made by the same engine with this friction.
-fn tossed(friction: f64, count: usize) -> Tracks {
+fn tossed(friction: f64, count: usize) -> PoseTracks {
     let rig = rig(friction);
     let episodes = (0..count)
         .map(|k| {
             let turn = DQuat::from_rotation_x(0.4 * k as f64) * DQuat::from_rotation_z(0.3);
-            let start = Motion {
+            let start = MeasuredMotion {
                 rotation: turn,
                 ..motion(
                     0.2,
@@ -117,7 +119,7 @@ fn tossed(friction: f64, count: usize) -> Tracks {
             };
             let mut motions = vec![start];
             motions.extend(rig.roll(&start, 60).unwrap());
-            Track {
+            PoseTrack {
                 name: format!("toss {k}"),
                 group: format!("toss {k}"),
                 regimes: vec![Regime::Flight; motions.len()],
@@ -144,7 +146,7 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
     );
     let rig = rig(0.4);
     let rigs = vec![&rig; 5];
-    let windowing = |threads| Windowing {
+    let windowing = |threads| WindowOptions {
         stride: 7,
         guard: Some(RandomKey::root(0)),
         threads,
@@ -206,7 +208,7 @@ fn hidden_friction_is_found_out_of_fold() {
     )
     .unwrap();
     let scored = alone.models[0].episodes.iter();
-    let peer = Peer {
+    let peer = OtherSimulator {
         name: "nominal".into(),
         scores: scored.map(|e| (e.episode.clone(), e.score)).collect(),
     };
@@ -255,7 +257,7 @@ fn window_starts_in_flight_do_not_lag() {
     for k in (2..motions.len()).rev() {
         motions[k].linear = honest[k - 2].linear;
     }
-    let track = Track {
+    let track = PoseTrack {
         name: "flight".into(),
         group: "flight".into(),
         regimes: vec![Regime::Flight; motions.len()],
@@ -263,7 +265,7 @@ fn window_starts_in_flight_do_not_lag() {
         start: 0,
         start_motion: start,
     };
-    let noise = Noise {
+    let noise = TrackerNoise {
         position_m: 2e-5,
         rotation_rad: 2e-4,
     };
@@ -280,13 +282,13 @@ fn window_starts_in_flight_do_not_lag() {
 fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
     let balanced = |degrees: f64, height_m: f64| {
         let turn = DQuat::from_rotation_z(degrees.to_radians());
-        let start = Motion {
+        let start = MeasuredMotion {
             rotation: turn,
             ..motion(height_m, DVec3::ZERO, DVec3::ZERO)
         };
         let mut motions = vec![start];
         motions.extend(rig(0.3).roll(&start, 80).unwrap());
-        Track {
+        PoseTrack {
             name: format!("{degrees}"),
             group: format!("{degrees}"),
             regimes: vec![Regime::Contact; motions.len()],
@@ -299,7 +301,7 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
         balanced(45.02, HALF_M * 2.0_f64.sqrt()),
         balanced(0.0, HALF_M),
     ]);
-    tracks.noise = Noise {
+    tracks.noise = TrackerNoise {
         position_m: 1e-5,
         rotation_rad: 2e-3,
     };

@@ -5,10 +5,10 @@
     reason = "a test stops at the first surprise, in its helpers too"
 )]
 
-use dwell_calibration::rollout::drive::{Drive, Drives, NominalBase, models};
-use dwell_calibration::rollout::drop::Drops;
-use dwell_calibration::rollout::series::{Modelled as _, SeriesOptions, SeriesReport, run};
-use dwell_calibration::rollout::{Regime, Subject as _};
+use dwell_calibration::rollout::drive::{DriveRecording, DriveRecordings, NominalBase, models};
+use dwell_calibration::rollout::drop::BallDrops;
+use dwell_calibration::rollout::series::{ModelledSubject as _, SeriesOptions, SeriesReport, run};
+use dwell_calibration::rollout::{Regime, RolloutSubject as _};
 use dwell_scene::random::RandomKey;
 use std::fmt::Write as _;
 
@@ -20,7 +20,7 @@ const BASE: NominalBase = NominalBase {
 
 /// A robot whose wheels are (left, right) and whose base is so much larger than believed, driven along a path by Euler
 /// steps of a 200th of a sample, seen with 1 mm and 0.3 degrees of noise by a tracker whose heading is off.
-fn drive(name: &str, factors: [f64; 3], tracker_off_rad: f64, seed: u64) -> Drive {
+fn drive(name: &str, factors: [f64; 3], tracker_off_rad: f64, seed: u64) -> DriveRecording {
     let mut stream = RandomKey::root(seed).stream();
     let bend = if seed.is_multiple_of(2) { 0.4 } else { -0.5 };
     let (mut place, mut planar, mut turned) = ([0.0_f64; 3], Vec::new(), Vec::new());
@@ -45,15 +45,15 @@ fn drive(name: &str, factors: [f64; 3], tracker_off_rad: f64, seed: u64) -> Driv
         ]);
         turned.push(rates.map(|rate| rate / RATE_HZ));
     }
-    let mut drive = Drive::told(planar, turned, &BASE, RATE_HZ);
+    let mut drive = DriveRecording::told(planar, turned, &BASE, RATE_HZ);
     drive.name = name.into();
     drive.group = name.into();
     drive.kind = ["even", "odd"][(seed % 2) as usize].into();
     drive
 }
 
-fn drives(factors: [f64; 3], tracker_off_rad: f64) -> Drives {
-    Drives {
+fn drives(factors: [f64; 3], tracker_off_rad: f64) -> DriveRecordings {
+    DriveRecordings {
         title: "made up".into(),
         licence: "CC0-1.0".into(),
         base: BASE,
@@ -74,7 +74,7 @@ fn options() -> SeriesOptions {
     }
 }
 
-fn tried(drives: &Drives, names: &[&str]) -> SeriesReport {
+fn tried(drives: &DriveRecordings, names: &[&str]) -> SeriesReport {
     let mut all = models();
     all.retain(|model| names.contains(&model.name));
     run(drives, &all, &options(), &mut |_, _| true).unwrap()
@@ -185,7 +185,7 @@ fn dropped(folder: &std::path::Path, c_d: [f64; 2]) {
 fn hidden_drag_is_found_out_of_fold() {
     let folder = tempfile::tempdir().unwrap();
     dropped(folder.path(), [0.5, 0.5]);
-    let drops = Drops::read(folder.path()).unwrap();
+    let drops = BallDrops::read(folder.path()).unwrap();
     assert_eq!(drops.count(), 6);
     // What lies before the release is left out: 3 m/s in the mean of the next 0.2 s come 0.2 s after it, give or take a
     // sample, 0.17 to 0.4 m deep; noise adds 0.09 m.
@@ -266,7 +266,7 @@ fn real_drops_need_air() {
     std::fs::write(bundle.path().join("manifest.json"), manifest).unwrap();
     std::fs::write(bundle.path().join("episodes.csv"), episodes).unwrap();
     std::fs::write(bundle.path().join("trajectory.csv"), rows).unwrap();
-    let drops = Drops::read(bundle.path()).unwrap();
+    let drops = BallDrops::read(bundle.path()).unwrap();
     assert_eq!(
         drops.count(),
         14,

@@ -2,7 +2,7 @@
 
 use crate::doorway::Doorway;
 use crate::errors::Fault;
-use dwell_calibration::rollout::study::Peer;
+use dwell_calibration::rollout::study::OtherSimulator;
 use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
 use std::path::Path;
@@ -25,7 +25,10 @@ pub(crate) fn calibrate(
             threads: Some(Threads::requested(None)?.count()),
             ..Default::default()
         };
-        let peers: Result<Vec<Peer>, _> = peers.iter().map(|p| Peer::read(Path::new(p))).collect();
+        let peers: Result<Vec<OtherSimulator>, _> = peers
+            .iter()
+            .map(|p| OtherSimulator::read(Path::new(p)))
+            .collect();
         let report = dwell_calibration::examine(
             Path::new(measured),
             &options,

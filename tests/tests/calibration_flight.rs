@@ -8,7 +8,7 @@
 mod calibration_support;
 
 use calibration_support::{Files, Random, runge_kutta, table};
-use dwell_calibration::{Options, Report, Verdict, calibrate};
+use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
 use std::f64::consts::TAU;
 
 /// What acts on the ball besides gravity.
@@ -43,7 +43,7 @@ const THROWS: usize = 15;
 const RATE_HZ: f64 = 90.0;
 
 /// Throws of a tennis ball in `world`, calibrated.
-fn throws(world: World, seed: u64) -> Report {
+fn throws(world: World, seed: u64) -> CalibrationReport {
     let mut random = Random::new(seed);
     let mut files = Files::new(format!(
         r#"{{"version": 1, "title": "throws", "licence": "CC0-1.0", "kind": "trajectory",
@@ -120,8 +120,8 @@ fn throws(world: World, seed: u64) -> Report {
 }
 
 /// The first parameter of the first effect: value and 95 % interval.
-fn named(report: &Report, law: &str) -> (f64, [f64; 2]) {
-    let Verdict::Named {
+fn named(report: &CalibrationReport, law: &str) -> (f64, [f64; 2]) {
+    let CalibrationVerdict::Named {
         law: found,
         effects,
         ..
@@ -205,7 +205,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         );
         assert_eq!(
             report.verdict,
-            Verdict::Nothing,
+            CalibrationVerdict::Nothing,
             "seed {seed}: {}",
             table(&report)
         );
@@ -224,7 +224,7 @@ fn what_cannot_be_told_apart_is_said_to_be_so() {
     };
     let report = throws(world, 41);
     println!("{}", table(&report));
-    let Verdict::OneOf {
+    let CalibrationVerdict::OneOf {
         laws,
         separating_experiments,
     } = &report.verdict
@@ -244,7 +244,7 @@ fn a_cause_outside_of_the_library_gets_no_name() {
         let report = throws(World { fan: 4.0, ..QUIET }, seed);
         println!("{}", table(&report));
         assert!(
-            matches!(report.verdict, Verdict::Unexplained { .. }),
+            matches!(report.verdict, CalibrationVerdict::Unexplained { .. }),
             "{}",
             table(&report)
         );
@@ -260,7 +260,7 @@ fn a_cause_outside_of_the_library_gets_no_name() {
         53,
     );
     assert!(
-        matches!(report.verdict, Verdict::Unexplained { .. }),
+        matches!(report.verdict, CalibrationVerdict::Unexplained { .. }),
         "{}",
         table(&report)
     );

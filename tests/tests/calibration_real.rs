@@ -9,7 +9,7 @@
 mod calibration_support;
 
 use calibration_support::Files;
-use dwell_calibration::{Options, Verdict, calibrate};
+use dwell_calibration::{CalibrationVerdict, Options, calibrate};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -98,13 +98,15 @@ fn falling_balls_get_a_defensible_verdict() {
         );
     }
     match &report.verdict {
-        Verdict::Named { law, effects, .. } => {
+        CalibrationVerdict::Named { law, effects, .. } => {
             assert_eq!(law, "drag");
             let c_d = effects[0].parameters[0].value;
             assert!((0.05..1.0).contains(&c_d), "{c_d}");
         }
-        Verdict::OneOf { laws, .. } => assert!(laws.contains(&"drag".to_owned()), "{laws:?}"),
-        Verdict::Unexplained { reason } => assert!(!reason.is_empty()),
-        Verdict::Nothing => panic!("{}", report.sentence),
+        CalibrationVerdict::OneOf { laws, .. } => {
+            assert!(laws.contains(&"drag".to_owned()), "{laws:?}")
+        }
+        CalibrationVerdict::Unexplained { reason } => assert!(!reason.is_empty()),
+        CalibrationVerdict::Nothing => panic!("{}", report.sentence),
     }
 }

@@ -8,7 +8,7 @@
 mod calibration_support;
 
 use calibration_support::{Files, Random, table};
-use dwell_calibration::{Options, Report, Verdict, calibrate};
+use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -164,7 +164,7 @@ fn write_wav(path: &Path, samples: &[f32]) {
 }
 
 /// Measures a room whose sides absorb as `true_absorption` says, with a source `gain` times too loud.
-fn measure(true_absorption: [f64; 6], gain: f32, seed: u64) -> Report {
+fn measure(true_absorption: [f64; 6], gain: f32, seed: u64) -> CalibrationReport {
     let mut random = Random::new(seed);
     let mut surfaces = String::new();
     for (side, absorption) in SIDES.iter().zip(TOLD) {
@@ -226,7 +226,7 @@ fn the_surface_with_another_absorption_is_named() {
         absorption[side] = 0.6;
         let report = measure(absorption, 3.0, seed);
         println!("{}: {}", SIDES[side], table(&report));
-        let Verdict::Named { law, effects, .. } = &report.verdict else {
+        let CalibrationVerdict::Named { law, effects, .. } = &report.verdict else {
             panic!("{}: {}", SIDES[side], table(&report));
         };
         assert_eq!(
@@ -256,7 +256,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         let report = measure(TOLD, gain, seed);
         assert_eq!(
             report.verdict,
-            Verdict::Nothing,
+            CalibrationVerdict::Nothing,
             "seed {seed}: {}",
             table(&report)
         );

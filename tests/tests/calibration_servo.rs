@@ -8,7 +8,7 @@
 mod calibration_support;
 
 use calibration_support::{Files, Random, runge_kutta, table};
-use dwell_calibration::{Options, Report, Verdict, calibrate};
+use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
 
 const INERTIA: f64 = 0.004;
 const STIFFNESS: f64 = 1.6;
@@ -36,7 +36,7 @@ fn target(run: &[f64; 6], t: f64) -> f64 {
         + if t > run[5] { run[4] } else { 0.0 }
 }
 
-fn runs(joint: Joint, seed: u64) -> Report {
+fn runs(joint: Joint, seed: u64) -> CalibrationReport {
     let mut random = Random::new(seed);
     let mut files = Files::new(format!(
         r#"{{"version": 1, "title": "servo", "licence": "CC0-1.0", "kind": "servo",
@@ -113,7 +113,7 @@ fn backlash_is_named_with_its_width() {
             seed.into(),
         );
         println!("seed {seed}: {}", table(&report));
-        let Verdict::Named { law, effects, gain } = &report.verdict else {
+        let CalibrationVerdict::Named { law, effects, gain } = &report.verdict else {
             panic!("{}", table(&report));
         };
         assert_eq!(
@@ -144,7 +144,7 @@ fn friction_is_not_taken_for_backlash() {
     );
     println!("{}", table(&report));
     match &report.verdict {
-        Verdict::Named { law, effects, .. } => {
+        CalibrationVerdict::Named { law, effects, .. } => {
             assert_eq!(law, "joint_friction", "{}", table(&report));
             assert!(
                 (effects[0].parameters[0].value / 0.05 - 1.0).abs() < 0.15,
@@ -167,7 +167,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
         let report = runs(joint, seed);
         assert_eq!(
             report.verdict,
-            Verdict::Nothing,
+            CalibrationVerdict::Nothing,
             "seed {seed}: {}",
             table(&report)
         );

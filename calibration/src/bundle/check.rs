@@ -1,12 +1,12 @@
 //! Whether a bundle says what it must, in ranges that make sense.
 
-use super::file::{Body, Kind, Manifest, Surface, VERSION};
-use super::{Bundle, drive, limits, poses, slips};
+use super::file::{BodyManifest, BundleKind, Manifest, SurfaceManifest, VERSION};
+use super::{Bundle, limits, odometry, poses, unit_checks};
 use crate::error::CalibrationError;
 use dwell_scene::material::library;
 use std::collections::BTreeMap;
 
-type Checked = Result<(), CalibrationError>;
+type CheckResult = Result<(), CalibrationError>;
 
 /// The sides of a box-shaped room, as scene's shoebox names them.
 pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
@@ -18,12 +18,12 @@ const DENSITIES_KG_M3: [f64; 2] = [0.05, 25_000.0];
 const FEWEST_POSES: usize = 6;
 
 /// Names of a manifest by position.
-pub(super) struct Names {
+pub(super) struct NameIndex {
     entities: BTreeMap<String, usize>,
     channels: BTreeMap<String, usize>,
 }
 
-impl Names {
+impl NameIndex {
     pub(super) fn new(manifest: &Manifest) -> Self {
         let scene = &manifest.scene;
         let bodies = scene.bodies.iter().map(|body| body.name.clone());
@@ -71,7 +71,7 @@ fn find(
 }
 
 /// A name of 1 to 128 printable characters.
-pub(super) fn name(at: &str, field: &str, name: &str) -> Checked {
+pub(super) fn name(at: &str, field: &str, name: &str) -> CheckResult {
     let fits = (1..=limits::NAME_CHARS).contains(&name.chars().count())
         && !name.chars().any(char::is_control);
     if fits {
@@ -87,23 +87,23 @@ pub(super) fn name(at: &str, field: &str, name: &str) -> Checked {
 }
 
 /// A finite number of at most `limit`.
-pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> Checked {
+pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> CheckResult {
     range(at, field, value, -limit, limit)
 }
 
 /// A position along an axis, m.
-pub(super) fn position(at: &str, field: &str, value: f64) -> Checked {
+pub(super) fn position(at: &str, field: &str, value: f64) -> CheckResult {
     let allowed = "-1000 to 1000 m; are lengths in millimetres? Divide them by 1000, or import with \"metres_per_unit\": \
                    0.001 in the map's table";
     finite(at, field, value, 1e3).map_err(|_| CalibrationError::field(at, field, value, allowed))
 }
 
 /// A time on a clock, s.
-pub(super) fn time(at: &str, t_s: f64) -> Checked {
+pub(super) fn time(at: &str, t_s: f64) -> CheckResult {
     range(at, "t_s", t_s, -1e6, 1e6)
 }
 
-fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> Checked {
+fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> CheckResult {
     if (low..=high).contains(&value) {
         return Ok(());
     }
@@ -116,7 +116,7 @@ fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> Checked {
 }
 
 /// A point in the room.
-pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest) -> Checked {
+pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest) -> CheckResult {
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let field = format!("{field}_{axis}");
         match &manifest.scene.room {
@@ -128,7 +128,7 @@ pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest)
 }
 
 /// The manifest's own ranges.
-pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
+pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
     if !(1..=VERSION).contains(&manifest.version) {
         let allowed = format!("1 to {VERSION}, the versions this build reads");
         return Err(CalibrationError::field(
@@ -192,7 +192,7 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
         range(at, "scene.base.wheel_base_m", base.wheel_base_m, 0.01, 5.0)?;
         range(at, "scene.base.rate_hz", base.rate_hz, 1.0, 1000.0)?;
     }
-    if manifest.kind == Kind::PoseTrajectory {
+    if manifest.kind == BundleKind::PoseTrajectory {
         pose_form(at, manifest)?;
     }
     for (k, joint) in scene.joints.iter().enumerate() {
@@ -247,14 +247,14 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> Checked {
 }
 
 /// A length of a body, m: 1 mm to 10 m.
-fn length(at: &str, field: &str, value: f64) -> Checked {
+fn length(at: &str, field: &str, value: f64) -> CheckResult {
     let allowed = "0.001 to 10 m; is it in millimetres? Divide it by 1000";
     range(at, field, value, 1e-3, 10.0)
         .map_err(|_| CalibrationError::field(at, field, value, allowed))
 }
 
 /// A mass that something of this volume can have.
-fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> Checked {
+fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> CheckResult {
     let found = mass_kg / volume_m3;
     let hint = if found > DENSITIES_KG_M3[1] {
         "is the mass in grams, or are lengths too small?"
@@ -270,7 +270,7 @@ fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> Checked {
 }
 
 /// A sphere or a box, and an inertia that such a body can have.
-fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &Body) -> Checked {
+fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &BodyManifest) -> CheckResult {
     match (body.radius_m, body.half_extents_m) {
         (Some(radius), None) => {
             length(at, &of("radius_m"), radius)?;
@@ -310,7 +310,7 @@ fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &Body) -> Checked {
     Ok(())
 }
 
-fn pose_form(at: &str, manifest: &Manifest) -> Checked {
+fn pose_form(at: &str, manifest: &Manifest) -> CheckResult {
     if manifest.version < 2 {
         let allowed = "2 for pose trajectories";
         return Err(CalibrationError::field(
@@ -347,7 +347,7 @@ fn pose_form(at: &str, manifest: &Manifest) -> Checked {
     Ok(())
 }
 
-fn surface_of(at: &str, side: &str, surface: &Surface) -> Checked {
+fn surface_of(at: &str, side: &str, surface: &SurfaceManifest) -> CheckResult {
     let of = |field: &str| format!("scene.room.surfaces.{side}.{field}");
     if let Some(substance) = &surface.substance
         && library().get(substance).is_none()
@@ -397,11 +397,13 @@ fn surface_of(at: &str, side: &str, surface: &Surface) -> Checked {
     Ok(())
 }
 
-fn channels(at: &str, manifest: &Manifest) -> Checked {
+fn channels(at: &str, manifest: &Manifest) -> CheckResult {
     let (allowed, unit): (&[&str], &str) = match manifest.kind {
-        Kind::Trajectory => (&["x", "y", "z"], "m"),
-        Kind::Servo => (&["position"], "rad"),
-        Kind::ImpulseResponse | Kind::PoseTrajectory | Kind::Drive => return Ok(()),
+        BundleKind::Trajectory => (&["x", "y", "z"], "m"),
+        BundleKind::Servo => (&["position"], "rad"),
+        BundleKind::ImpulseResponse | BundleKind::PoseTrajectory | BundleKind::Drive => {
+            return Ok(());
+        }
     };
     for (k, channel) in manifest.channels.iter().enumerate() {
         let of = |field: &str| format!("channels[{k}].{field}");
@@ -449,25 +451,25 @@ fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
 }
 
 /// Whether there is enough to work with.
-pub(super) fn complete(bundle: &Bundle) -> Checked {
+pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     let scene = &bundle.manifest.scene;
     let at = format!("{}/manifest.json", bundle.name);
     match bundle.kind() {
-        Kind::Trajectory if scene.bodies.is_empty() => {
+        BundleKind::Trajectory if scene.bodies.is_empty() => {
             return Err(missing(
                 &at,
                 "scene.bodies",
                 "a trajectory needs the body that flew",
             ));
         }
-        Kind::Trajectory if scene.bodies.iter().any(|body| body.radius_m.is_none()) => {
+        BundleKind::Trajectory if scene.bodies.iter().any(|body| body.radius_m.is_none()) => {
             return Err(missing(
                 &at,
                 "scene.bodies[].radius_m",
                 "free flight is computed for spheres",
             ));
         }
-        Kind::Servo if scene.joints.len() != 1 || !scene.bodies.is_empty() => {
+        BundleKind::Servo if scene.joints.len() != 1 || !scene.bodies.is_empty() => {
             return Err(CalibrationError::field(
                 at,
                 "scene.joints",
@@ -475,7 +477,7 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                 "exactly one joint, and no bodies",
             ));
         }
-        Kind::Trajectory | Kind::Servo if bundle.manifest.channels.is_empty() => {
+        BundleKind::Trajectory | BundleKind::Servo if bundle.manifest.channels.is_empty() => {
             return Err(missing(
                 &at,
                 "channels",
@@ -497,14 +499,14 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
     for episode in &bundle.episodes {
         let at = format!("{}, episode {}", bundle.name, episode.name);
         match bundle.kind() {
-            Kind::ImpulseResponse if episode.responses.is_empty() => {
+            BundleKind::ImpulseResponse if episode.responses.is_empty() => {
                 return Err(missing(
                     &at,
                     "a row of ir.csv",
                     "every episode needs an impulse response",
                 ));
             }
-            Kind::Trajectory | Kind::Servo if episode.samples.len() < 6 => {
+            BundleKind::Trajectory | BundleKind::Servo if episode.samples.len() < 6 => {
                 let (what, found, needed) = ("rows of trajectory.csv", episode.samples.len(), 6);
                 return Err(CalibrationError::TooFew {
                     at,
@@ -513,7 +515,7 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                     needed,
                 });
             }
-            Kind::PoseTrajectory if episode.poses.len() < FEWEST_POSES => {
+            BundleKind::PoseTrajectory if episode.poses.len() < FEWEST_POSES => {
                 let (what, found, needed) =
                     ("rows of poses.csv", episode.poses.len(), FEWEST_POSES);
                 return Err(CalibrationError::TooFew {
@@ -523,7 +525,7 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                     needed,
                 });
             }
-            Kind::Trajectory
+            BundleKind::Trajectory
                 if episode
                     .samples
                     .iter()
@@ -536,7 +538,7 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
                     "one body an episode",
                 ));
             }
-            Kind::Servo if episode.commands.is_empty() => {
+            BundleKind::Servo if episode.commands.is_empty() => {
                 return Err(missing(
                     &at,
                     "a row of command.csv",
@@ -548,22 +550,22 @@ pub(super) fn complete(bundle: &Bundle) -> Checked {
         let mut channels = episode.samples.chunk_by(|a, b| a.channel == b.channel);
         channels.try_for_each(|samples| {
             let times: Vec<f64> = samples.iter().map(|s| s.t_s).collect();
-            slips::clock(&at, &times)
+            unit_checks::clock(&at, &times)
         })?;
     }
     match bundle.kind() {
-        Kind::PoseTrajectory => {
+        BundleKind::PoseTrajectory => {
             poses::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
-        Kind::Drive => drive::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?,
-        Kind::Trajectory | Kind::Servo | Kind::ImpulseResponse => {}
+        BundleKind::Drive => odometry::complete(&bundle.name, &bundle.manifest, &bundle.episodes)?,
+        BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
     }
     durations(bundle)?;
-    slips::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
+    unit_checks::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
 }
 
 /// Whether no episode is longer than can be computed.
-fn durations(bundle: &Bundle) -> Checked {
+fn durations(bundle: &Bundle) -> CheckResult {
     for episode in &bundle.episodes {
         let samples = episode.samples.iter().map(|s| s.t_s);
         let poses = episode.poses.iter().map(|p| p.t_s);

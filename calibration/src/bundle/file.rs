@@ -20,12 +20,12 @@ pub struct Manifest {
     /// The licence of the data.
     pub licence: String,
     /// What kind of measurement it is.
-    pub kind: Kind,
+    pub kind: BundleKind,
     /// The situation.
-    pub scene: Scene,
+    pub scene: SceneManifest,
     /// What the numbers of `trajectory.csv` mean.
     #[serde(default)]
-    pub channels: Vec<Channel>,
+    pub channels: Vec<ChannelManifest>,
     /// What the numbers of `poses.csv` and `starts.csv` mean (kind `pose_trajectory`).
     #[serde(default)]
     pub poses: Option<PoseForm>,
@@ -37,7 +37,7 @@ pub struct Manifest {
 /// What kind of measurement a bundle holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Kind {
+pub enum BundleKind {
     /// Bodies in free flight.
     Trajectory,
     /// A joint that is driven by a position servo.
@@ -76,31 +76,31 @@ pub enum AngularFrame {
 /// The situation in which was measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Scene {
+pub struct SceneManifest {
     /// The air and the place.
     #[serde(default)]
-    pub environment: Environment,
+    pub environment: AmbientConditions,
     /// Bodies that are tracked.
     #[serde(default)]
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<BodyManifest>,
     /// Joints that are tracked.
     #[serde(default)]
-    pub joints: Vec<Joint>,
+    pub joints: Vec<JointManifest>,
     /// The room of impulse responses.
     #[serde(default)]
-    pub room: Option<Room>,
+    pub room: Option<RoomManifest>,
     /// The board of pose trajectories: the plane y = 0.
     #[serde(default)]
-    pub board: Option<Board>,
+    pub board: Option<BoardManifest>,
     /// The base of drives.
     #[serde(default)]
-    pub base: Option<Base>,
+    pub base: Option<BaseManifest>,
 }
 
 /// A base with two driven wheels side by side, as it is believed to be before any fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Base {
+pub struct BaseManifest {
     /// Radius of both wheels, m; 0.001 to 1.
     pub wheel_radius_m: f64,
     /// Distance between the points where they touch the floor, m; 0.01 to 5.
@@ -112,7 +112,7 @@ pub struct Base {
 /// A flat board, the plane y = 0, with the contact values that are taken for it and the body before any fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Board {
+pub struct BoardManifest {
     /// Coulomb friction of the pair, 0 to 10.
     pub friction: f64,
     /// Restitution of the pair, 0 to 1.
@@ -122,7 +122,7 @@ pub struct Board {
 /// Air and place; `null` where it was not measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Environment {
+pub struct AmbientConditions {
     /// Degrees Celsius; `null`: 20 is taken.
     pub temperature_c: Option<f64>,
     /// Relative humidity, percent; `null`: 50 is taken.
@@ -136,7 +136,7 @@ pub struct Environment {
 /// A body that is tracked: a sphere or a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Body {
+pub struct BodyManifest {
     /// The name that the tables use as its entity.
     pub name: String,
     /// kg.
@@ -155,7 +155,7 @@ pub struct Body {
 /// A joint that is tracked and driven: a hinge about the vertical, on which gravity does nothing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Joint {
+pub struct JointManifest {
     /// The name that `trajectory.csv` uses as its entity and `command.csv` as its actuator.
     pub name: String,
     /// Moment of inertia of all that turns, about the axis, kg·m².
@@ -174,21 +174,21 @@ pub struct Joint {
 /// A box-shaped room from the origin to `size_m`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Room {
+pub struct RoomManifest {
     /// Lengths along x, y (up) and z, m.
     pub size_m: [f64; 3],
     /// `floor` (y = 0), `ceiling`, `west` (x = 0), `east`, `north` (z = 0), `south`.
-    pub surfaces: BTreeMap<String, Surface>,
+    pub surfaces: BTreeMap<String, SurfaceManifest>,
 }
 
 /// What is known about a surface of the room.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct Surface {
+pub struct SurfaceManifest {
     /// A substance of the engine's table, from which comes what is not given here.
     pub substance: Option<String>,
     /// Absorption of energy at band centres in Hz.
-    pub absorption: Option<BandValues>,
+    pub absorption: Option<BandTable>,
     /// Scattering of energy, the same in all bands.
     pub scattering: Option<f64>,
 }
@@ -196,7 +196,7 @@ pub struct Surface {
 /// A quantity by frequency.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BandValues {
+pub struct BandTable {
     /// Band centres, Hz, rising.
     pub centres_hz: Vec<f64>,
     /// The value at each.
@@ -206,7 +206,7 @@ pub struct BandValues {
 /// What the numbers of a channel mean.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Channel {
+pub struct ChannelManifest {
     /// `x`, `y`, `z` of a body in m, or `position` of a joint in rad.
     pub name: String,
     /// The SI unit: `m` or `rad`.

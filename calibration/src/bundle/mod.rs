@@ -9,7 +9,7 @@
 //! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
 //! | `poses.csv` | `episode, t_s, entity, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`) |
 //! | `starts.csv` | `episode, sample, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`; may be absent) |
-//! | `drive.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `drive`) |
+//! | `odometry.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `odometry`) |
 //! | `ir/*.wav` | the responses that `ir.csv` names |
 //!
 //! Everything is SI; axes are the engine's (right-handed, y up).
@@ -17,15 +17,15 @@
 pub mod file;
 
 mod check;
-mod drive;
 mod limits;
+mod odometry;
 mod poses;
 mod read;
 mod row;
-mod slips;
+mod unit_checks;
 mod wav;
 
-use file::{CommandRow, DriveRow, Kind, Manifest};
+use file::{BundleKind, CommandRow, DriveRow, Manifest};
 use glam::{DQuat, DVec3};
 pub(crate) use read::refused;
 
@@ -36,26 +36,26 @@ pub(crate) struct Bundle {
     pub(crate) name: String,
     pub(crate) manifest: Manifest,
     /// In the order of the file.
-    pub(crate) episodes: Vec<Episode>,
+    pub(crate) episodes: Vec<MeasuredEpisode>,
 }
 
 /// One recording.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Episode {
+pub(crate) struct MeasuredEpisode {
     pub(crate) name: String,
     /// Episodes of one group are held out together.
     pub(crate) group: String,
     /// What was special.
     pub(crate) conditions: String,
     /// By entity, then channel, each by time.
-    pub(crate) samples: Vec<Sample>,
+    pub(crate) samples: Vec<MeasuredSample>,
     /// By actuator, each by time.
     pub(crate) commands: Vec<CommandRow>,
-    pub(crate) responses: Vec<Response>,
+    pub(crate) responses: Vec<MeasuredResponse>,
     /// By time.
     pub(crate) poses: Vec<PoseSample>,
     /// The sample to roll out from, and the velocities there; `None`: the first, as measured.
-    pub(crate) start: Option<(usize, Rates)>,
+    pub(crate) start: Option<(usize, PoseRates)>,
     /// By time.
     pub(crate) drive: Vec<DriveRow>,
 }
@@ -71,12 +71,12 @@ pub(crate) struct PoseSample {
     /// World from body, unit length.
     pub(crate) rotation: DQuat,
     /// Where the tracker gives them.
-    pub(crate) rates: Option<Rates>,
+    pub(crate) rates: Option<PoseRates>,
 }
 
 /// Velocities, both along the axes of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rates {
+pub(crate) struct PoseRates {
     /// m/s.
     pub(crate) linear: DVec3,
     /// rad/s.
@@ -85,7 +85,7 @@ pub(crate) struct Rates {
 
 /// One measured number.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Sample {
+pub(crate) struct MeasuredSample {
     /// Position in the manifest's bodies or joints.
     pub(crate) entity: usize,
     /// Position in the manifest's channels.
@@ -96,7 +96,7 @@ pub(crate) struct Sample {
 
 /// One measured impulse response.
 #[derive(Clone, Debug)]
-pub(crate) struct Response {
+pub(crate) struct MeasuredResponse {
     pub(crate) source_m: [f64; 3],
     pub(crate) receiver_m: [f64; 3],
     pub(crate) rate_hz: u32,
@@ -106,7 +106,7 @@ pub(crate) struct Response {
 
 impl Bundle {
     /// What kind of measurement it is.
-    pub(crate) fn kind(&self) -> Kind {
+    pub(crate) fn kind(&self) -> BundleKind {
         self.manifest.kind
     }
 }

@@ -1,9 +1,9 @@
 //! Pose trajectories: what stands in `poses.csv` and `starts.csv`, and whether it can be what it says.
 
-use super::check::{self, Names};
+use super::check::{self, NameIndex};
 use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
 use super::read::{episode, table};
-use super::{Episode, PoseSample, Rates, slips};
+use super::{MeasuredEpisode, PoseRates, PoseSample, unit_checks};
 use crate::error::CalibrationError;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
@@ -18,16 +18,16 @@ const TELLING_SPEED: f64 = 0.5;
 /// Samples that must be telling before a test speaks.
 const FEWEST_TELLING: usize = 50;
 
-type Checked = Result<(), CalibrationError>;
+type PoseCheck = Result<(), CalibrationError>;
 
 /// Reads both tables into the episodes.
 pub(super) fn read(
     folder: &Path,
-    names: &Names,
+    names: &NameIndex,
     by_name: &BTreeMap<String, usize>,
     manifest: &Manifest,
-    episodes: &mut [Episode],
-) -> Checked {
+    episodes: &mut [MeasuredEpisode],
+) -> PoseCheck {
     // `check::manifest` has asked for the form.
     let frame = manifest
         .poses
@@ -64,8 +64,8 @@ fn starts(
     folder: &Path,
     by_name: &BTreeMap<String, usize>,
     frame: AngularFrame,
-    episodes: &mut [Episode],
-) -> Checked {
+    episodes: &mut [MeasuredEpisode],
+) -> PoseCheck {
     table(folder, "starts.csv", |row: StartRow, at| {
         let index = episode(at, by_name, &row.episode)?;
         let episode = &mut episodes[index];
@@ -88,7 +88,7 @@ fn starts(
         ] {
             check::finite(at, field, value, 1e4)?;
         }
-        let rates = Rates {
+        let rates = PoseRates {
             linear: DVec3::new(row.vx, row.vy, row.vz),
             angular: in_world(frame, pose.rotation, DVec3::new(row.wx, row.wy, row.wz)),
         };
@@ -121,7 +121,7 @@ fn rates(
     row: &PoseRow,
     rotation: DQuat,
     frame: AngularFrame,
-) -> Result<Option<Rates>, CalibrationError> {
+) -> Result<Option<PoseRates>, CalibrationError> {
     let all = [row.vx, row.vy, row.vz, row.wx, row.wy, row.wz];
     let given: Vec<f64> = all.iter().flatten().copied().collect();
     let [vx, vy, vz, wx, wy, wz] = given[..] else {
@@ -139,7 +139,7 @@ fn rates(
     for (field, value) in ["vx", "vy", "vz", "wx", "wy", "wz"].iter().zip(&given) {
         check::finite(at, field, *value, 1e4)?;
     }
-    Ok(Some(Rates {
+    Ok(Some(PoseRates {
         linear: DVec3::new(vx, vy, vz),
         angular: in_world(frame, rotation, DVec3::new(wx, wy, wz)),
     }))
@@ -154,7 +154,7 @@ fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec
 
 /// Whether the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
 /// agree with the poses in unit, sign, frame and clock.
-pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) -> Checked {
+pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> PoseCheck {
     let Some(form) = &manifest.poses else {
         return Ok(());
     };
@@ -162,7 +162,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
     for episode in episodes {
         let at = format!("{name}, episode {}", episode.name);
         let times: Vec<f64> = episode.poses.iter().map(|sample| sample.t_s).collect();
-        slips::even(&at, &times, form.rate_hz)?;
+        unit_checks::check_even_sampling(&at, &times, form.rate_hz)?;
         for sample in &episode.poses {
             if sample.entity != episode.poses[0].entity {
                 return Err(CalibrationError::field(
@@ -214,7 +214,12 @@ impl Mismatch {
 }
 
 /// Velocities against differences of the poses: body against world, units, sign, and the clock's scale.
-fn velocities(name: &str, frame: AngularFrame, step_s: f64, episodes: &[Episode]) -> Checked {
+fn velocities(
+    name: &str,
+    frame: AngularFrame,
+    step_s: f64,
+    episodes: &[MeasuredEpisode],
+) -> PoseCheck {
     let (mut linear, mut angular) = (Mismatch::default(), Mismatch::default());
     for episode in episodes {
         for pair in episode.poses.windows(3) {
@@ -245,7 +250,7 @@ fn velocities(name: &str, frame: AngularFrame, step_s: f64, episodes: &[Episode]
     if let Some(share) = angular.share().filter(|share| *share > WRONG_SHARE) {
         let hint = if angular.other_left < 0.25 * angular.left {
             "; they agree in the other frame: angular_velocity is wrong".to_owned()
-        } else if let Some(hint) = slips::degrees("angular velocities", angular.factor()) {
+        } else if let Some(hint) = unit_checks::degrees("angular velocities", angular.factor()) {
             format!("; {hint}")
         } else {
             "; check units, the quaternion's order (x, y, z, w) and rate_hz".to_owned()
@@ -277,14 +282,14 @@ pub(crate) fn turn(a: DQuat, b: DQuat) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bundle::file::{Kind, PoseForm, Scene, VERSION};
+    use crate::bundle::file::{BundleKind, PoseForm, SceneManifest, VERSION};
 
     const RATE_HZ: f64 = 100.0;
 
     /// Two episodes of a body that flies and tumbles about a tilted axis, with velocities along the world's axes.
-    fn episodes() -> Vec<Episode> {
+    fn episodes() -> Vec<MeasuredEpisode> {
         let spin = DVec3::new(2.0, 5.0, -1.0);
-        let episode = |k: usize| Episode {
+        let episode = |k: usize| MeasuredEpisode {
             name: format!("e{k}"),
             poses: (0..60)
                 .map(|k| {
@@ -297,14 +302,14 @@ mod tests {
                         entity: 0,
                         position: DVec3::new(1.0, 2.0, 0.5) * t_s + fall,
                         rotation: turned * DQuat::from_rotation_x(1.2),
-                        rates: Some(Rates {
+                        rates: Some(PoseRates {
                             linear,
                             angular: spin,
                         }),
                     }
                 })
                 .collect(),
-            ..Episode::default()
+            ..MeasuredEpisode::default()
         };
         vec![episode(0), episode(1)]
     }
@@ -318,8 +323,8 @@ mod tests {
             version: VERSION,
             title: String::new(),
             licence: String::new(),
-            kind: Kind::PoseTrajectory,
-            scene: Scene::default(),
+            kind: BundleKind::PoseTrajectory,
+            scene: SceneManifest::default(),
             channels: Vec::new(),
             poses: Some(PoseForm {
                 rate_hz: RATE_HZ,
@@ -331,7 +336,7 @@ mod tests {
         complete("b", &manifest, &episodes).map_err(|error| error.to_string())
     }
 
-    fn rates(sample: &mut PoseSample) -> &mut Rates {
+    fn rates(sample: &mut PoseSample) -> &mut PoseRates {
         sample.rates.as_mut().unwrap()
     }
 

@@ -1,9 +1,9 @@
 //! From files to a checked [`Bundle`].
 
-use super::check::{self, Names};
-use super::file::{CommandRow, EpisodeRow, Kind, Manifest, ResponseRow, TrajectoryRow};
+use super::check::{self, NameIndex};
+use super::file::{BundleKind, CommandRow, EpisodeRow, Manifest, ResponseRow, TrajectoryRow};
 use super::limits;
-use super::{Bundle, Episode, Response, Sample, drive, poses, row, wav};
+use super::{Bundle, MeasuredEpisode, MeasuredResponse, MeasuredSample, odometry, poses, row, wav};
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
 use serde::de::DeserializeOwned;
@@ -37,17 +37,17 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
         .enumerate()
         .map(|(k, episode)| (episode.name.clone(), k))
         .collect();
-    let names = Names::new(&bundle.manifest);
+    let names = NameIndex::new(&bundle.manifest);
     match bundle.kind() {
-        Kind::Trajectory => trajectory(folder, &names, &by_name, &mut bundle.episodes)?,
-        Kind::Servo => {
+        BundleKind::Trajectory => trajectory(folder, &names, &by_name, &mut bundle.episodes)?,
+        BundleKind::Servo => {
             trajectory(folder, &names, &by_name, &mut bundle.episodes)?;
             commands(folder, &names, &by_name, &mut bundle.episodes)?;
         }
-        Kind::ImpulseResponse => {
+        BundleKind::ImpulseResponse => {
             responses(folder, &bundle.manifest, &by_name, &mut bundle.episodes)?;
         }
-        Kind::PoseTrajectory => {
+        BundleKind::PoseTrajectory => {
             poses::read(
                 folder,
                 &names,
@@ -56,7 +56,7 @@ pub(crate) fn read(folder: &Path) -> Result<Bundle, CalibrationError> {
                 &mut bundle.episodes,
             )?;
         }
-        Kind::Drive => drive::read(folder, &by_name, &mut bundle.episodes)?,
+        BundleKind::Drive => odometry::read(folder, &by_name, &mut bundle.episodes)?,
     }
     check::complete(&bundle)?;
     Ok(bundle)
@@ -164,8 +164,8 @@ pub(super) fn table<T: DeserializeOwned>(
     Ok(())
 }
 
-fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
-    let mut found: Vec<Episode> = Vec::new();
+fn episodes(folder: &Path) -> Result<Vec<MeasuredEpisode>, CalibrationError> {
+    let mut found: Vec<MeasuredEpisode> = Vec::new();
     let mut names = BTreeSet::new();
     table(folder, "episodes.csv", |row: EpisodeRow, at| {
         check::name(at, "episode", &row.episode)?;
@@ -187,11 +187,11 @@ fn episodes(folder: &Path) -> Result<Vec<Episode>, CalibrationError> {
                 limit,
             });
         }
-        found.push(Episode {
+        found.push(MeasuredEpisode {
             name: row.episode,
             group: row.split_group,
             conditions: row.conditions,
-            ..Episode::default()
+            ..MeasuredEpisode::default()
         });
         Ok(())
     })?;
@@ -216,14 +216,14 @@ pub(super) fn episode(
 
 fn trajectory(
     folder: &Path,
-    names: &Names,
+    names: &NameIndex,
     by_name: &BTreeMap<String, usize>,
-    episodes: &mut [Episode],
+    episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     table(folder, "trajectory.csv", |row: TrajectoryRow, at| {
         check::time(at, row.t_s)?;
         check::finite(at, "value", row.value, 1e6)?;
-        let sample = Sample {
+        let sample = MeasuredSample {
             entity: names.entity(at, "entity", &row.entity)?,
             channel: names.channel(at, &row.channel)?,
             t_s: row.t_s,
@@ -235,7 +235,7 @@ fn trajectory(
         Ok(())
     })?;
     for episode in episodes {
-        let order = |s: &Sample| (s.entity, s.channel);
+        let order = |s: &MeasuredSample| (s.entity, s.channel);
         episode
             .samples
             .sort_by(|a, b| order(a).cmp(&order(b)).then(a.t_s.total_cmp(&b.t_s)));
@@ -245,9 +245,9 @@ fn trajectory(
 
 fn commands(
     folder: &Path,
-    names: &Names,
+    names: &NameIndex,
     by_name: &BTreeMap<String, usize>,
-    episodes: &mut [Episode],
+    episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     table(folder, "command.csv", |row: CommandRow, at| {
         check::time(at, row.t_s)?;
@@ -276,7 +276,7 @@ fn responses(
     folder: &Path,
     manifest: &Manifest,
     by_name: &BTreeMap<String, usize>,
-    episodes: &mut [Episode],
+    episodes: &mut [MeasuredEpisode],
 ) -> Result<(), CalibrationError> {
     let mut count = 0;
     table(folder, "ir.csv", |row: ResponseRow, at| {
@@ -298,7 +298,7 @@ fn responses(
         let samples = wav::samples(file, &wav_at, row.rate_hz)?;
         episodes[episode(at, by_name, &row.episode)?]
             .responses
-            .push(Response {
+            .push(MeasuredResponse {
                 source_m,
                 receiver_m,
                 rate_hz: row.rate_hz,

@@ -1,10 +1,10 @@
 //! The damped Gauss-Newton iteration.
 
-use super::normal::{self, Block};
-use super::robust::Loss;
+use super::normal::{self, NormalBlock};
+use super::robust::HuberLoss;
 use crate::error::CalibrationError;
-use crate::progress::Tell;
-use crate::twin::{Point, Slot, Twin, range_of};
+use crate::progress::ProgressReporter;
+use crate::twin::{ParameterIndex, ParameterVector, Twin, range_of};
 use dwell_scene::parallel::Threads;
 use nalgebra::{DMatrix, DVector};
 
@@ -17,24 +17,24 @@ const TOLERANCE: f64 = 0.02;
 
 /// Which causes are fitted, by position; nuisances always are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Model {
+pub(crate) struct CauseSet {
     pub(crate) causes: Vec<usize>,
 }
 
 /// What a fit works on.
-pub(crate) struct Task<'a> {
+pub(crate) struct FitTask<'a> {
     pub(crate) twin: &'a dyn Twin,
     /// The episodes, by position.
     pub(crate) set: &'a [usize],
     pub(crate) threads: Threads,
     pub(crate) robust: bool,
-    pub(crate) progress: &'a dyn Tell,
+    pub(crate) progress: &'a dyn ProgressReporter,
 }
 
 /// Where a fit ended.
 #[derive(Clone, Debug)]
-pub(crate) struct Fit {
-    pub(crate) point: Point,
+pub(crate) struct FitResult {
+    pub(crate) point: ParameterVector,
     /// Weighted sum of squares (or of the robust loss).
     pub(crate) loss: f64,
     /// Data, and parameters that all episodes share.
@@ -45,7 +45,7 @@ pub(crate) struct Fit {
     /// Inverse of the reduced normal matrix of the shared parameters: nuisances, then causes.
     pub(crate) inverse: DMatrix<f64>,
     /// The slots that `inverse` belongs to.
-    pub(crate) slots: Vec<Slot>,
+    pub(crate) slots: Vec<ParameterIndex>,
 }
 
 struct Evaluation {
@@ -53,38 +53,52 @@ struct Evaluation {
     predictions: Vec<Vec<f64>>,
 }
 
-impl Task<'_> {
+impl FitTask<'_> {
     /// Fits the model's causes and all nuisances from `start` on.
-    pub(crate) fn fit(&self, model: &Model, start: &Point) -> Result<Fit, CalibrationError> {
+    pub(crate) fn fit(
+        &self,
+        model: &CauseSet,
+        start: &ParameterVector,
+    ) -> Result<FitResult, CalibrationError> {
         let causes = model
             .causes
             .iter()
             .flat_map(|cause| range_of(self.twin, *cause))
-            .map(Slot::Cause);
-        let shared = (0..self.twin.shared().len()).map(Slot::Shared);
+            .map(ParameterIndex::Cause);
+        let shared = (0..self.twin.shared().len()).map(ParameterIndex::Shared);
         self.run(shared.chain(causes).collect(), start)
     }
 
     /// Fits the episodes' own nuisances alone.
-    pub(crate) fn fit_own(&self, start: &Point) -> Result<Fit, CalibrationError> {
+    pub(crate) fn fit_own(&self, start: &ParameterVector) -> Result<FitResult, CalibrationError> {
         self.run(Vec::new(), start)
     }
 
     /// The sum of squares at a point, nothing fitted.
-    pub(crate) fn loss_at(&self, point: &Point) -> Result<f64, CalibrationError> {
-        Ok(total(&self.evaluate(point)?.residuals, Loss::SQUARE))
+    pub(crate) fn loss_at(&self, point: &ParameterVector) -> Result<f64, CalibrationError> {
+        Ok(total(&self.evaluate(point)?.residuals, HuberLoss::SQUARE))
     }
 
-    fn run(&self, global: Vec<Slot>, start: &Point) -> Result<Fit, CalibrationError> {
+    fn run(
+        &self,
+        global: Vec<ParameterIndex>,
+        start: &ParameterVector,
+    ) -> Result<FitResult, CalibrationError> {
         let mut point = start.clone();
         let mut now = self.evaluate(&point)?;
-        let blocks = self.iterate(&global, &mut point, &mut now, Loss::SQUARE, MOST_ITERATIONS)?;
-        let (mut blocks, mut loss) = (blocks, Loss::SQUARE);
+        let blocks = self.iterate(
+            &global,
+            &mut point,
+            &mut now,
+            HuberLoss::SQUARE,
+            MOST_ITERATIONS,
+        )?;
+        let (mut blocks, mut loss) = (blocks, HuberLoss::SQUARE);
         if self.robust {
-            loss = Loss::huber(now.residuals.iter().flatten());
+            loss = HuberLoss::huber(now.residuals.iter().flatten());
             blocks = self.iterate(&global, &mut point, &mut now, loss, MOST_ROBUST_ITERATIONS)?;
         }
-        Ok(Fit {
+        Ok(FitResult {
             loss: total(&now.residuals, loss),
             data: now.residuals.iter().map(Vec::len).sum(),
             parameters: global.len(),
@@ -97,12 +111,12 @@ impl Task<'_> {
 
     fn iterate(
         &self,
-        global: &[Slot],
-        point: &mut Point,
+        global: &[ParameterIndex],
+        point: &mut ParameterVector,
         now: &mut Evaluation,
-        loss: Loss,
+        loss: HuberLoss,
         most: usize,
-    ) -> Result<Vec<Block>, CalibrationError> {
+    ) -> Result<Vec<NormalBlock>, CalibrationError> {
         let mut damping = 1e-6;
         let mut value = total(&now.residuals, loss);
         let mut blocks = self.blocks(global, point, now, loss)?;
@@ -138,29 +152,38 @@ impl Task<'_> {
     }
 
     /// The point one step on, inside the bounds.
-    fn moved(&self, global: &[Slot], point: &Point, step: &normal::Step) -> Point {
+    fn moved(
+        &self,
+        global: &[ParameterIndex],
+        point: &ParameterVector,
+        step: &normal::ParameterStep,
+    ) -> ParameterVector {
         let mut moved = point.clone();
-        let bounded = |slot: Slot, value: f64| {
+        let bounded = |slot: ParameterIndex, value: f64| {
             let parameter = self.twin.parameter(slot);
             value.clamp(parameter.low, parameter.high)
         };
         for (slot, change) in global.iter().zip(step.global.iter()) {
             match *slot {
-                Slot::Shared(k) => moved.shared[k] = bounded(*slot, moved.shared[k] + change),
-                Slot::Cause(k) => moved.causes[k] = bounded(*slot, moved.causes[k] + change),
-                Slot::Own(_) => {}
+                ParameterIndex::Shared(k) => {
+                    moved.shared[k] = bounded(*slot, moved.shared[k] + change)
+                }
+                ParameterIndex::Cause(k) => {
+                    moved.causes[k] = bounded(*slot, moved.causes[k] + change)
+                }
+                ParameterIndex::Own(_) => {}
             }
         }
         for (episode, change) in self.set.iter().zip(&step.own) {
             for (k, change) in change.iter().enumerate() {
                 let value = &mut moved.own[*episode][k];
-                *value = bounded(Slot::Own(k), *value + change);
+                *value = bounded(ParameterIndex::Own(k), *value + change);
             }
         }
         moved
     }
 
-    fn evaluate(&self, point: &Point) -> Result<Evaluation, CalibrationError> {
+    fn evaluate(&self, point: &ParameterVector) -> Result<Evaluation, CalibrationError> {
         let (twin, set) = (self.twin, self.set);
         let done = self.threads.map(set.len(), |k| {
             let episode = set[k];
@@ -196,14 +219,14 @@ impl Task<'_> {
 
     fn blocks(
         &self,
-        global: &[Slot],
-        point: &Point,
+        global: &[ParameterIndex],
+        point: &ParameterVector,
         now: &Evaluation,
-        loss: Loss,
-    ) -> Result<Vec<Block>, CalibrationError> {
+        loss: HuberLoss,
+    ) -> Result<Vec<NormalBlock>, CalibrationError> {
         let own = self.twin.own().len();
-        let slots: Vec<Slot> = (0..own)
-            .map(Slot::Own)
+        let slots: Vec<ParameterIndex> = (0..own)
+            .map(ParameterIndex::Own)
             .chain(global.iter().copied())
             .collect();
         let (twin, set) = (self.twin, self.set);
@@ -218,23 +241,23 @@ impl Task<'_> {
                 residual[row] *= weight;
                 jacobian.row_mut(row).scale_mut(weight / sd);
             }
-            Ok(Block::new(&jacobian, &residual, own))
+            Ok(NormalBlock::new(&jacobian, &residual, own))
         });
         done.into_iter().collect()
     }
 }
 
-fn total(residuals: &[Vec<f64>], loss: Loss) -> f64 {
+fn total(residuals: &[Vec<f64>], loss: HuberLoss) -> f64 {
     residuals.iter().flatten().map(|r| loss.of(*r)).sum()
 }
 
-impl Fit {
+impl FitResult {
     /// The loss of each episode of the set.
     pub(crate) fn loss_by_episode(&self, robust: Option<&Self>) -> Vec<f64> {
         let loss = match robust {
             // Both models that are compared are judged by one loss.
-            Some(other) => Loss::huber(other.residuals.iter().flatten()),
-            None => Loss::SQUARE,
+            Some(other) => HuberLoss::huber(other.residuals.iter().flatten()),
+            None => HuberLoss::SQUARE,
         };
         let sums = self
             .residuals

@@ -1,6 +1,6 @@
 //! Least squares over a few parameters, for any function that tells its residuals.
 
-use super::robust::Loss;
+use super::robust::HuberLoss;
 use crate::error::CalibrationError;
 use nalgebra::{DMatrix, DVector};
 
@@ -29,7 +29,7 @@ pub(crate) fn least_squares(
     let mut now = residuals(&values)?;
     let mut damping = 1e-6;
     for _ in 0..most {
-        let loss = Loss::huber(now.iter());
+        let loss = HuberLoss::huber(now.iter());
         let total = |all: &[f64]| all.iter().map(|r| loss.of(*r)).sum::<f64>();
         let before = total(&now);
         let mut jacobian = DMatrix::zeros(now.len(), values.len());

@@ -8,6 +8,6 @@ mod normal;
 mod robust;
 
 pub(crate) use cma_es::CmaEs;
-pub(crate) use gauss_newton::{Fit, Model, Task};
+pub(crate) use gauss_newton::{CauseSet, FitResult, FitTask};
 pub(crate) use least_squares::{Variable, least_squares};
 pub(crate) use robust::median;

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// What one episode brings to the normal equations: blocks of `JᵀWJ` and `JᵀWr`, own nuisances first.
 #[derive(Clone, Debug)]
-pub(super) struct Block {
+pub(super) struct NormalBlock {
     own: DMatrix<f64>,
     mixed: DMatrix<f64>,
     global: DMatrix<f64>,
@@ -13,7 +13,7 @@ pub(super) struct Block {
 }
 
 /// A step of all parameters.
-pub(super) struct Step {
+pub(super) struct ParameterStep {
     pub(super) global: DVector<f64>,
     /// Shape (episode, nuisance).
     pub(super) own: Vec<DVector<f64>>,
@@ -21,7 +21,7 @@ pub(super) struct Step {
     pub(super) predicted: f64,
 }
 
-impl Block {
+impl NormalBlock {
     /// From a weighted Jacobian (own columns first) and weighted residuals.
     pub(super) fn new(jacobian: &DMatrix<f64>, residual: &DVector<f64>, own: usize) -> Self {
         let (a, g) = (
@@ -66,7 +66,7 @@ fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The matrix of the shared parameters with the own nuisances eliminated (Schur's complement).
-pub(super) fn reduced(blocks: &[Block]) -> DMatrix<f64> {
+pub(super) fn reduced(blocks: &[NormalBlock]) -> DMatrix<f64> {
     let size = blocks.first().map_or(0, |block| block.global.nrows());
     let mut sum = DMatrix::zeros(size, size);
     for block in blocks {
@@ -87,7 +87,7 @@ pub(super) fn inverse(matrix: &DMatrix<f64>) -> DMatrix<f64> {
 ///
 /// # Source
 /// D. W. Marquardt, J. SIAM 11, 431 (1963): the diagonal is multiplied by 1 + `damping`.
-pub(super) fn step(blocks: &[Block], damping: f64) -> Step {
+pub(super) fn step(blocks: &[NormalBlock], damping: f64) -> ParameterStep {
     let damp = |matrix: &DMatrix<f64>| {
         let mut matrix = matrix.clone();
         for k in 0..matrix.nrows() {
@@ -135,7 +135,7 @@ pub(super) fn step(blocks: &[Block], damping: f64) -> Step {
         .iter()
         .zip(&own)
         .map(|(block, own)| block.global_slope.dot(&global) + block.own_slope.dot(own));
-    Step {
+    ParameterStep {
         predicted: falls.sum(),
         global,
         own,
@@ -168,7 +168,7 @@ mod tests {
                     whole[(e * data + r, episodes * own + c)] = jacobian[(r, own + c)];
                 }
             }
-            blocks.push(Block::new(&jacobian, &residual, own));
+            blocks.push(NormalBlock::new(&jacobian, &residual, own));
         }
         let exact =
             (whole.transpose() * &whole).try_inverse().unwrap() * (whole.transpose() * right);

@@ -8,12 +8,12 @@ const TURN: f64 = 3.0;
 /// # Source
 /// P. J. Huber, Ann. Math. Stat. 35, 73 (1964).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Loss {
+pub(crate) struct HuberLoss {
     /// Where the square turns into a line; infinite: never.
     turn: f64,
 }
 
-impl Loss {
+impl HuberLoss {
     /// Plain least squares.
     pub(crate) const SQUARE: Self = Self {
         turn: f64::INFINITY,
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn the_loss_is_the_square_inside_and_a_line_outside() {
-        let loss = Loss { turn: 2.0 };
+        let loss = HuberLoss { turn: 2.0 };
         assert!((loss.of(-1.5) - 2.25).abs() < 1e-12);
         assert!((loss.of(5.0) - loss.of(4.0) - 4.0).abs() < 1e-12);
         // The weight is half the loss's slope over the residual.
@@ -78,7 +78,7 @@ mod tests {
     fn the_scale_does_not_see_outliers() {
         let mut residuals: Vec<f64> = (0..100).map(|k| f64::from(k) / 50.0 - 1.0).collect();
         residuals[3] = 1e9;
-        let loss = Loss::huber(residuals.iter());
+        let loss = HuberLoss::huber(residuals.iter());
         assert!(loss.turn < 3.0, "{loss:?}");
     }
 }

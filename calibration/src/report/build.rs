@@ -1,21 +1,26 @@
 //! From findings to the report.
 
-use super::data::{Candidate, Effect, Fitted, Found, Nuisance, Report, Verdict};
+use super::data::{
+    CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
+    NamedEffect, NuisanceParameter,
+};
 use super::plot::plots;
 use crate::bundle::Bundle;
-use crate::bundle::file::Kind;
-use crate::select::{Decision, Estimate, Findings, Judged, Single, by_channel, estimates, sd_of};
-use crate::twin::{Cause, Experiment, Parameter, Slot, Twin};
-use crate::words::{list, number, percent};
+use crate::bundle::file::BundleKind;
+use crate::format_number::{list, number, percent};
+use crate::select::{
+    Decision, Estimate, Findings, ScoredModel, SingleCause, by_channel, estimates, sd_of,
+};
+use crate::twin::{Cause, FitParameter, Installation, ParameterIndex, Twin};
 use dwell_scene::LawSpec;
 
 /// The version of the report's form.
 const VERSION: u32 = 1;
 
 /// Puts findings into a report.
-pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Report {
+pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> CalibrationReport {
     let verdict = verdict(twin, findings);
-    let named = matches!(verdict, Verdict::Named { .. });
+    let named = matches!(verdict, CalibrationVerdict::Named { .. });
     let chosen = if named {
         &findings.chosen
     } else {
@@ -28,12 +33,12 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Re
             .map(|k| twin.episodes()[*k].name.clone())
             .collect()
     };
-    let candidates: Vec<Candidate> = findings
+    let candidates: Vec<CandidateCause> = findings
         .singles
         .iter()
         .map(|single| candidate(twin, single))
         .collect();
-    Report {
+    CalibrationReport {
         version: VERSION,
         title: bundle.manifest.title.clone(),
         licence: bundle.manifest.licence.clone(),
@@ -54,7 +59,7 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Re
         found: if named {
             found(twin, findings)
         } else {
-            Found::default()
+            FoundEffects::default()
         },
         plots: plots(
             twin,
@@ -68,7 +73,7 @@ pub(crate) fn build(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Re
 }
 
 /// Residuals of all episodes, fitted ones first.
-fn together(findings: &Findings, judged: &Judged) -> (Vec<usize>, Vec<Vec<f64>>) {
+fn together(findings: &Findings, judged: &ScoredModel) -> (Vec<usize>, Vec<Vec<f64>>) {
     let set = findings
         .split
         .train
@@ -86,9 +91,9 @@ fn together(findings: &Findings, judged: &Judged) -> (Vec<usize>, Vec<Vec<f64>>)
     (set, residuals)
 }
 
-fn fitted(parameter: &Parameter, estimate: &Estimate) -> Fitted {
+fn fitted(parameter: &FitParameter, estimate: &Estimate) -> FittedParameter {
     let [low, high] = estimate.interval();
-    Fitted {
+    FittedParameter {
         name: parameter.name.clone(),
         unit: parameter.unit.clone(),
         value: estimate.value,
@@ -98,7 +103,7 @@ fn fitted(parameter: &Parameter, estimate: &Estimate) -> Fitted {
     }
 }
 
-fn parameters(twin: &dyn Twin, judged: &Judged, cause: usize) -> Vec<Fitted> {
+fn parameters(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Vec<FittedParameter> {
     let found = estimates(twin, &judged.fit, judged.effective_count, cause);
     let parameters = twin.causes()[cause].parameters.iter();
     parameters
@@ -107,9 +112,9 @@ fn parameters(twin: &dyn Twin, judged: &Judged, cause: usize) -> Vec<Fitted> {
         .collect()
 }
 
-fn candidate(twin: &dyn Twin, single: &Single) -> Candidate {
+fn candidate(twin: &dyn Twin, single: &SingleCause) -> CandidateCause {
     let cause = &twin.causes()[single.cause];
-    Candidate {
+    CandidateCause {
         id: cause.id.clone(),
         name: cause.name.clone(),
         equation: cause.equation.clone(),
@@ -122,33 +127,35 @@ fn candidate(twin: &dyn Twin, single: &Single) -> Candidate {
     }
 }
 
-fn verdict(twin: &dyn Twin, findings: &Findings) -> Verdict {
+fn verdict(twin: &dyn Twin, findings: &Findings) -> CalibrationVerdict {
     let cause = |index: &usize| &twin.causes()[*index];
-    match (&findings.decision, findings.against_base) {
-        (Decision::Named(causes), Some(against)) if !causes.is_empty() => Verdict::Named {
-            law: cause(&causes[0]).id.clone(),
-            effects: causes
-                .iter()
-                .map(|index| Effect {
-                    law: cause(index).id.clone(),
-                    name: cause(index).name.clone(),
-                    equation: cause(index).equation.clone(),
-                    parameters: parameters(twin, &findings.chosen, *index),
-                })
-                .collect(),
-            gain: against.gain,
-        },
-        (Decision::OneOf(causes), _) => Verdict::OneOf {
+    match (&findings.decision, findings.advantage_over_base) {
+        (Decision::Named(causes), Some(against)) if !causes.is_empty() => {
+            CalibrationVerdict::Named {
+                law: cause(&causes[0]).id.clone(),
+                effects: causes
+                    .iter()
+                    .map(|index| NamedEffect {
+                        law: cause(index).id.clone(),
+                        name: cause(index).name.clone(),
+                        equation: cause(index).equation.clone(),
+                        parameters: parameters(twin, &findings.chosen, *index),
+                    })
+                    .collect(),
+                gain: against.gain,
+            }
+        }
+        (Decision::OneOf(causes), _) => CalibrationVerdict::OneOf {
             laws: causes.iter().map(|index| cause(index).id.clone()).collect(),
             separating_experiments: causes
                 .iter()
                 .map(|index| cause(index).separating_experiment.clone())
                 .collect(),
         },
-        (Decision::Unexplained(reason), _) => Verdict::Unexplained {
+        (Decision::Unexplained(reason), _) => CalibrationVerdict::Unexplained {
             reason: reason.clone(),
         },
-        _ => Verdict::Nothing,
+        _ => CalibrationVerdict::Nothing,
     }
 }
 
@@ -161,8 +168,8 @@ fn with_unit(unit: &str) -> String {
 }
 
 /// The parameters of an effect in words: those that the data move, the rest counted.
-fn in_words(parameters: &[Fitted]) -> String {
-    let moved = |p: &&Fitted| !(p.interval[0] <= p.default && p.default <= p.interval[1]);
+fn in_words(parameters: &[FittedParameter]) -> String {
+    let moved = |p: &&FittedParameter| !(p.interval[0] <= p.default && p.default <= p.interval[1]);
     let told: Vec<String> = parameters
         .iter()
         .filter(moved)
@@ -184,8 +191,8 @@ fn in_words(parameters: &[Fitted]) -> String {
 }
 
 fn sentence(
-    verdict: &Verdict,
-    candidates: &[Candidate],
+    verdict: &CalibrationVerdict,
+    candidates: &[CandidateCause],
     twin: &dyn Twin,
     findings: &Findings,
 ) -> String {
@@ -196,7 +203,7 @@ fn sentence(
             .map_or(id.clone(), |c| c.name.clone())
     };
     match verdict {
-        Verdict::Nothing => {
+        CalibrationVerdict::Nothing => {
             let limits: Vec<String> = candidates
                 .iter()
                 .filter(|c| c.parameters.len() == 1)
@@ -213,7 +220,7 @@ fn sentence(
             };
             format!("Nothing is missing that this data could show.{limits}")
         }
-        Verdict::Named { effects, gain, .. } => {
+        CalibrationVerdict::Named { effects, gain, .. } => {
             let told: Vec<String> = effects
                 .iter()
                 .map(|e| format!("{}, {}", e.name, in_words(&e.parameters)))
@@ -231,7 +238,7 @@ fn sentence(
                 percent(gain.share)
             )
         }
-        Verdict::OneOf {
+        CalibrationVerdict::OneOf {
             laws,
             separating_experiments,
         } => {
@@ -242,7 +249,7 @@ fn sentence(
                 separating_experiments.join("; ")
             )
         }
-        Verdict::Unexplained { reason } => {
+        CalibrationVerdict::Unexplained { reason } => {
             let worst = by_channel(twin, &findings.split.train, &findings.base.fit.residuals)
                 .into_iter()
                 .max_by(|a, b| a.chi2_per_count.total_cmp(&b.chi2_per_count));
@@ -261,25 +268,29 @@ fn sentence(
     }
 }
 
-fn nuisances(twin: &dyn Twin, judged: &Judged) -> Vec<Nuisance> {
+fn nuisances(twin: &dyn Twin, judged: &ScoredModel) -> Vec<NuisanceParameter> {
     let shared = twin.shared().iter().enumerate();
     shared
-        .map(|(k, parameter)| Nuisance {
+        .map(|(k, parameter)| NuisanceParameter {
             name: parameter.name.clone(),
             unit: parameter.unit.clone(),
             value: judged.fit.point.shared[k],
-            sd: sd_of(&judged.fit, judged.effective_count, Slot::Shared(k)),
+            sd: sd_of(
+                &judged.fit,
+                judged.effective_count,
+                ParameterIndex::Shared(k),
+            ),
         })
         .collect()
 }
 
-fn found(twin: &dyn Twin, findings: &Findings) -> Found {
-    let mut found = Found::default();
+fn found(twin: &dyn Twin, findings: &Findings) -> FoundEffects {
+    let mut found = FoundEffects::default();
     for index in &findings.chosen.model.causes {
         let cause: &Cause = &twin.causes()[*index];
         let values = parameters(twin, &findings.chosen, *index);
         match &cause.installs_as {
-            Experiment::Law { version, target } => found.laws.push(LawSpec {
+            Installation::Law { version, target } => found.laws.push(LawSpec {
                 id: cause.id.clone(),
                 version: *version,
                 target: target.clone(),
@@ -289,13 +300,13 @@ fn found(twin: &dyn Twin, findings: &Findings) -> Found {
                     .chain(cause.fixed.clone())
                     .collect(),
             }),
-            Experiment::Addresses(addresses) => {
+            Installation::Addresses(addresses) => {
                 let pairs = addresses.iter().zip(&values);
                 found
                     .parameters
                     .extend(pairs.map(|(address, p)| (address.clone(), p.value)));
             }
-            Experiment::Elsewhere => {}
+            Installation::Unsupported => {}
         }
     }
     found
@@ -318,16 +329,16 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
         ),
         (
             "humidity (50 % taken)",
-            air.humidity_pct.is_none() && bundle.kind() == Kind::ImpulseResponse,
+            air.humidity_pct.is_none() && bundle.kind() == BundleKind::ImpulseResponse,
         ),
         ("pressure (101325 Pa taken)", air.pressure_pa.is_none()),
         (
             "local gravity (standard gravity taken)",
-            air.g_m_s2.is_none() && bundle.kind() == Kind::Trajectory,
+            air.g_m_s2.is_none() && bundle.kind() == BundleKind::Trajectory,
         ),
     ]
     .into_iter()
-    .filter(|(_, missing)| *missing && bundle.kind() != Kind::Servo)
+    .filter(|(_, missing)| *missing && bundle.kind() != BundleKind::Servo)
     .map(|(what, _)| what.to_owned())
     .collect();
     if !missing.is_empty() {
@@ -345,13 +356,13 @@ fn notes(bundle: &Bundle, twin: &dyn Twin, findings: &Findings) -> Vec<String> {
         ));
     }
     match bundle.kind() {
-        Kind::Trajectory => notes.push(
+        BundleKind::Trajectory => notes.push(
             "A time offset is no effect in free flight: a flight that starts earlier starts elsewhere.".to_owned(),
         ),
-        Kind::ImpulseResponse => notes.push(
+        BundleKind::ImpulseResponse => notes.push(
             "Time offsets are taken out by aligning the onsets, gains by a fitted level in every band.".to_owned(),
         ),
-        Kind::Servo | Kind::PoseTrajectory | Kind::Drive => {}
+        BundleKind::Servo | BundleKind::PoseTrajectory | BundleKind::Drive => {}
     }
     notes
 }

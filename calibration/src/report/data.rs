@@ -1,6 +1,6 @@
 //! The report as data.
 
-use crate::select::{Agreement, ChannelResidual, Gain, Remainder};
+use crate::select::{Agreement, ChannelResidual, HeldOutGain, UnexplainedResidual};
 use dwell_scene::LawSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// The answer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Verdict {
+pub enum CalibrationVerdict {
     /// Nothing is missing above the limits of the data.
     Nothing,
     /// A cause, or two, is named.
@@ -16,9 +16,9 @@ pub enum Verdict {
         /// The id of the first, such as `"drag"`.
         law: String,
         /// All of them, the strongest first.
-        effects: Vec<Effect>,
+        effects: Vec<NamedEffect>,
         /// What they gain together on held-out episodes.
-        gain: Gain,
+        gain: HeldOutGain,
     },
     /// Some cause acts, but these cannot be told apart with this data.
     OneOf {
@@ -36,7 +36,7 @@ pub enum Verdict {
 
 /// A cause that was named.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Effect {
+pub struct NamedEffect {
     /// Its id.
     pub law: String,
     /// Its name in words.
@@ -44,12 +44,12 @@ pub struct Effect {
     /// Its equation.
     pub equation: String,
     /// Its parameters.
-    pub parameters: Vec<Fitted>,
+    pub parameters: Vec<FittedParameter>,
 }
 
 /// A parameter with its fitted value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Fitted {
+pub struct FittedParameter {
     /// Its name.
     pub name: String,
     /// Its unit.
@@ -66,7 +66,7 @@ pub struct Fitted {
 
 /// A cause that was tried alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Candidate {
+pub struct CandidateCause {
     /// Its id.
     pub id: String,
     /// Its name in words.
@@ -74,11 +74,11 @@ pub struct Candidate {
     /// Its equation.
     pub equation: String,
     /// Its parameters, fitted.
-    pub parameters: Vec<Fitted>,
+    pub parameters: Vec<FittedParameter>,
     /// Fall of the Bayesian information criterion against nuisances alone.
     pub delta_bic: f64,
     /// Gain on held-out episodes against nuisances alone.
-    pub gain: Gain,
+    pub gain: HeldOutGain,
     /// Whether both speak for it.
     pub passes: bool,
     /// Why it is not plausible; `null` where it is.
@@ -89,7 +89,7 @@ pub struct Candidate {
 
 /// A nuisance that all episodes share: fitted always, never reported as an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Nuisance {
+pub struct NuisanceParameter {
     /// What it is.
     pub name: String,
     /// Its unit.
@@ -102,7 +102,7 @@ pub struct Nuisance {
 
 /// What goes into the simulator: the content of `found.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Found {
+pub struct FoundEffects {
     /// Laws to install.
     pub laws: Vec<LawSpec>,
     /// Parameters to override, by address.
@@ -111,7 +111,7 @@ pub struct Found {
 
 /// What is left over time, before and after, thinned out for a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Plot {
+pub struct ResidualPlot {
     /// The channel.
     pub title: String,
     /// The unit of what is left.
@@ -126,7 +126,7 @@ pub struct Plot {
 
 /// The report of a calibration.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct CalibrationReport {
     /// The version of this form.
     pub version: u32,
     /// The bundle's title.
@@ -134,9 +134,9 @@ pub struct Report {
     /// The bundle's licence.
     pub licence: String,
     /// The bundle's kind.
-    pub kind: crate::bundle::file::Kind,
+    pub kind: crate::bundle::file::BundleKind,
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: CalibrationVerdict,
     /// The verdict as a sentence.
     pub sentence: String,
     /// Episodes that were fitted, and episodes that were held out from all fitting.
@@ -148,24 +148,24 @@ pub struct Report {
     /// What is left with what was found.
     pub residuals_after: Vec<ChannelResidual>,
     /// Whether that is more than noise, before.
-    pub remainder_before: Remainder,
+    pub remainder_before: UnexplainedResidual,
     /// And after.
-    pub remainder_after: Remainder,
+    pub remainder_after: UnexplainedResidual,
     /// Whether the cause has one size where it is weak and where it is strong; `null` where that was not asked.
     pub agreement: Option<Agreement>,
     /// All causes that were tried.
-    pub candidates: Vec<Candidate>,
+    pub candidates: Vec<CandidateCause>,
     /// Nuisances that all episodes share.
-    pub nuisances: Vec<Nuisance>,
+    pub nuisances: Vec<NuisanceParameter>,
     /// What goes into the simulator.
-    pub found: Found,
+    pub found: FoundEffects,
     /// What is left over time.
-    pub plots: Vec<Plot>,
+    pub plots: Vec<ResidualPlot>,
     /// What a reader must know.
     pub notes: Vec<String>,
 }
 
-impl Report {
+impl CalibrationReport {
     /// The laws to install in a world: nothing unless the verdict names an engine's law.
     pub fn found_laws(&self) -> Vec<LawSpec> {
         self.found.laws.clone()

@@ -1,10 +1,10 @@
 //! The report as one page: no network, no script.
 
-use super::data::{Candidate, Fitted, Report, Verdict};
+use super::data::{CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter};
 use super::page;
 use super::svg;
+use crate::format_number::{number, percent};
 use crate::select::ChannelResidual;
-use crate::words::{number, percent};
 use std::fmt::Write as _;
 
 pub(super) const STYLE: &str = "\
@@ -45,16 +45,16 @@ fn unit(text: &str) -> String {
     }
 }
 
-fn head(verdict: &Verdict) -> (&'static str, &'static str) {
+fn head(verdict: &CalibrationVerdict) -> (&'static str, &'static str) {
     match verdict {
-        Verdict::Nothing => ("nothing", "Nothing is missing"),
-        Verdict::Named { .. } => ("named", "The cause has a name"),
-        Verdict::OneOf { .. } => ("one_of", "One of several causes"),
-        Verdict::Unexplained { .. } => ("unexplained", "Something unknown is missing"),
+        CalibrationVerdict::Nothing => ("nothing", "Nothing is missing"),
+        CalibrationVerdict::Named { .. } => ("named", "The cause has a name"),
+        CalibrationVerdict::OneOf { .. } => ("one_of", "One of several causes"),
+        CalibrationVerdict::Unexplained { .. } => ("unexplained", "Something unknown is missing"),
     }
 }
 
-impl Report {
+impl CalibrationReport {
     /// The report as one page.
     pub fn to_html(&self) -> String {
         let mut out = String::with_capacity(1 << 16);
@@ -124,7 +124,7 @@ impl Report {
             ("before", &self.residuals_before),
             ("after", &self.residuals_after),
         ] {
-            if when == "after" && !matches!(self.verdict, Verdict::Named { .. }) {
+            if when == "after" && !matches!(self.verdict, CalibrationVerdict::Named { .. }) {
                 continue;
             }
             for residual in residuals {
@@ -132,7 +132,7 @@ impl Report {
             }
         }
         out.push_str("</table></div>");
-        let told = |r: &crate::select::Remainder| {
+        let told = |r: &crate::select::UnexplainedResidual| {
             format!(
                 "{} (noise alone stays below {})",
                 number(r.ratio),
@@ -195,7 +195,7 @@ impl Report {
     }
 }
 
-fn row(out: &mut String, candidate: &Candidate) {
+fn row(out: &mut String, candidate: &CandidateCause) {
     let told: Vec<String> = candidate.parameters.iter().map(parameter).collect();
     let [low, high] = candidate.gain.share_interval.map(percent);
     let judgement = match (&candidate.implausible, candidate.passes) {
@@ -215,7 +215,7 @@ fn row(out: &mut String, candidate: &Candidate) {
     );
 }
 
-fn parameter(p: &Fitted) -> String {
+fn parameter(p: &FittedParameter) -> String {
     let [low, high] = p.interval.map(number);
     format!(
         "{} = {}{}<br><span class=\"soft\">{low} to {high}; was {}</span>",

@@ -1,6 +1,6 @@
 //! The report: what was measured against what was simulated, in numbers, words and pictures.
 
-mod boxes;
+mod box_plot;
 mod build;
 mod data;
 mod html;
@@ -10,5 +10,8 @@ mod svg;
 mod write;
 
 pub(crate) use build::build;
-pub use data::{Candidate, Effect, Fitted, Found, Nuisance, Plot, Report, Verdict};
+pub use data::{
+    CalibrationReport, CalibrationVerdict, CandidateCause, FittedParameter, FoundEffects,
+    NamedEffect, NuisanceParameter, ResidualPlot,
+};
 pub(crate) use write::whole;

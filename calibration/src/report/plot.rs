@@ -1,22 +1,22 @@
 //! What is left over time, thinned out.
 
-use super::data::Plot;
+use super::data::ResidualPlot;
 use crate::twin::Twin;
 
 /// Points of a picture.
 const MOST_POINTS: usize = 1200;
 
-type Left<'a> = (&'a [usize], &'a [Vec<f64>]);
+type ResidualSeries<'a> = (&'a [usize], &'a [Vec<f64>]);
 
 /// A picture for each channel.
 pub(super) fn plots(
     twin: &dyn Twin,
     before: (&Vec<usize>, &Vec<Vec<f64>>),
-    after: Option<Left<'_>>,
-) -> Vec<Plot> {
+    after: Option<ResidualSeries<'_>>,
+) -> Vec<ResidualPlot> {
     let channels = twin.channels().iter().enumerate();
     channels
-        .map(|(channel, info)| Plot {
+        .map(|(channel, info)| ResidualPlot {
             title: info.name.clone(),
             unit: info.unit.to_owned(),
             before: points(twin, (before.0, before.1), channel),
@@ -26,7 +26,7 @@ pub(super) fn plots(
         .collect()
 }
 
-fn points(twin: &dyn Twin, (set, residuals): Left<'_>, channel: usize) -> Vec<[f64; 2]> {
+fn points(twin: &dyn Twin, (set, residuals): ResidualSeries<'_>, channel: usize) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
     for (episode, residual) in set.iter().zip(residuals) {
         let measured = &twin.episodes()[*episode];

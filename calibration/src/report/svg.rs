@@ -1,7 +1,7 @@
 //! Small pictures as SVG text.
 
-use super::data::{Candidate, Plot};
-use crate::words::number;
+use super::data::{CandidateCause, ResidualPlot};
+use crate::format_number::number;
 use std::fmt::Write as _;
 
 pub(super) const WIDTH: f64 = 640.0;
@@ -12,14 +12,14 @@ const TOP: f64 = 12.0;
 const BOTTOM: f64 = 34.0;
 
 /// A scale from data to the page.
-pub(super) struct Scale {
+pub(super) struct AxisScale {
     pub(super) low: f64,
     pub(super) high: f64,
     pub(super) from: f64,
     pub(super) to: f64,
 }
 
-impl Scale {
+impl AxisScale {
     pub(super) fn at(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         let share = if span > 0.0 {
@@ -51,7 +51,7 @@ impl Scale {
     }
 }
 
-fn frame(x: &Scale, y: &Scale, x_name: &str, y_name: &str) -> String {
+fn frame(x: &AxisScale, y: &AxisScale, x_name: &str, y_name: &str) -> String {
     let mut out = String::new();
     for tick in y.ticks() {
         let at = y.at(tick);
@@ -88,18 +88,18 @@ fn frame(x: &Scale, y: &Scale, x_name: &str, y_name: &str) -> String {
 }
 
 /// What is left over time: before and after.
-pub(super) fn residuals(plot: &Plot, name: &str) -> String {
+pub(super) fn residuals(plot: &ResidualPlot, name: &str) -> String {
     let points = || plot.before.iter().chain(&plot.after);
     let far = |k: usize| points().map(|p| p[k].abs()).fold(0.0, f64::max);
     let low_t = points().map(|p| p[0]).fold(0.0, f64::min);
     let size = far(1).max(2.0 * plot.noise_sd).max(f64::MIN_POSITIVE);
-    let x = Scale {
+    let x = AxisScale {
         low: low_t,
         high: far(0).max(1e-9),
         from: LEFT,
         to: WIDTH - RIGHT,
     };
-    let y = Scale {
+    let y = AxisScale {
         low: -size,
         high: size,
         from: HEIGHT - BOTTOM,
@@ -127,13 +127,13 @@ pub(super) fn residuals(plot: &Plot, name: &str) -> String {
 }
 
 /// The held-out gain of every cause with its interval.
-pub(super) fn gains(candidates: &[Candidate]) -> String {
+pub(super) fn gains(candidates: &[CandidateCause]) -> String {
     let row = 24.0;
     let height = TOP + BOTTOM + row * candidates.len() as f64;
     let (left, right) = (170.0, 30.0);
     let ends = candidates.iter().flat_map(|c| c.gain.share_interval);
     let low = ends.fold(-0.05, f64::min).max(-1.0);
-    let x = Scale {
+    let x = AxisScale {
         low: 100.0 * low,
         high: 100.0,
         from: left,
@@ -182,13 +182,13 @@ pub(super) struct Curve<'a> {
 pub(super) fn curves(name: &str, x: (&str, f64), y: (&str, f64), curves: &[Curve<'_>]) -> String {
     let (x_name, x_end) = x;
     let (y_name, y_end) = y;
-    let x = Scale {
+    let x = AxisScale {
         low: 0.0,
         high: x_end,
         from: LEFT,
         to: WIDTH - RIGHT,
     };
-    let y = Scale {
+    let y = AxisScale {
         low: 0.0,
         high: y_end,
         from: HEIGHT - BOTTOM,
@@ -225,7 +225,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_inside() {
-        let scale = Scale {
+        let scale = AxisScale {
             low: -0.013,
             high: 0.021,
             from: 0.0,
@@ -238,7 +238,7 @@ mod tests {
         );
         assert!(ticks.iter().any(|t| t.abs() < 1e-12));
         assert_eq!(
-            Scale {
+            AxisScale {
                 low: 1.0,
                 high: 1.0,
                 from: 0.0,

@@ -1,13 +1,13 @@
 //! The report as files.
 
-use super::data::Report;
+use super::data::CalibrationReport;
 use crate::error::CalibrationError;
 use dwell_scene::file;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-impl Report {
+impl CalibrationReport {
     /// The report as one JSON object; its key `html` holds the page.
     pub fn to_json(&self) -> String {
         let mut value = self.value();

@@ -1,13 +1,13 @@
 //! Balls that fall: free flight through the engine's own physics, from any measured height.
 
-use super::motion::{Deviation, Motion};
+use super::motion::{Deviation, MeasuredMotion};
 use super::regime::Regime;
-use super::series::{Model, Modelled, Parameter};
-use super::subject::Subject;
+use super::series::{ModelParameter, ModelledSubject, SimulationModel};
+use super::subject::RolloutSubject;
 use crate::bundle::{self, Bundle};
 use crate::error::CalibrationError;
-use crate::report::Found;
-use crate::twin::stage::{Stage, Thing, between};
+use crate::report::FoundEffects;
+use crate::twin::test_world::{TestObject, TestWorld, hermite_interpolation};
 use crate::twin::{air_density_kg_m3, gravity_m_s2};
 use dwell_physics::PhysicsConfig;
 use dwell_scene::random::RandomKey;
@@ -34,32 +34,32 @@ const TEXTBOOK_C_D: f64 = 0.45;
 const BALL: PartId = PartId(0);
 
 /// Balls that were dropped, and the heights that were measured from their release on.
-pub struct Drops {
+pub struct BallDrops {
     title: String,
     licence: String,
     gravity_m_s2: f64,
     air_density_kg_m3: f64,
-    balls: Vec<(String, Thing)>,
+    balls: Vec<(String, TestObject)>,
     size_m: f32,
-    episodes: Vec<Drop>,
+    episodes: Vec<BallDrop>,
 }
 
-struct Drop {
+struct BallDrop {
     name: String,
     group: String,
     ball: usize,
     t_s: Vec<f64>,
-    motions: Vec<Motion>,
+    motions: Vec<MeasuredMotion>,
     regimes: Vec<Regime>,
 }
 
 /// The balls, each in its house, with laws.
 pub struct DropRig {
-    stages: Vec<Stage>,
+    stages: Vec<TestWorld>,
     rate_hz: f64,
 }
 
-impl Drops {
+impl BallDrops {
     /// Reads a measured bundle of flights of which heights were measured.
     ///
     /// # Errors
@@ -72,7 +72,7 @@ impl Drops {
         let manifest = &bundle.manifest;
         let mut channels = manifest.channels.iter();
         let height = channels.position(|channel| channel.name == "y");
-        let (Some(height), bundle::file::Kind::Trajectory) = (height, bundle.kind()) else {
+        let (Some(height), bundle::file::BundleKind::Trajectory) = (height, bundle.kind()) else {
             return Err(CalibrationError::Missing {
                 at: bundle.name.clone(),
                 what: "a trajectory with the channel y".to_owned(),
@@ -81,7 +81,7 @@ impl Drops {
         };
         let balls = manifest.scene.bodies.iter().map(|body| {
             // `bundle::read` has asked for the radius.
-            let ball = Thing::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
+            let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             (body.name.clone(), ball)
         });
         let mut reach = 0.0_f64;
@@ -103,7 +103,7 @@ impl Drops {
                 });
             }
             reach = rows.iter().map(|row| row.1.abs()).fold(reach, f64::max);
-            episodes.push(Drop {
+            episodes.push(BallDrop {
                 name: episode.name.clone(),
                 group: episode.group.clone(),
                 ball: episode.samples[0].entity,
@@ -124,9 +124,9 @@ impl Drops {
     }
 
     /// No air; the textbook's drag; one fitted drag coefficient; one for each ball; and the rival, another gravity.
-    pub fn models(&self) -> Vec<Model> {
-        let c_d = |name: String| Parameter::new(name, "1", TEXTBOOK_C_D, [0.0, 3.0], 1e-3);
-        let model = |name, about, extends, parameters| Model {
+    pub fn models(&self) -> Vec<SimulationModel> {
+        let c_d = |name: String| ModelParameter::new(name, "1", TEXTBOOK_C_D, [0.0, 3.0], 1e-3);
+        let model = |name, about, extends, parameters| SimulationModel {
             name,
             about,
             extends,
@@ -136,7 +136,7 @@ impl Drops {
             .balls
             .iter()
             .map(|(name, _)| c_d(format!("c_d {name}")));
-        let gravity = Parameter::new("gravity_m_s2", "m/s2", 9.81, [1.0, 20.0], 1e-2);
+        let gravity = ModelParameter::new("gravity_m_s2", "m/s2", 9.81, [1.0, 20.0], 1e-2);
         vec![
             model("vacuum", "no air, nothing fitted", None, Vec::new()),
             model(
@@ -180,7 +180,7 @@ impl Drops {
     }
 
     /// The coefficient of a ball; 0: no air.
-    fn c_d(model: &Model, values: &[f64], ball: &str) -> f64 {
+    fn c_d(model: &SimulationModel, values: &[f64], ball: &str) -> f64 {
         let one = match model.name {
             "vacuum" | "gravity" => 0.0,
             _ => TEXTBOOK_C_D,
@@ -200,7 +200,7 @@ fn released(rows: &[(f64, f64)]) -> &[(f64, f64)] {
     &rows[first.unwrap_or(rows.len())..]
 }
 
-fn motions(rows: &[(f64, f64)]) -> Vec<Motion> {
+fn motions(rows: &[(f64, f64)]) -> Vec<MeasuredMotion> {
     (0..rows.len())
         .map(|k| {
             let (a, b) = (rows[k.saturating_sub(1)], rows[(k + 1).min(rows.len() - 1)]);
@@ -209,8 +209,8 @@ fn motions(rows: &[(f64, f64)]) -> Vec<Motion> {
         .collect()
 }
 
-fn motion(height_m: f64, speed_m_s: f64) -> Motion {
-    Motion {
+fn motion(height_m: f64, speed_m_s: f64) -> MeasuredMotion {
+    MeasuredMotion {
         position: DVec3::Y * height_m,
         rotation: DQuat::IDENTITY,
         linear: DVec3::Y * speed_m_s,
@@ -243,20 +243,20 @@ impl DropRig {
             .iter()
             .map(|t| {
                 let near = ((t * self.rate_hz).round() as usize).min(steps);
-                (between(&track, step_s, *t), track[near].1)
+                (hermite_interpolation(&track, step_s, *t), track[near].1)
             })
             .collect())
     }
 }
 
-impl Subject for Drops {
+impl RolloutSubject for BallDrops {
     type Rig = DropRig;
 
     fn count(&self) -> usize {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[Motion] {
+    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
         &self.episodes[episode].motions
     }
 
@@ -284,7 +284,7 @@ impl Subject for Drops {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<Motion>, CalibrationError> {
+    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let drop = &self.episodes[episode];
         let from = (at + 1).saturating_sub(PAST);
         let since = |k: usize| drop.t_s[k] - drop.t_s[from];
@@ -336,7 +336,7 @@ impl Subject for Drops {
     }
 }
 
-impl Modelled for Drops {
+impl ModelledSubject for BallDrops {
     fn title(&self) -> &str {
         &self.title
     }
@@ -361,7 +361,12 @@ impl Modelled for Drops {
         0.0
     }
 
-    fn rig(&self, model: &Model, values: &[f64], finer: u32) -> Result<DropRig, CalibrationError> {
+    fn rig(
+        &self,
+        model: &SimulationModel,
+        values: &[f64],
+        finer: u32,
+    ) -> Result<DropRig, CalibrationError> {
         let rate_hz = RATE_HZ * f64::from(finer);
         let config = PhysicsConfig {
             control_rate_hz: rate_hz as f32,
@@ -380,14 +385,14 @@ impl Modelled for Drops {
             } else {
                 Vec::new()
             };
-            let stage = Stage::new(self.size_m, ball, config.clone())?;
+            let stage = TestWorld::new(self.size_m, ball, config.clone())?;
             stages.push(stage.with(laws, &[("world/gravity_m_s2", gravity)])?);
         }
         Ok(DropRig { stages, rate_hz })
     }
 
-    fn found(&self, model: &Model, values: &[f64]) -> Found {
-        let mut found = Found::default();
+    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
+        let mut found = FoundEffects::default();
         for (name, _) in &self.balls {
             let c_d = Self::c_d(model, values, name);
             if c_d > 0.0 {

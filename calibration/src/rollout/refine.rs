@@ -2,9 +2,9 @@
 
 use super::motion::Deviation;
 use super::regime::Regime;
-use super::windows::{End, HORIZONS};
+use super::windows::{HORIZONS, WindowEnd};
 use crate::fit::median;
-use crate::words::number;
+use crate::format_number::number;
 use serde::Serialize;
 
 /// How many steps of the finer simulation make one of the other.
@@ -38,8 +38,8 @@ pub struct Refinement {
 }
 
 /// Compares ends with those of the same windows at a quarter of the step.
-pub fn refinements(coarse: &[End], fine: &[End]) -> Vec<Refinement> {
-    let pairs: Vec<(&End, &End)> = coarse
+pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> {
+    let pairs: Vec<(&WindowEnd, &WindowEnd)> = coarse
         .iter()
         .zip(fine)
         .filter(|(a, b)| (a.start, a.horizon) == (b.start, b.horizon) && !a.diverges)
@@ -54,11 +54,12 @@ pub fn refinements(coarse: &[End], fine: &[End]) -> Vec<Refinement> {
             if here.len() < FEWEST {
                 continue;
             }
-            let middle = |size: &dyn Fn(&(&End, &End)) -> f64| {
+            let middle = |size: &dyn Fn(&(&WindowEnd, &WindowEnd)) -> f64| {
                 median(&mut here.iter().map(|pair| size(pair)).collect::<Vec<f64>>())
             };
-            let apart =
-                |pair: &(&End, &End)| Deviation::between(&pair.1.predicted, &pair.0.predicted);
+            let apart = |pair: &(&WindowEnd, &WindowEnd)| {
+                Deviation::between(&pair.1.predicted, &pair.0.predicted)
+            };
             let position_median_mm = [
                 middle(&|pair| pair.0.deviation.position_mm()),
                 middle(&|pair| pair.1.deviation.position_mm()),
@@ -103,7 +104,7 @@ pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
     if told.is_empty() {
         format!("{model}: a quarter of the step changes no median residual by more than a tenth.")
     } else {
-        let told = crate::words::list(&told);
+        let told = crate::format_number::list(&told);
         format!(
             "{model}: solver artefact, the residual changes with a quarter of the step: {told}."
         )
@@ -113,23 +114,23 @@ pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rollout::Motion;
+    use crate::rollout::MeasuredMotion;
     use glam::{DQuat, DVec3};
 
-    fn ends(off_m: f64) -> Vec<End> {
+    fn ends(off_m: f64) -> Vec<WindowEnd> {
         (0..30)
             .map(|k| {
-                let predicted = Motion {
+                let predicted = MeasuredMotion {
                     position: DVec3::X * off_m,
                     rotation: DQuat::IDENTITY,
                     linear: DVec3::ZERO,
                     angular: DVec3::ZERO,
                 };
-                let origin = Motion {
+                let origin = MeasuredMotion {
                     position: DVec3::ZERO,
                     ..predicted
                 };
-                End {
+                WindowEnd {
                     start: (0, k),
                     horizon: 5,
                     regime: Regime::Impact,

@@ -1,7 +1,7 @@
 //! How residuals spread: by regime, by speed, by kind of episode, for several models beside each other.
 
 use super::regime::Regime;
-use super::windows::End;
+use super::windows::WindowEnd;
 use serde::Serialize;
 
 /// Groups by speed hold equally many windows.
@@ -19,7 +19,7 @@ pub(crate) enum Residual {
 }
 
 impl Residual {
-    fn of(self, end: &End) -> f64 {
+    fn of(self, end: &WindowEnd) -> f64 {
         match self {
             Self::Position => end.deviation.position_mm(),
             Self::Rotation => end.deviation.rotation_deg(),
@@ -61,18 +61,18 @@ pub struct Quantiles {
 }
 
 /// A model's name and its windows; the windows of all models are the same.
-pub(crate) type Row<'a> = (&'a str, &'a [End]);
+pub(crate) type ModelWindows<'a> = (&'a str, &'a [WindowEnd]);
 
 /// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and by `kinds` (of each episode) where these
 /// are more than one.
 pub(crate) fn all(
-    rows: &[Row<'_>],
+    rows: &[ModelWindows<'_>],
     horizon: usize,
     rotation: bool,
     kinds: &[&str],
 ) -> Vec<Residuals> {
     // Every model has the same windows in the same order.
-    let ahead: Vec<(&str, Vec<&End>)> = rows
+    let ahead: Vec<(&str, Vec<&WindowEnd>)> = rows
         .iter()
         .map(|(name, ends)| {
             (
@@ -116,7 +116,7 @@ pub(crate) fn all(
     found
 }
 
-fn by_speed(rows: &[(&str, Vec<&End>)], residual: Residual) -> Vec<ResidualGroup> {
+fn by_speed(rows: &[(&str, Vec<&WindowEnd>)], residual: Residual) -> Vec<ResidualGroup> {
     let Some((_, ends)) = rows.first() else {
         return Vec::new();
     };
@@ -128,7 +128,7 @@ fn by_speed(rows: &[(&str, Vec<&End>)], residual: Residual) -> Vec<ResidualGroup
     let edge = |k: usize| speeds[(k * (speeds.len() - 1)) / SPEEDS];
     let groups = (0..SPEEDS).map(|k| {
         let (low, high) = (edge(k), edge(k + 1));
-        let inside = |end: &End| {
+        let inside = |end: &WindowEnd| {
             (low..high).contains(&end.speed_m_s) || (k + 1 == SPEEDS && end.speed_m_s >= low)
         };
         let label = format!("{low:.2} to {high:.2} m/s");
@@ -139,10 +139,10 @@ fn by_speed(rows: &[(&str, Vec<&End>)], residual: Residual) -> Vec<ResidualGroup
 
 /// Quantiles of the windows that belong and that diverge in no model.
 fn group(
-    rows: &[(&str, Vec<&End>)],
+    rows: &[(&str, Vec<&WindowEnd>)],
     residual: Residual,
     label: String,
-    belongs: &dyn Fn(&End) -> bool,
+    belongs: &dyn Fn(&WindowEnd) -> bool,
 ) -> Option<ResidualGroup> {
     let (_, first) = rows.first()?;
     let chosen: Vec<usize> = (0..first.len())

@@ -1,10 +1,10 @@
 //! Whole episodes: roll out from the start to the last sample, and compare.
 
-use super::motion::{Deviation, Motion};
-use super::rig::Rig;
-use super::start::window_start;
-use super::subject::Subject;
-use super::track::{Track, Tracks};
+use super::board_rig::BoardRig;
+use super::initial_state::window_start;
+use super::motion::{Deviation, MeasuredMotion};
+use super::pose_tracks::{PoseTrack, PoseTracks};
+use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
@@ -43,7 +43,7 @@ impl Score {
 ///
 /// # Errors
 /// [`CalibrationError::Simulation`] for a start that is not finite.
-pub fn deviations(rig: &Rig, track: &Track) -> Result<Vec<Deviation>, CalibrationError> {
+pub fn deviations(rig: &BoardRig, track: &PoseTrack) -> Result<Vec<Deviation>, CalibrationError> {
     let ahead = &track.motions[track.start + 1..];
     let rolled = rig.roll(&track.start_motion, ahead.len())?;
     let rest = rolled
@@ -61,8 +61,8 @@ pub fn deviations(rig: &Rig, track: &Track) -> Result<Vec<Deviation>, Calibratio
 /// # Determinism
 /// The same bits for any number of threads.
 pub fn scores(
-    rig: &Rig,
-    tracks: &Tracks,
+    rig: &BoardRig,
+    tracks: &PoseTracks,
     which: &[usize],
     threads: Threads,
 ) -> Result<Vec<Score>, CalibrationError> {
@@ -77,7 +77,7 @@ pub fn scores(
 /// How often the chaos guard starts an episode once more.
 const NUDGES: u64 = 4;
 
-/// Whether each of the episodes `which` ends elsewhere ([`Subject::divergence`]) when its start is drawn from within the
+/// Whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence`]) when its start is drawn from within the
 /// tracker's noise: which way it goes is chance then.
 ///
 /// # Errors
@@ -86,8 +86,8 @@ const NUDGES: u64 = 4;
 /// # Determinism
 /// The same bits for any number of threads.
 pub fn diverging(
-    rig: &Rig,
-    tracks: &Tracks,
+    rig: &BoardRig,
+    tracks: &PoseTracks,
     which: &[usize],
     key: RandomKey,
     threads: Threads,
@@ -96,7 +96,7 @@ pub fn diverging(
     let one = |k: usize| {
         let track = &tracks.episodes[which[k]];
         let samples = track.motions.len() - track.start - 1;
-        let last = |start: &Motion| {
+        let last = |start: &MeasuredMotion| {
             let rolled = rig.roll(start, samples)?;
             Ok::<_, CalibrationError>(rolled.last().copied().unwrap_or(*start))
         };
@@ -109,7 +109,7 @@ pub fn diverging(
             let other = estimate(Some(key.child(which[k] as u64).child(nudge)));
             // The start that is told, moved as the noise moves an estimate of it.
             let turned = other.rotation * known.rotation.inverse();
-            let start = Motion {
+            let start = MeasuredMotion {
                 position: track.start_motion.position + other.position - known.position,
                 rotation: (turned * track.start_motion.rotation).normalize(),
                 linear: track.start_motion.linear + other.linear - known.linear,

@@ -1,12 +1,12 @@
 //! What can be rolled out: measured motions, and a simulation that predicts them.
 
-use super::motion::{Deviation, Motion};
+use super::motion::{Deviation, MeasuredMotion};
 use super::regime::Regime;
 use crate::error::CalibrationError;
 use dwell_scene::random::RandomKey;
 
 /// Measured episodes with a simulation that starts from any of their samples.
-pub trait Subject: Sync {
+pub trait RolloutSubject: Sync {
     /// The simulation, set to some values.
     type Rig: Send + Sync;
 
@@ -14,7 +14,7 @@ pub trait Subject: Sync {
     fn count(&self) -> usize;
 
     /// What was measured, at even spacing. Shape (sample,).
-    fn measured(&self, episode: usize) -> &[Motion];
+    fn measured(&self, episode: usize) -> &[MeasuredMotion];
 
     /// What the body did at each sample. Shape (sample,).
     fn regimes(&self, episode: usize) -> &[Regime];
@@ -42,5 +42,5 @@ pub trait Subject: Sync {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<Motion>, CalibrationError>;
+    ) -> Result<Vec<MeasuredMotion>, CalibrationError>;
 }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Over episodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Spread {
+pub struct EpisodeSpread {
     /// Mean.
     pub mean: f64,
     /// Median.
@@ -15,7 +15,7 @@ pub struct Spread {
     pub sd: f64,
 }
 
-impl Spread {
+impl EpisodeSpread {
     /// Of some values.
     pub fn of(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
@@ -34,29 +34,29 @@ const PREDICTED_E_Q: f64 = 0.05;
 
 /// Scores of many episodes in one row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Summary {
+pub struct ScoreSummary {
     /// How many episodes.
     pub count: usize,
     /// Distance, as a share of the body's width.
-    pub position_widths: Spread,
+    pub position_widths: EpisodeSpread,
     /// Angle, degrees.
-    pub rotation_deg: Spread,
+    pub rotation_deg: EpisodeSpread,
     /// The published loss.
-    pub e_q: Spread,
+    pub e_q: EpisodeSpread,
     /// The share of episodes with an `e_q` below 0.05.
     pub predicted_share: f64,
 }
 
-impl Summary {
+impl ScoreSummary {
     /// Of some scores.
     pub fn of(scores: &[Score]) -> Self {
         let column = |f: fn(&Score) -> f64| scores.iter().map(f).collect::<Vec<f64>>();
         let predicted = scores.iter().filter(|score| score.e_q < PREDICTED_E_Q);
         Self {
             count: scores.len(),
-            position_widths: Spread::of(&column(|s| s.position_widths)),
-            rotation_deg: Spread::of(&column(|s| s.rotation_deg)),
-            e_q: Spread::of(&column(|s| s.e_q)),
+            position_widths: EpisodeSpread::of(&column(|s| s.position_widths)),
+            rotation_deg: EpisodeSpread::of(&column(|s| s.rotation_deg)),
+            e_q: EpisodeSpread::of(&column(|s| s.e_q)),
             predicted_share: predicted.count() as f64 / scores.len().max(1) as f64,
         }
     }
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn the_spread_is_that_of_the_books() {
-        let spread = Spread::of(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]);
+        let spread = EpisodeSpread::of(&[2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0]);
         assert_eq!(spread.mean, 5.0);
         assert!((spread.sd - (32.0_f64 / 7.0).sqrt()).abs() < 1e-15);
     }

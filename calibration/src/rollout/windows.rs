@@ -1,8 +1,8 @@
 //! Windows: from every measured sample, some samples ahead.
 
-use super::motion::{Deviation, Motion};
+use super::motion::{Deviation, MeasuredMotion};
 use super::regime::Regime;
-use super::subject::Subject;
+use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
 use crate::fit::median;
 use dwell_scene::parallel::Threads;
@@ -16,7 +16,7 @@ const NUDGES: u64 = 4;
 
 /// Where windows start, and what is done with them.
 #[derive(Clone, Copy, Debug)]
-pub struct Windowing {
+pub struct WindowOptions {
     /// They start at every so many samples.
     pub stride: usize,
     /// Seed of the chaos guard's nudges; `None`: no guard, nothing diverges.
@@ -27,7 +27,7 @@ pub struct Windowing {
 
 /// One window's end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct WindowEnd {
     /// The episode, and the sample that it started from.
     pub start: (usize, usize),
     /// Samples ahead.
@@ -37,7 +37,7 @@ pub struct End {
     /// Measured speed at the start, m/s.
     pub speed_m_s: f64,
     /// What was predicted.
-    pub predicted: Motion,
+    pub predicted: MeasuredMotion,
     /// How far that is from what was measured.
     pub deviation: Deviation,
     /// Whether starts within the uncertainty of this one end elsewhere: what comes out is chance, and says little about
@@ -66,12 +66,12 @@ pub struct WindowScore {
     pub rotation_median_deg: f64,
 }
 
-fn ends_of<S: Subject>(
+fn ends_of<S: RolloutSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
-    windowing: &Windowing,
-) -> Result<Vec<End>, CalibrationError> {
+    windowing: &WindowOptions,
+) -> Result<Vec<WindowEnd>, CalibrationError> {
     let longest = HORIZONS.into_iter().max().unwrap_or(1);
     let (measured, regimes) = (subject.measured(episode), subject.regimes(episode));
     let last = measured.len().saturating_sub(1);
@@ -90,7 +90,7 @@ fn ends_of<S: Subject>(
         }
         for horizon in HORIZONS.into_iter().filter(|h| *h <= plain.len()) {
             let predicted = plain[horizon - 1];
-            ends.push(End {
+            ends.push(WindowEnd {
                 start: (episode, at),
                 horizon,
                 regime: Regime::deciding(&regimes[at..=at + horizon]),
@@ -113,19 +113,19 @@ fn ends_of<S: Subject>(
 ///
 /// # Determinism
 /// The same bits for any number of threads.
-pub fn ends<S: Subject>(
+pub fn ends<S: RolloutSubject>(
     subject: &S,
     rigs: &[&S::Rig],
-    windowing: &Windowing,
-) -> Result<Vec<End>, CalibrationError> {
+    windowing: &WindowOptions,
+) -> Result<Vec<WindowEnd>, CalibrationError> {
     let one = |episode: usize| ends_of(subject, rigs[episode], episode, windowing);
     let found = windowing.threads.map(subject.count(), one);
-    let found: Result<Vec<Vec<End>>, _> = found.into_iter().collect();
+    let found: Result<Vec<Vec<WindowEnd>>, _> = found.into_iter().collect();
     Ok(found?.concat())
 }
 
 /// What the windows deviate by, by horizon and regime; those that diverge apart.
-pub fn windows(ends: &[End]) -> Vec<WindowScore> {
+pub fn windows(ends: &[WindowEnd]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {
         let regimes = std::iter::once(None).chain(Regime::ALL.map(Some));

@@ -1,9 +1,9 @@
 //! Whether a cause has one size wherever it is strong or weak: a name that fits one regime and not another is refuted.
 
-use super::compare::{Comparison, Estimate, Judged, estimates};
+use super::compare::{CauseComparison, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;
 use crate::error::CalibrationError;
-use crate::twin::{Structure, range_of};
+use crate::twin::{ResidualStructure, range_of};
 use serde::Serialize;
 
 /// Standard deviations of difference from which on the name is refuted.
@@ -32,13 +32,13 @@ impl Agreement {
 
 /// Fits `judged`'s first cause apart in two halves of the training episodes; `None` where there are too few.
 pub(super) fn agreement(
-    all: &Comparison<'_>,
-    judged: &Judged,
+    all: &CauseComparison<'_>,
+    judged: &ScoredModel,
 ) -> Result<Option<Agreement>, CalibrationError> {
     let Some(cause) = judged.model.causes.first() else {
         return Ok(None);
     };
-    if all.twin.structure() != Structure::InTime || all.split.train.len() < 6 {
+    if all.twin.structure() != ResidualStructure::OverTime || all.split.train.len() < 6 {
         return Ok(None);
     }
     let first = range_of(all.twin, *cause).start;

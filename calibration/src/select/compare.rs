@@ -1,49 +1,49 @@
 //! One model against the model without it.
 
-use super::gain::{Gain, gain};
+use super::gain::{HeldOutGain, gain};
 use super::residual::effective_count;
-use super::split::Split;
+use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
-use crate::fit::{Fit, Model, Task};
+use crate::fit::{CauseSet, FitResult, FitTask};
 use crate::options::Options;
-use crate::progress::Tell;
-use crate::twin::{Point, Slot, Structure, Twin, range_of};
+use crate::progress::ProgressReporter;
+use crate::twin::{ParameterIndex, ParameterVector, ResidualStructure, Twin, range_of};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
 /// What comparisons share.
-pub(crate) struct Comparison<'a> {
+pub(crate) struct CauseComparison<'a> {
     pub(crate) twin: &'a dyn Twin,
-    pub(crate) split: &'a Split,
+    pub(crate) split: &'a EpisodeSplit,
     pub(crate) options: &'a Options,
     pub(crate) threads: Threads,
-    pub(crate) progress: &'a dyn Tell,
+    pub(crate) progress: &'a dyn ProgressReporter,
 }
 
 /// A model, fitted where fitting is allowed and judged where it is not.
 #[derive(Clone, Debug)]
-pub(crate) struct Judged {
-    pub(crate) model: Model,
-    pub(crate) fit: Fit,
+pub(crate) struct ScoredModel {
+    pub(crate) model: CauseSet,
+    pub(crate) fit: FitResult,
     /// The held-out episodes with only their own nuisances fitted.
-    pub(crate) held_out: Fit,
+    pub(crate) held_out: FitResult,
     /// Independent numbers among those fitted.
     pub(crate) effective_count: f64,
 }
 
-impl Judged {
+impl ScoredModel {
     /// Independent numbers in a number.
-    pub(crate) fn worth(&self) -> f64 {
+    pub(crate) fn effective_weight(&self) -> f64 {
         self.effective_count / self.fit.data.max(1) as f64
     }
 }
 
 /// A model against a smaller one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Against {
+pub(crate) struct ModelAdvantage {
     /// Fall of the information criterion.
     pub(crate) delta_bic: f64,
-    pub(crate) gain: Gain,
+    pub(crate) gain: HeldOutGain,
 }
 
 /// A value with the 95 % interval of its fit.
@@ -59,14 +59,16 @@ impl Estimate {
     }
 }
 
-impl Comparison<'_> {
-    fn task<'b>(&'b self, set: &'b [usize], robust: bool) -> Task<'b> {
-        Task {
+impl CauseComparison<'_> {
+    fn task<'b>(&'b self, set: &'b [usize], robust: bool) -> FitTask<'b> {
+        FitTask {
             twin: self.twin,
             set,
             threads: self.threads,
             // Levels of a response have no outliers, and each fit of a room costs much.
-            robust: robust && self.options.robust && self.twin.structure() == Structure::InTime,
+            robust: robust
+                && self.options.robust
+                && self.twin.structure() == ResidualStructure::OverTime,
             progress: self.progress,
         }
     }
@@ -75,14 +77,18 @@ impl Comparison<'_> {
     pub(crate) fn fit_on(
         &self,
         set: &[usize],
-        model: &Model,
-        from: &Point,
-    ) -> Result<Fit, CalibrationError> {
+        model: &CauseSet,
+        from: &ParameterVector,
+    ) -> Result<FitResult, CalibrationError> {
         self.task(set, true).fit(model, from)
     }
 
     /// Fits a model and judges it on the held-out episodes. Of several starts the best is taken.
-    pub(crate) fn judge(&self, model: &Model, from: &Point) -> Result<Judged, CalibrationError> {
+    pub(crate) fn judge(
+        &self,
+        model: &CauseSet,
+        from: &ParameterVector,
+    ) -> Result<ScoredModel, CalibrationError> {
         let train = self.task(&self.split.train, true);
         let mut start = from.clone();
         if let Some(cause) = model.causes.last() {
@@ -100,7 +106,7 @@ impl Comparison<'_> {
         let fit = train.fit(model, &start)?;
         let held_out = self.task(&self.split.held_out, false).fit_own(&fit.point)?;
         let effective_count = effective_count(self.twin, &self.split.train, &fit.residuals);
-        Ok(Judged {
+        Ok(ScoredModel {
             model: model.clone(),
             fit,
             held_out,
@@ -108,19 +114,24 @@ impl Comparison<'_> {
         })
     }
 
-    /// How much better `larger` is than `smaller`. `worth`: independent numbers in a number, the same for all models that
+    /// How much better `larger` is than `smaller`. `effective_weight`: independent numbers in a number, the same for all models that
     /// are compared: a wrong model's residuals are correlated because it is wrong.
     ///
     /// # Source
     /// G. Schwarz, Ann. Stat. 6, 461 (1978), with a noise scale that is fitted and the effective count of data.
-    pub(crate) fn against(&self, larger: &Judged, smaller: &Judged, worth: f64) -> Against {
+    pub(crate) fn advantage_over(
+        &self,
+        larger: &ScoredModel,
+        smaller: &ScoredModel,
+        worth: f64,
+    ) -> ModelAdvantage {
         let n = (worth * larger.fit.data as f64).max(2.0);
         let more = larger.fit.parameters as f64 - smaller.fit.parameters as f64;
         let ratio =
             smaller.fit.loss.max(f64::MIN_POSITIVE) / larger.fit.loss.max(f64::MIN_POSITIVE);
         let robust = self.options.robust.then_some(&larger.held_out);
         let key = RandomKey::root(self.options.seed).child("gain");
-        Against {
+        ModelAdvantage {
             delta_bic: n * ratio.ln() - more * n.ln(),
             gain: gain(
                 &smaller.held_out.loss_by_episode(robust),
@@ -134,7 +145,7 @@ impl Comparison<'_> {
     }
 
     /// Whether a comparison speaks for the larger model.
-    pub(crate) fn passes(&self, against: &Against) -> bool {
+    pub(crate) fn passes(&self, against: &ModelAdvantage) -> bool {
         against.delta_bic > self.options.min_delta_bic
             && against.gain.log_density_interval[0] > 0.0
             && against.gain.share >= self.options.min_gain_share
@@ -144,7 +155,7 @@ impl Comparison<'_> {
 /// The estimates of a cause's parameters.
 pub(crate) fn estimates(
     twin: &dyn Twin,
-    fit: &Fit,
+    fit: &FitResult,
     effective_count: f64,
     cause: usize,
 ) -> Vec<Estimate> {
@@ -152,13 +163,13 @@ pub(crate) fn estimates(
     range
         .map(|slot| Estimate {
             value: fit.point.causes[slot],
-            sd: sd_of(fit, effective_count, Slot::Cause(slot)),
+            sd: sd_of(fit, effective_count, ParameterIndex::Cause(slot)),
         })
         .collect()
 }
 
 /// The standard deviation of a fitted parameter.
-pub(crate) fn sd_of(fit: &Fit, effective_count: f64, slot: Slot) -> f64 {
+pub(crate) fn sd_of(fit: &FitResult, effective_count: f64, slot: ParameterIndex) -> f64 {
     let Some(k) = fit.slots.iter().position(|other| *other == slot) else {
         return 0.0;
     };

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 /// Gain on held-out episodes, each with its 95 % interval over episodes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Gain {
+pub struct HeldOutGain {
     /// Share of the held-out squared error that goes away.
     pub share: f64,
     /// Its interval.
@@ -28,7 +28,7 @@ pub(super) fn gain(
     worth: f64,
     draws: usize,
     key: RandomKey,
-) -> Gain {
+) -> HeldOutGain {
     let count = before.len();
     let mut stream = key.child("bootstrap").stream();
     let statistic = |pick: &mut dyn FnMut(usize) -> usize| {
@@ -53,7 +53,7 @@ pub(super) fn gain(
         shares.push(s);
         densities.push(d);
     }
-    Gain {
+    HeldOutGain {
         share,
         share_interval: interval(&mut shares),
         log_density,

@@ -8,10 +8,10 @@ mod split;
 mod verdict;
 
 pub use agreement::Agreement;
-pub use gain::Gain;
+pub use gain::HeldOutGain;
 pub(crate) use gain::share_gained;
-pub use residual::{ChannelResidual, Remainder};
+pub use residual::{ChannelResidual, UnexplainedResidual};
 
-pub(crate) use compare::{Estimate, Judged, estimates, sd_of};
+pub(crate) use compare::{Estimate, ScoredModel, estimates, sd_of};
 pub(crate) use residual::by_channel;
-pub(crate) use verdict::{Decision, Findings, Single, explain};
+pub(crate) use verdict::{Decision, Findings, SingleCause, explain};

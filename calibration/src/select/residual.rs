@@ -1,7 +1,7 @@
 //! What is left between measurement and simulation.
 
 use crate::fit::median;
-use crate::twin::{Structure, Twin};
+use crate::twin::{ResidualStructure, Twin};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -157,7 +157,7 @@ pub(crate) fn by_channel(
 /// How many independent numbers all residuals are worth.
 pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
     match twin.structure() {
-        Structure::InTime => {
+        ResidualStructure::OverTime => {
             let all = by_sequence(twin, set, residuals);
             let counted = all.values().map(|sequences| {
                 let count = sequences.iter().map(|sequence| sequence.len()).sum();
@@ -165,7 +165,7 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
             });
             counted.sum()
         }
-        Structure::InCells => {
+        ResidualStructure::ByCell => {
             // Data of one episode share its geometry and its rays: episodes are clusters.
             let count: usize = residuals.iter().map(Vec::len).sum();
             let square: f64 =
@@ -188,14 +188,14 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
 
 /// Whether something is left that is no noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Remainder {
+pub struct UnexplainedResidual {
     /// Mean square of what is left over that of its noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.
     pub threshold: f64,
 }
 
-impl Remainder {
+impl UnexplainedResidual {
     /// Whether something systematic is left.
     pub(crate) fn is_structured(&self) -> bool {
         self.ratio > self.threshold
@@ -203,8 +203,8 @@ impl Remainder {
 
     pub(crate) fn of(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> Self {
         match twin.structure() {
-            Structure::InTime => Self::in_time(twin, set, residuals),
-            Structure::InCells => Self::in_cells(twin, set, residuals),
+            ResidualStructure::OverTime => Self::in_time(twin, set, residuals),
+            ResidualStructure::ByCell => Self::in_cells(twin, set, residuals),
         }
     }
 

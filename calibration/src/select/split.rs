@@ -1,22 +1,22 @@
 //! Which episodes are held out from all fitting.
 
-use crate::twin::Measured;
+use crate::twin::EpisodeData;
 use dwell_scene::random::RandomKey;
 use std::collections::BTreeSet;
 
 /// Positions of the episodes that are fitted, and of those that judge.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Split {
+pub(crate) struct EpisodeSplit {
     pub(crate) train: Vec<usize>,
     pub(crate) held_out: Vec<usize>,
     /// Whether whole groups are held out; else there is one group only, or groups too unequal for that, and episodes are.
     pub(crate) by_group: bool,
 }
 
-impl Split {
+impl EpisodeSplit {
     /// Draws groups until `share` of the episodes is held out, leaving at least two on both sides. Where whole groups do not
     /// allow that, single episodes are drawn.
-    pub(crate) fn new(episodes: &[Measured], share: f64, seed: u64) -> Self {
+    pub(crate) fn new(episodes: &[EpisodeData], share: f64, seed: u64) -> Self {
         let groups: BTreeSet<&str> = episodes
             .iter()
             .map(|episode| episode.group.as_str())
@@ -30,7 +30,7 @@ impl Split {
         Self::draw(episodes, share, seed, false)
     }
 
-    fn draw(episodes: &[Measured], share: f64, seed: u64, by_group: bool) -> Self {
+    fn draw(episodes: &[EpisodeData], share: f64, seed: u64, by_group: bool) -> Self {
         let label = |k: usize| {
             if by_group {
                 episodes[k].group.as_str()
@@ -72,13 +72,13 @@ impl Split {
 mod tests {
     use super::*;
 
-    fn episodes(groups: &[&str]) -> Vec<Measured> {
+    fn episodes(groups: &[&str]) -> Vec<EpisodeData> {
         let named = groups.iter().enumerate();
         named
-            .map(|(k, group)| Measured {
+            .map(|(k, group)| EpisodeData {
                 name: format!("e{k}"),
                 group: (*group).to_owned(),
-                ..Measured::default()
+                ..EpisodeData::default()
             })
             .collect()
     }
@@ -88,7 +88,7 @@ mod tests {
         for groups in ["abbb", "abbbbb", "aaab", "aabb", "abcd"] {
             let names: Vec<&str> = groups.split("").filter(|name| !name.is_empty()).collect();
             for seed in 0..20 {
-                let split = Split::new(&episodes(&names), 1.0 / 3.0, seed);
+                let split = EpisodeSplit::new(&episodes(&names), 1.0 / 3.0, seed);
                 assert!(
                     split.train.len() >= 2 && split.held_out.len() >= 2,
                     "{groups}: {split:?}"
@@ -102,7 +102,7 @@ mod tests {
     fn groups_are_never_torn() {
         for seed in 0..20 {
             let all = episodes(&["a", "a", "b", "b", "c", "c", "d", "d", "e"]);
-            let split = Split::new(&all, 1.0 / 3.0, seed);
+            let split = EpisodeSplit::new(&all, 1.0 / 3.0, seed);
             assert!(
                 split.by_group && split.train.len() >= 2 && split.held_out.len() >= 2,
                 "{split:?}"
@@ -112,7 +112,7 @@ mod tests {
             }
         }
         assert_eq!(
-            Split::new(&episodes(&["a"; 9]), 1.0 / 3.0, 3)
+            EpisodeSplit::new(&episodes(&["a"; 9]), 1.0 / 3.0, 3)
                 .held_out
                 .len(),
             3

@@ -1,14 +1,14 @@
 //! From fits to a verdict.
 
 use super::agreement::{Agreement, agreement};
-use super::compare::{Against, Comparison, Judged, estimates};
-use super::residual::{Remainder, noise};
-use super::split::Split;
+use super::compare::{CauseComparison, ModelAdvantage, ScoredModel, estimates};
+use super::residual::{UnexplainedResidual, noise};
+use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
-use crate::fit::Model;
+use crate::fit::CauseSet;
 use crate::options::Options;
-use crate::progress::Tell;
-use crate::twin::{Parameter, Point, Structure, Twin};
+use crate::progress::ProgressReporter;
+use crate::twin::{FitParameter, ParameterVector, ResidualStructure, Twin};
 use dwell_scene::parallel::Threads;
 
 /// Share of the misfit that a name must explain where something systematic is left.
@@ -16,26 +16,26 @@ const LEAST_EXPLAINED: f64 = 0.8;
 
 /// All that was found, before it is put into words.
 pub(crate) struct Findings {
-    pub(crate) split: Split,
+    pub(crate) split: EpisodeSplit,
     /// Nuisances alone.
-    pub(crate) base: Judged,
+    pub(crate) base: ScoredModel,
     /// Each cause alone, in the order of the twin's causes.
-    pub(crate) singles: Vec<Single>,
+    pub(crate) singles: Vec<SingleCause>,
     /// The model that is reported: nuisances alone, a cause, or two.
-    pub(crate) chosen: Judged,
+    pub(crate) chosen: ScoredModel,
     /// `chosen` against nuisances alone.
-    pub(crate) against_base: Option<Against>,
-    pub(crate) remainder_before: Remainder,
-    pub(crate) remainder_after: Remainder,
+    pub(crate) advantage_over_base: Option<ModelAdvantage>,
+    pub(crate) remainder_before: UnexplainedResidual,
+    pub(crate) remainder_after: UnexplainedResidual,
     pub(crate) agreement: Option<Agreement>,
     pub(crate) decision: Decision,
 }
 
 /// A cause alone.
-pub(crate) struct Single {
+pub(crate) struct SingleCause {
     pub(crate) cause: usize,
-    pub(crate) judged: Judged,
-    pub(crate) against: Against,
+    pub(crate) judged: ScoredModel,
+    pub(crate) against: ModelAdvantage,
     pub(crate) passes: bool,
     /// Why it is not plausible, if it is not.
     pub(crate) implausible: Option<String>,
@@ -54,26 +54,26 @@ pub(crate) enum Decision {
 pub(crate) fn explain(
     twin: &mut dyn Twin,
     options: &Options,
-    progress: &dyn Tell,
+    progress: &dyn ProgressReporter,
 ) -> Result<Findings, CalibrationError> {
-    let split = Split::new(twin.episodes(), options.held_out_share, options.seed);
+    let split = EpisodeSplit::new(twin.episodes(), options.held_out_share, options.seed);
     let threads = Threads::resolve(options.threads);
     progress.stage(0.1, "fitting starts, offsets and noise")?;
     let start = estimate_noise(twin, &split, options, threads, progress)?;
-    let all = Comparison {
+    let all = CauseComparison {
         twin,
         split: &split,
         options,
         threads,
         progress,
     };
-    let base = all.judge(&Model::default(), &start)?;
+    let base = all.judge(&CauseSet::default(), &start)?;
     let mut fitted = Vec::new();
     let count = all.twin.causes().len();
     for (cause, info) in all.twin.causes().iter().enumerate() {
         let fraction = 0.2 + 0.5 * cause as f32 / count as f32;
         progress.stage(fraction, &format!("trying {}", info.name))?;
-        let model = Model {
+        let model = CauseSet {
             causes: vec![cause],
         };
         fitted.push(all.judge(&model, &base.fit.point)?);
@@ -81,13 +81,13 @@ pub(crate) fn explain(
     let best = fitted
         .iter()
         .min_by(|a, b| a.fit.loss.total_cmp(&b.fit.loss));
-    let worth = best.map_or(1.0, Judged::worth);
-    let singles: Vec<Single> = fitted
+    let worth = best.map_or(1.0, ScoredModel::effective_weight);
+    let singles: Vec<SingleCause> = fitted
         .into_iter()
         .enumerate()
         .map(|(cause, judged)| {
-            let against = all.against(&judged, &base, worth);
-            Single {
+            let against = all.advantage_over(&judged, &base, worth);
+            SingleCause {
                 cause,
                 passes: all.passes(&against),
                 implausible: implausible(all.twin, &judged, cause),
@@ -97,7 +97,9 @@ pub(crate) fn explain(
         })
         .collect();
     progress.stage(0.7, "comparing causes")?;
-    let remainder = |judged: &Judged| Remainder::of(all.twin, &split.train, &judged.fit.residuals);
+    let remainder = |judged: &ScoredModel| {
+        UnexplainedResidual::of(all.twin, &split.train, &judged.fit.residuals)
+    };
     let remainder_before = remainder(&base);
     let (decision, chosen) = decide(&all, &base, &singles, &remainder_before)?;
     let mut decision = decision;
@@ -116,8 +118,8 @@ pub(crate) fn explain(
             decision = Decision::Unexplained(format!(
                 "{name} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} \
                  standard deviations apart: one value does not serve, so it is not the cause",
-                crate::words::number(agreement.weak),
-                crate::words::number(agreement.strong),
+                crate::format_number::number(agreement.weak),
+                crate::format_number::number(agreement.strong),
                 agreement.z.abs()
             ));
         } else if remainder_after.is_structured() && explained < LEAST_EXPLAINED {
@@ -127,13 +129,13 @@ pub(crate) fn explain(
             ));
         }
     }
-    let against_base =
-        (!chosen.model.causes.is_empty()).then(|| all.against(&chosen, &base, chosen.worth()));
+    let advantage_over_base = (!chosen.model.causes.is_empty())
+        .then(|| all.advantage_over(&chosen, &base, chosen.effective_weight()));
     Ok(Findings {
         base,
         singles,
         chosen,
-        against_base,
+        advantage_over_base,
         remainder_before,
         remainder_after,
         agreement: found_agreement,
@@ -145,25 +147,25 @@ pub(crate) fn explain(
 /// Fits the nuisances, and takes the noise of channels that do not say it from what is left.
 fn estimate_noise(
     twin: &mut dyn Twin,
-    split: &Split,
+    split: &EpisodeSplit,
     options: &Options,
     threads: Threads,
-    progress: &dyn Tell,
-) -> Result<Point, CalibrationError> {
-    let start = Point::start(twin);
-    if twin.structure() != Structure::InTime
+    progress: &dyn ProgressReporter,
+) -> Result<ParameterVector, CalibrationError> {
+    let start = ParameterVector::start(twin);
+    if twin.structure() != ResidualStructure::OverTime
         || twin.channels().iter().all(|channel| channel.noise_known)
     {
         return Ok(start);
     }
-    let fit = Comparison {
+    let fit = CauseComparison {
         twin,
         split,
         options,
         threads,
         progress,
     }
-    .fit_on(&split.train, &Model::default(), &start)?;
+    .fit_on(&split.train, &CauseSet::default(), &start)?;
     for channel in 0..twin.channels().len() {
         if twin.channels()[channel].noise_known {
             continue;
@@ -201,16 +203,16 @@ fn estimate_noise(
 }
 
 /// Why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
-fn implausible(twin: &dyn Twin, judged: &Judged, cause: usize) -> Option<String> {
+fn implausible(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Option<String> {
     let found = estimates(twin, &judged.fit, judged.effective_count, cause);
     let parameters = &twin.causes()[cause].parameters;
-    let at_bound = |p: &Parameter, value: f64| {
+    let at_bound = |p: &FitParameter, value: f64| {
         let near = 1e-9 * (1.0 + value.abs());
         (value - p.low < near || p.high - value < near) && (value - p.default).abs() > near
     };
     parameters.iter().zip(&found).find_map(|(p, estimate)| {
         let [low, high] = estimate.interval();
-        let number = crate::words::number;
+        let number = crate::format_number::number;
         // A parameter that the data leave where it was needs no plausibility.
         if low <= p.default && p.default <= high {
             None
@@ -236,12 +238,12 @@ fn implausible(twin: &dyn Twin, judged: &Judged, cause: usize) -> Option<String>
 }
 
 fn decide(
-    all: &Comparison<'_>,
-    base: &Judged,
-    singles: &[Single],
-    remainder: &Remainder,
-) -> Result<(Decision, Judged), CalibrationError> {
-    let mut passing: Vec<&Single> = singles.iter().filter(|single| single.passes).collect();
+    all: &CauseComparison<'_>,
+    base: &ScoredModel,
+    singles: &[SingleCause],
+    remainder: &UnexplainedResidual,
+) -> Result<(Decision, ScoredModel), CalibrationError> {
+    let mut passing: Vec<&SingleCause> = singles.iter().filter(|single| single.passes).collect();
     passing.sort_by(|a, b| b.against.delta_bic.total_cmp(&a.against.delta_bic));
     let causes = all.twin.causes();
     let Some(best) = passing.first() else {
@@ -253,11 +255,11 @@ fn decide(
         return Ok((decision, base.clone()));
     };
     // Rivals count whether or not each passes on its own: what fits as well could be it.
-    let close = |single: &&Single| {
+    let close = |single: &&SingleCause| {
         best.against.delta_bic - single.against.delta_bic < all.options.rival_delta_bic
     };
-    let rivals: Vec<&Single> = singles.iter().filter(close).collect();
-    let plausible: Vec<&&Single> = rivals
+    let rivals: Vec<&SingleCause> = singles.iter().filter(close).collect();
+    let plausible: Vec<&&SingleCause> = rivals
         .iter()
         .filter(|single| single.implausible.is_none())
         .collect();
@@ -269,7 +271,7 @@ fn decide(
                 Decision::Unexplained(format!("{name} fits best, but it is not plausible: {why}"));
             Ok((decision, best.judged.clone()))
         }
-        [only] => second(all, only, singles),
+        [only] => second_cause(all, only, singles),
         _ => {
             let set = plausible.iter().map(|single| single.cause).collect();
             Ok((Decision::OneOf(set), plausible[0].judged.clone()))
@@ -278,14 +280,18 @@ fn decide(
 }
 
 /// Why no cause passes, with the one that comes nearest.
-fn nearest(all: &Comparison<'_>, singles: &[Single]) -> String {
+fn nearest(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
     let best = singles
         .iter()
         .max_by(|a, b| a.against.delta_bic.total_cmp(&b.against.delta_bic));
     let none = "none of the causes in the library fits it";
     match best.filter(|best| best.against.delta_bic > all.options.min_delta_bic) {
         Some(best) => {
-            let [low, high] = best.against.gain.share_interval.map(crate::words::percent);
+            let [low, high] = best
+                .against
+                .gain
+                .share_interval
+                .map(crate::format_number::percent);
             format!(
                 "{none}; nearest comes {}, whose gain on episodes that no fit has seen is not certain ({low} to {high} of \
                  the squared error)",
@@ -297,24 +303,25 @@ fn nearest(all: &Comparison<'_>, singles: &[Single]) -> String {
 }
 
 /// Looks for a second cause beside the first.
-fn second(
-    all: &Comparison<'_>,
-    first: &Single,
-    singles: &[Single],
-) -> Result<(Decision, Judged), CalibrationError> {
-    let remainder = Remainder::of(all.twin, &all.split.train, &first.judged.fit.residuals);
+fn second_cause(
+    all: &CauseComparison<'_>,
+    first: &SingleCause,
+    singles: &[SingleCause],
+) -> Result<(Decision, ScoredModel), CalibrationError> {
+    let remainder =
+        UnexplainedResidual::of(all.twin, &all.split.train, &first.judged.fit.residuals);
     let alone = (Decision::Named(vec![first.cause]), first.judged.clone());
     // A second cause is looked for only where the first leaves something.
     if !remainder.is_structured() {
         return Ok(alone);
     }
-    let mut best: Option<(f64, Judged)> = None;
+    let mut best: Option<(f64, ScoredModel)> = None;
     for other in singles.iter().filter(|single| single.cause != first.cause) {
-        let model = Model {
+        let model = CauseSet {
             causes: vec![first.cause, other.cause],
         };
         let judged = all.judge(&model, &first.judged.fit.point)?;
-        let against = all.against(&judged, &first.judged, judged.worth());
+        let against = all.advantage_over(&judged, &first.judged, judged.effective_weight());
         let plausible = model
             .causes
             .iter()

@@ -1,6 +1,6 @@
 //! An impulse response in numbers: levels in bands and windows of time.
 
-use crate::bundle::Response;
+use crate::bundle::MeasuredResponse;
 use dwell_acoustics::Echogram;
 use dwell_acoustics::bands::{BAND_COUNT, FilterBank, NOMINAL_CENTRES_HZ};
 
@@ -30,7 +30,7 @@ pub(super) fn bands(rate_hz: u32) -> std::ops::Range<usize> {
 
 /// When the direct sound arrives, s from the first sample: the first sample near the peak, refined to a fraction of a
 /// sample by the parabola through the largest of the next few.
-pub(super) fn onset_s(response: &Response) -> f64 {
+pub(super) fn onset_s(response: &MeasuredResponse) -> f64 {
     let samples = &response.samples;
     let peak = samples.iter().fold(0.0_f32, |peak, s| peak.max(s.abs()));
     let first = samples
@@ -57,7 +57,7 @@ pub(super) fn onset_s(response: &Response) -> f64 {
 }
 
 /// Levels of a response, dB, by band, then window.
-pub(super) fn measured_db(response: &Response) -> Vec<f64> {
+pub(super) fn measured_db(response: &MeasuredResponse) -> Vec<f64> {
     let rate = f64::from(response.rate_hz);
     let onset = onset_s(response);
     // What lies after the last window costs time and says nothing.
@@ -189,7 +189,7 @@ mod tests {
         let mut samples = vec![0.0; 4000];
         samples[160] = 0.5;
         samples[160 + 400] = 0.25;
-        let response = Response {
+        let response = MeasuredResponse {
             source_m: [0.0; 3],
             receiver_m: [0.0; 3],
             rate_hz,

@@ -1,9 +1,12 @@
 //! Free flight: each episode is a ball that flies through the engine's own physics.
 
 use super::air::{air_density_kg_m3, gravity_m_s2};
-use super::stage::{Stage, Thing, between};
-use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Slot, Structure, Twin, Values};
-use crate::bundle::{Bundle, Sample};
+use super::test_world::{TestObject, TestWorld, hermite_interpolation};
+use super::{
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation, ParameterIndex,
+    ResidualStructure, Twin,
+};
+use crate::bundle::{Bundle, MeasuredSample};
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_physics::PhysicsConfig;
@@ -16,15 +19,15 @@ const START_SAMPLES: usize = 8;
 
 /// Free flight of bodies.
 pub(crate) struct FlightTwin {
-    episodes: Vec<Measured>,
+    episodes: Vec<EpisodeData>,
     /// The axis (0 x, 1 y, 2 z) of each channel.
     axes: Vec<usize>,
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
-    own: Vec<Parameter>,
+    own: Vec<FitParameter>,
     /// The axis and whether it is the speed, of each own nuisance.
     own_axes: Vec<(usize, bool)>,
-    stages: Vec<Stage>,
+    stages: Vec<TestWorld>,
     /// The stage of each episode's body.
     stage_of: Vec<usize>,
     rate_hz: f64,
@@ -50,8 +53,12 @@ impl FlightTwin {
         let mut own_axes = Vec::new();
         for (axis, letter) in ["x", "y", "z"].iter().enumerate() {
             if axes.contains(&axis) {
-                own.push(Parameter::nuisance(&format!("start {letter}"), "m", 1e-3));
-                own.push(Parameter::nuisance(
+                own.push(FitParameter::nuisance(
+                    &format!("start {letter}"),
+                    "m",
+                    1e-3,
+                ));
+                own.push(FitParameter::nuisance(
                     &format!("start speed {letter}"),
                     "m/s",
                     2e-2,
@@ -68,7 +75,7 @@ impl FlightTwin {
         let mut stages = Vec::new();
         for body in &manifest.scene.bodies {
             // `bundle::read` has asked for the radius.
-            let ball = Thing::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
+            let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             let config = PhysicsConfig {
                 control_rate_hz: options.physics_rate_hz as f32,
                 physics_rate_hz: options.physics_rate_hz as f32,
@@ -77,7 +84,7 @@ impl FlightTwin {
                 solver_substeps: 1,
                 ..PhysicsConfig::default()
             };
-            stages.push(Stage::new(size_m, &ball, config)?);
+            stages.push(TestWorld::new(size_m, &ball, config)?);
         }
         let air_density_kg_m3 = air_density_kg_m3(manifest);
         let gravity_m_s2 = gravity_m_s2(manifest);
@@ -142,14 +149,15 @@ pub(super) fn channels(bundle: &Bundle) -> Vec<ChannelInfo> {
 }
 
 /// An episode's numbers, with times from its first sample on.
-pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::Episode) -> Measured {
+pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::MeasuredEpisode) -> EpisodeData {
     let first = episode
         .samples
         .iter()
         .map(|s| s.t_s)
         .fold(f64::INFINITY, f64::min);
-    let column = |f: &dyn Fn(&Sample) -> f64| episode.samples.iter().map(f).collect::<Vec<f64>>();
-    Measured {
+    let column =
+        |f: &dyn Fn(&MeasuredSample) -> f64| episode.samples.iter().map(f).collect::<Vec<f64>>();
+    EpisodeData {
         name: episode.name.clone(),
         group: episode.group.clone(),
         y: column(&|s| s.value),
@@ -162,7 +170,7 @@ pub(super) fn measured(bundle: &Bundle, episode: &crate::bundle::Episode) -> Mea
 fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Cause> {
     let number =
         |name: &str, unit: &str, default: f64, bounds: [f64; 2], plausible: [f64; 2], step: f64| {
-            Parameter {
+            FitParameter {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
                 default,
@@ -177,9 +185,9 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             id: drag.id.to_owned(),
             name: drag.name.to_owned(),
             equation: drag.equation.to_owned(),
-            parameters: Parameter::of_law(drag, "c_d", 0.05).into_iter().collect(),
+            parameters: FitParameter::of_law(drag, "c_d", 0.05).into_iter().collect(),
             separating_experiment: drag.separating_experiment.to_owned(),
-            installs_as: Experiment::Law {
+            installs_as: Installation::Law {
                 version: drag.version,
                 target: None,
             },
@@ -195,7 +203,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw at speeds that differ by a factor of three or more: the deceleration grows with \
                                     the speed here, with its square in quadratic drag"
                 .into(),
-            installs_as: Experiment::Elsewhere,
+            installs_as: Installation::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.05, 0.3],
         },
@@ -208,7 +216,7 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
             separating_experiment: "throw flat and steep, slow and fast: gravity changes the vertical motion alone, by the \
                                     same amount at every speed; time a pendulum of known length"
                 .into(),
-            installs_as: Experiment::Addresses(vec!["world/gravity_m_s2".into()]),
+            installs_as: Installation::Addresses(vec!["world/gravity_m_s2".into()]),
             fixed: Vec::new(),
             starts: vec![],
         },
@@ -216,11 +224,11 @@ fn causes(drag: &LawInfo, gravity_m_s2: f64, air_density_kg_m3: f64) -> Vec<Caus
 }
 
 impl Twin for FlightTwin {
-    fn episodes(&self) -> &[Measured] {
+    fn episodes(&self) -> &[EpisodeData] {
         &self.episodes
     }
 
-    fn episodes_mut(&mut self) -> &mut [Measured] {
+    fn episodes_mut(&mut self) -> &mut [EpisodeData] {
         &mut self.episodes
     }
 
@@ -228,8 +236,8 @@ impl Twin for FlightTwin {
         &self.channels
     }
 
-    fn structure(&self) -> Structure {
-        Structure::InTime
+    fn structure(&self) -> ResidualStructure {
+        ResidualStructure::OverTime
     }
 
     fn causes(&self) -> &[Cause] {
@@ -237,11 +245,11 @@ impl Twin for FlightTwin {
     }
 
     /// A time offset is none here: a flight that starts earlier starts elsewhere.
-    fn shared(&self) -> &[Parameter] {
+    fn shared(&self) -> &[FitParameter] {
         &[]
     }
 
-    fn own(&self) -> &[Parameter] {
+    fn own(&self) -> &[FitParameter] {
         &self.own
     }
 
@@ -271,7 +279,11 @@ impl Twin for FlightTwin {
             .collect()
     }
 
-    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError> {
+    fn predict(
+        &self,
+        episode: usize,
+        at: &EpisodeParameters<'_>,
+    ) -> Result<Vec<f64>, CalibrationError> {
         let measured = &self.episodes[episode];
         let mut laws = self.laws(at.causes);
         let overrides = [("world/gravity_m_s2", at.causes[2])];
@@ -316,7 +328,7 @@ impl Twin for FlightTwin {
         }
         let times = measured.t_s.iter().zip(&measured.channel);
         Ok(times
-            .map(|(t, channel)| between(&tracks[self.axes[*channel]], step_s, *t))
+            .map(|(t, channel)| hermite_interpolation(&tracks[self.axes[*channel]], step_s, *t))
             .collect())
     }
 
@@ -324,11 +336,13 @@ impl Twin for FlightTwin {
     fn derivative(
         &self,
         episode: usize,
-        _at: &Values<'_>,
+        _at: &EpisodeParameters<'_>,
         _base: &[f64],
-        slot: Slot,
+        slot: ParameterIndex,
     ) -> Option<Vec<f64>> {
-        let Slot::Own(k) = slot else { return None };
+        let ParameterIndex::Own(k) = slot else {
+            return None;
+        };
         let (axis, speed) = self.own_axes[k];
         let channels = self.episodes[episode].channel.iter();
         (!speed).then(|| {
@@ -375,7 +389,7 @@ mod tests {
         let own = [1.0, 3.0, 1.5, 2.0, -1.0, 0.5];
         let (start, speed) = ([1.0, 1.5, -1.0], [3.0, 2.0, 0.5]);
         for (gravity, rate) in [(9.806_65, 0.0), (9.78, 0.0), (5.0, 0.0), (9.806_65, 0.7)] {
-            let values = Values {
+            let values = EpisodeParameters {
                 causes: &[0.0, rate, gravity],
                 shared: &[],
                 own: &own,

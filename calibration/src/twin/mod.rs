@@ -6,11 +6,11 @@ mod flight;
 mod parameter;
 mod room;
 mod servo;
-pub(crate) mod stage;
+pub(crate) mod test_world;
 
 pub(crate) use air::{air_density_kg_m3, gravity_m_s2};
 pub(crate) use flight::FlightTwin;
-pub(crate) use parameter::{Cause, Experiment, Parameter};
+pub(crate) use parameter::{Cause, FitParameter, Installation};
 pub(crate) use room::RoomTwin;
 pub(crate) use servo::ServoTwin;
 
@@ -19,7 +19,7 @@ use nalgebra::DMatrix;
 
 /// The numbers of one episode, by channel, each by time.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Measured {
+pub(crate) struct EpisodeData {
     pub(crate) name: String,
     pub(crate) group: String,
     pub(crate) y: Vec<f64>,
@@ -42,16 +42,16 @@ pub(crate) struct ChannelInfo {
 
 /// How noise is told from what the model lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Structure {
+pub(crate) enum ResidualStructure {
     /// Samples follow each other in time: what the model lacks is smoother than noise.
-    InTime,
+    OverTime,
     /// Every episode has the same cells (band and time): what the model lacks is common to the episodes.
-    InCells,
+    ByCell,
 }
 
 /// Where a model stands: a value for each parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Point {
+pub(crate) struct ParameterVector {
     /// Of all causes, one after the other, as in [`Twin::causes`].
     pub(crate) causes: Vec<f64>,
     /// Nuisances that all episodes share.
@@ -62,44 +62,48 @@ pub(crate) struct Point {
 
 /// One parameter of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Slot {
-    /// Position in [`Point::own`] of the episode.
+pub(crate) enum ParameterIndex {
+    /// Position in [`ParameterVector::own`] of the episode.
     Own(usize),
-    /// Position in [`Point::shared`].
+    /// Position in [`ParameterVector::shared`].
     Shared(usize),
-    /// Position in [`Point::causes`].
+    /// Position in [`ParameterVector::causes`].
     Cause(usize),
 }
 
 /// The simulation of what was measured.
 pub(crate) trait Twin: Sync {
     /// The episodes.
-    fn episodes(&self) -> &[Measured];
+    fn episodes(&self) -> &[EpisodeData];
     /// The episodes, for estimates of their noise.
-    fn episodes_mut(&mut self) -> &mut [Measured];
+    fn episodes_mut(&mut self) -> &mut [EpisodeData];
     /// What the channels mean.
     fn channels(&self) -> &[ChannelInfo];
     /// How noise is told from structure.
-    fn structure(&self) -> Structure;
+    fn structure(&self) -> ResidualStructure;
     /// What may be wrong.
     fn causes(&self) -> &[Cause];
     /// Nuisances that all episodes share.
-    fn shared(&self) -> &[Parameter];
+    fn shared(&self) -> &[FitParameter];
     /// Nuisances of each episode.
-    fn own(&self) -> &[Parameter];
+    fn own(&self) -> &[FitParameter];
     /// Where an episode's nuisances start.
     fn start(&self, episode: usize) -> Vec<f64>;
 
-    /// What the simulation says instead of [`Measured::y`].
-    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError>;
+    /// What the simulation says instead of [`EpisodeData::y`].
+    fn predict(
+        &self,
+        episode: usize,
+        at: &EpisodeParameters<'_>,
+    ) -> Result<Vec<f64>, CalibrationError>;
 
     /// The derivative by `slot`, where it is known without another simulation.
     fn derivative(
         &self,
         _episode: usize,
-        _at: &Values<'_>,
+        _at: &EpisodeParameters<'_>,
         _base: &[f64],
-        _slot: Slot,
+        _slot: ParameterIndex,
     ) -> Option<Vec<f64>> {
         None
     }
@@ -108,9 +112,9 @@ pub(crate) trait Twin: Sync {
     fn derivatives(
         &self,
         episode: usize,
-        at: &Values<'_>,
+        at: &EpisodeParameters<'_>,
         base: &[f64],
-        slots: &[Slot],
+        slots: &[ParameterIndex],
     ) -> Result<DMatrix<f64>, CalibrationError> {
         let mut matrix = DMatrix::zeros(base.len(), slots.len());
         for (k, slot) in slots.iter().enumerate() {
@@ -127,9 +131,9 @@ pub(crate) trait Twin: Sync {
     fn difference(
         &self,
         episode: usize,
-        at: &Values<'_>,
+        at: &EpisodeParameters<'_>,
         base: &[f64],
-        slot: Slot,
+        slot: ParameterIndex,
     ) -> Result<Vec<f64>, CalibrationError> {
         let parameter = self.parameter(slot);
         let mut moved = at.owned();
@@ -150,11 +154,11 @@ pub(crate) trait Twin: Sync {
     }
 
     /// What is known about a slot's parameter.
-    fn parameter(&self, slot: Slot) -> &Parameter {
+    fn parameter(&self, slot: ParameterIndex) -> &FitParameter {
         match slot {
-            Slot::Own(k) => &self.own()[k],
-            Slot::Shared(k) => &self.shared()[k],
-            Slot::Cause(k) => {
+            ParameterIndex::Own(k) => &self.own()[k],
+            ParameterIndex::Shared(k) => &self.shared()[k],
+            ParameterIndex::Cause(k) => {
                 let mut parameters = self.causes().iter().flat_map(|cause| &cause.parameters);
                 parameters.nth(k).expect("slots are made from the causes")
             }
@@ -164,15 +168,15 @@ pub(crate) trait Twin: Sync {
 
 /// The values that one episode is simulated with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Values<'a> {
+pub(crate) struct EpisodeParameters<'a> {
     pub(crate) causes: &'a [f64],
     pub(crate) shared: &'a [f64],
     pub(crate) own: &'a [f64],
 }
 
-impl Values<'_> {
-    fn owned(&self) -> OwnedValues {
-        OwnedValues {
+impl EpisodeParameters<'_> {
+    fn owned(&self) -> OwnedEpisodeParameters {
+        OwnedEpisodeParameters {
             causes: self.causes.to_vec(),
             shared: self.shared.to_vec(),
             own: self.own.to_vec(),
@@ -180,23 +184,23 @@ impl Values<'_> {
     }
 }
 
-struct OwnedValues {
+struct OwnedEpisodeParameters {
     causes: Vec<f64>,
     shared: Vec<f64>,
     own: Vec<f64>,
 }
 
-impl OwnedValues {
-    fn slot_mut(&mut self, slot: Slot) -> &mut f64 {
+impl OwnedEpisodeParameters {
+    fn slot_mut(&mut self, slot: ParameterIndex) -> &mut f64 {
         match slot {
-            Slot::Own(k) => &mut self.own[k],
-            Slot::Shared(k) => &mut self.shared[k],
-            Slot::Cause(k) => &mut self.causes[k],
+            ParameterIndex::Own(k) => &mut self.own[k],
+            ParameterIndex::Shared(k) => &mut self.shared[k],
+            ParameterIndex::Cause(k) => &mut self.causes[k],
         }
     }
 
-    fn values(&self) -> Values<'_> {
-        Values {
+    fn values(&self) -> EpisodeParameters<'_> {
+        EpisodeParameters {
             causes: &self.causes,
             shared: &self.shared,
             own: &self.own,
@@ -204,10 +208,10 @@ impl OwnedValues {
     }
 }
 
-impl Point {
+impl ParameterVector {
     /// The values of one episode.
-    pub(crate) fn values(&self, episode: usize) -> Values<'_> {
-        Values {
+    pub(crate) fn values(&self, episode: usize) -> EpisodeParameters<'_> {
+        EpisodeParameters {
             causes: &self.causes,
             shared: &self.shared,
             own: &self.own[episode],
@@ -229,7 +233,7 @@ impl Point {
     }
 }
 
-/// The positions of a cause's parameters in [`Point::causes`].
+/// The positions of a cause's parameters in [`ParameterVector::causes`].
 pub(crate) fn range_of(twin: &dyn Twin, cause: usize) -> std::ops::Range<usize> {
     let counts = twin.causes().iter().map(|cause| cause.parameters.len());
     let first: usize = counts.take(cause).sum();

@@ -4,7 +4,7 @@ use dwell_scene::LawInfo;
 
 /// A number that is fitted.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Parameter {
+pub(crate) struct FitParameter {
     pub(crate) name: String,
     pub(crate) unit: String,
     /// The value at which nothing changes.
@@ -17,7 +17,7 @@ pub(crate) struct Parameter {
     pub(crate) step: f64,
 }
 
-impl Parameter {
+impl FitParameter {
     /// A nuisance: any value is plausible.
     pub(crate) fn nuisance(name: &str, unit: &str, step: f64) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Parameter {
 
 /// How a cause becomes part of a simulation that others run.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Experiment {
+pub(crate) enum Installation {
     /// It is a law of an engine.
     Law {
         version: u32,
@@ -64,7 +64,7 @@ pub(crate) enum Experiment {
     /// Each parameter stands at an address of the state.
     Addresses(Vec<String>),
     /// It belongs to the measurement or to a controller; worlds do not simulate it.
-    Elsewhere,
+    Unsupported,
 }
 
 /// Something that the simulation may lack or have wrong.
@@ -74,10 +74,10 @@ pub(crate) struct Cause {
     /// As it stands in a sentence.
     pub(crate) name: String,
     pub(crate) equation: String,
-    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) parameters: Vec<FitParameter>,
     /// The experiment that separates it from its rivals.
     pub(crate) separating_experiment: String,
-    pub(crate) installs_as: Experiment,
+    pub(crate) installs_as: Installation,
     /// Parameters of a law that are known and not fitted.
     pub(crate) fixed: Vec<(String, f64)>,
     /// Values of the first parameter from which fitting is tried.

@@ -1,8 +1,11 @@
 //! A room: each episode is one or more impulse responses, simulated by the engine's energies.
 
 use super::features::{self, Smear, WINDOWS};
-use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Slot, Structure, Twin, Values};
-use crate::bundle::file::{Room, Surface};
+use super::{
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation, ParameterIndex,
+    ResidualStructure, Twin,
+};
+use crate::bundle::file::{RoomManifest, SurfaceManifest};
 use crate::bundle::{Bundle, SIDES};
 use crate::error::CalibrationError;
 use crate::options::Options;
@@ -28,10 +31,10 @@ const LEAST_SD_DB: f64 = 0.4;
 
 /// Impulse responses of a room.
 pub(crate) struct RoomTwin {
-    episodes: Vec<Measured>,
+    episodes: Vec<EpisodeData>,
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
-    shared: Vec<Parameter>,
+    shared: Vec<FitParameter>,
     /// Source and receiver of each episode's responses.
     pairs: Vec<Vec<(Vec3, Vec3)>>,
     house: Arc<House>,
@@ -89,10 +92,10 @@ impl RoomTwin {
                     .map(|r| (place(r.source_m), place(r.receiver_m)))
                     .collect(),
             );
-            let mut measured = Measured {
+            let mut measured = EpisodeData {
                 name: episode.name.clone(),
                 group: episode.group.clone(),
-                ..Measured::default()
+                ..EpisodeData::default()
             };
             for response in &episode.responses {
                 measured.y.extend(features::measured_db(response));
@@ -125,7 +128,9 @@ impl RoomTwin {
                 .collect(),
             shared: bands
                 .clone()
-                .map(|band| Parameter::nuisance(&format!("gain at {} Hz", centre(band)), "dB", 1.0))
+                .map(|band| {
+                    FitParameter::nuisance(&format!("gain at {} Hz", centre(band)), "dB", 1.0)
+                })
                 .collect(),
             smear: Smear::new(rate_hz),
             seed: options.seed,
@@ -144,7 +149,7 @@ impl RoomTwin {
     fn moved(
         &self,
         episode: usize,
-        at: &Values<'_>,
+        at: &EpisodeParameters<'_>,
         surface: usize,
     ) -> Result<(Vec<f64>, Vec<f64>), CalibrationError> {
         let count = self.bands.len();
@@ -158,7 +163,7 @@ impl RoomTwin {
         }
         let there = self.predict(
             episode,
-            &Values {
+            &EpisodeParameters {
                 causes: &causes,
                 ..*at
             },
@@ -226,7 +231,7 @@ fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
     }
 }
 
-fn shoebox(room: &Room) -> Result<House, dwell_scene::SceneError> {
+fn shoebox(room: &RoomManifest) -> Result<House, dwell_scene::SceneError> {
     let side = |name: &str| material(name, room.surfaces.get(name));
     let [floor, ceiling, west, east, north, south] = SIDES.map(side);
     let materials = ShoeboxMaterials {
@@ -240,7 +245,7 @@ fn shoebox(room: &Room) -> Result<House, dwell_scene::SceneError> {
     House::shoebox(room.size_m.map(|edge| edge as f32), &materials)
 }
 
-fn material(name: &str, surface: Option<&Surface>) -> Material {
+fn material(name: &str, surface: Option<&SurfaceManifest>) -> Material {
     let known = surface.cloned().unwrap_or_default();
     let mut material = Material::of(
         name,
@@ -292,7 +297,7 @@ fn causes(
             let fault = |error: &dyn std::fmt::Display| CalibrationError::simulation(&text, error);
             let address = text.parse().map_err(|e| fault(&e))?;
             let here = state.parameter(house, &address).map_err(|e| fault(&e))?;
-            parameters.push(Parameter {
+            parameters.push(FitParameter {
                 name: format!("absorption at {} Hz", NOMINAL_CENTRES_HZ[band]),
                 unit: "1".into(),
                 default: here.value,
@@ -313,7 +318,7 @@ fn causes(
                 "measure close to {name} and far from it: its own early reflections change their level, the late decay \
                  shows the sum over all surfaces alone; or cover it and measure again"
             ),
-            installs_as: Experiment::Addresses(addresses),
+            installs_as: Installation::Addresses(addresses),
             fixed: Vec::new(),
             starts: Vec::new(),
         });
@@ -322,11 +327,11 @@ fn causes(
 }
 
 impl Twin for RoomTwin {
-    fn episodes(&self) -> &[Measured] {
+    fn episodes(&self) -> &[EpisodeData] {
         &self.episodes
     }
 
-    fn episodes_mut(&mut self) -> &mut [Measured] {
+    fn episodes_mut(&mut self) -> &mut [EpisodeData] {
         &mut self.episodes
     }
 
@@ -334,8 +339,8 @@ impl Twin for RoomTwin {
         &self.channels
     }
 
-    fn structure(&self) -> Structure {
-        Structure::InCells
+    fn structure(&self) -> ResidualStructure {
+        ResidualStructure::ByCell
     }
 
     fn causes(&self) -> &[Cause] {
@@ -343,11 +348,11 @@ impl Twin for RoomTwin {
     }
 
     /// The gain of source and microphone in each band. The time offset is taken out by the onsets.
-    fn shared(&self) -> &[Parameter] {
+    fn shared(&self) -> &[FitParameter] {
         &self.shared
     }
 
-    fn own(&self) -> &[Parameter] {
+    fn own(&self) -> &[FitParameter] {
         &[]
     }
 
@@ -355,7 +360,11 @@ impl Twin for RoomTwin {
         Vec::new()
     }
 
-    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError> {
+    fn predict(
+        &self,
+        episode: usize,
+        at: &EpisodeParameters<'_>,
+    ) -> Result<Vec<f64>, CalibrationError> {
         let mut levels = self.levels(episode, at.causes)?;
         for (level, channel) in levels.iter_mut().zip(&self.episodes[episode].channel) {
             *level += at.shared[*channel];
@@ -367,9 +376,9 @@ impl Twin for RoomTwin {
     fn derivatives(
         &self,
         episode: usize,
-        at: &Values<'_>,
+        at: &EpisodeParameters<'_>,
         base: &[f64],
-        slots: &[Slot],
+        slots: &[ParameterIndex],
     ) -> Result<DMatrix<f64>, CalibrationError> {
         let channel = &self.episodes[episode].channel;
         let count = self.bands.len();
@@ -377,13 +386,13 @@ impl Twin for RoomTwin {
         let mut moved: BTreeMap<usize, (Vec<f64>, Vec<f64>)> = BTreeMap::new();
         for (column, slot) in slots.iter().enumerate() {
             match *slot {
-                Slot::Own(_) => {}
-                Slot::Shared(band) => {
+                ParameterIndex::Own(_) => {}
+                ParameterIndex::Shared(band) => {
                     for row in (0..base.len()).filter(|row| channel[*row] == band) {
                         matrix[(row, column)] = 1.0;
                     }
                 }
-                Slot::Cause(k) => {
+                ParameterIndex::Cause(k) => {
                     let (surface, band) = (k / count, k % count);
                     if let Entry::Vacant(entry) = moved.entry(surface) {
                         entry.insert(self.moved(episode, at, surface)?);

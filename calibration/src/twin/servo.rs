@@ -1,8 +1,11 @@
 //! A servo: each episode is a run of commands through the engine's own joint.
 
 use super::flight::{channels, measured};
-use super::stage::{Stage, Thing, between};
-use super::{Cause, ChannelInfo, Experiment, Measured, Parameter, Structure, Twin, Values};
+use super::test_world::{TestObject, TestWorld, hermite_interpolation};
+use super::{
+    Cause, ChannelInfo, EpisodeData, EpisodeParameters, FitParameter, Installation,
+    ResidualStructure, Twin,
+};
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use crate::options::Options;
@@ -17,14 +20,14 @@ const MOST_OFFSET_S: f64 = 0.2;
 
 /// A joint that is driven by a position servo.
 pub(crate) struct ServoTwin {
-    episodes: Vec<Measured>,
+    episodes: Vec<EpisodeData>,
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
-    shared: Vec<Parameter>,
-    own: Vec<Parameter>,
+    shared: Vec<FitParameter>,
+    own: Vec<FitParameter>,
     /// (time from the episode's first sample, target) of each episode, by time.
     commands: Vec<Vec<(f64, f64)>>,
-    stage: Stage,
+    stage: TestWorld,
     rate_hz: f64,
     backlash: &'static LawInfo,
     friction_n_m: f64,
@@ -41,7 +44,7 @@ impl ServoTwin {
             ..Servo::default()
         };
         let hinge = (servo, joint.friction_n_m as f32);
-        let arm = Thing::arm(&joint.name, joint.inertia_kg_m2, hinge);
+        let arm = TestObject::arm(&joint.name, joint.inertia_kg_m2, hinge);
         let config = PhysicsConfig {
             control_rate_hz: options.physics_rate_hz as f32,
             physics_rate_hz: options.physics_rate_hz as f32,
@@ -84,11 +87,11 @@ impl ServoTwin {
                 joint.stiffness_n_m_rad,
             ),
             shared: vec![
-                Parameter::nuisance("time offset of commands against positions", "s", 2e-3)
+                FitParameter::nuisance("time offset of commands against positions", "s", 2e-3)
                     .within(-MOST_OFFSET_S, MOST_OFFSET_S),
             ],
-            own: vec![Parameter::nuisance("start position", "rad", 2e-3).within(-3.0, 3.0)],
-            stage: Stage::new(ROOM_M, &arm, config)?,
+            own: vec![FitParameter::nuisance("start position", "rad", 2e-3).within(-3.0, 3.0)],
+            stage: TestWorld::new(ROOM_M, &arm, config)?,
             rate_hz: options.physics_rate_hz,
             friction_n_m: joint.friction_n_m,
             commands,
@@ -100,7 +103,7 @@ impl ServoTwin {
 fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) -> Vec<Cause> {
     let number =
         |name: &str, unit: &str, default: f64, bounds: [f64; 2], plausible: [f64; 2], step: f64| {
-            Parameter {
+            FitParameter {
                 name: name.to_owned(),
                 unit: unit.to_owned(),
                 default,
@@ -117,9 +120,9 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             id: backlash.id.to_owned(),
             name: backlash.name.to_owned(),
             equation: backlash.equation.to_owned(),
-            parameters: Parameter::of_law(backlash, "half_width", 1e-3).into_iter().collect(),
+            parameters: FitParameter::of_law(backlash, "half_width", 1e-3).into_iter().collect(),
             separating_experiment: backlash.separating_experiment.to_owned(),
-            installs_as: Experiment::Law {
+            installs_as: Installation::Law {
                 version: backlash.version,
                 target: Some(joint.to_owned()),
             },
@@ -141,7 +144,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "stiffen the servo: what friction holds back shrinks with its stiffness, what backlash \
                                     holds back does not"
                 .into(),
-            installs_as: Experiment::Elsewhere,
+            installs_as: Installation::Unsupported,
             fixed: Vec::new(),
             starts: [0.005, 0.02].map(|rad| friction_n_m + torque(rad)).to_vec(),
         },
@@ -158,7 +161,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
                 torque(1e-3),
             )],
             separating_experiment: "move slowly and fast: what damping holds back grows with the speed".into(),
-            installs_as: Experiment::Elsewhere,
+            installs_as: Installation::Unsupported,
             fixed: Vec::new(),
             starts: vec![torque(0.005), torque(0.03)],
         },
@@ -170,7 +173,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             separating_experiment: "approach one target from both sides in small steps: a deadband has no memory, backlash \
                                     stays on the side it came from"
                 .into(),
-            installs_as: Experiment::Elsewhere,
+            installs_as: Installation::Unsupported,
             fixed: Vec::new(),
             starts: vec![0.005, 0.02, 0.06],
         },
@@ -180,7 +183,7 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
             equation: "target = s times command".into(),
             parameters: vec![number("scale", "1", 1.0, [0.2, 5.0], [0.9, 1.1], 2e-3)],
             separating_experiment: "hold still at several targets: a wrong scale is wrong in proportion to the target".into(),
-            installs_as: Experiment::Elsewhere,
+            installs_as: Installation::Unsupported,
             fixed: Vec::new(),
             starts: vec![],
         },
@@ -188,11 +191,11 @@ fn causes(backlash: &LawInfo, joint: &str, friction_n_m: f64, stiffness: f64) ->
 }
 
 impl Twin for ServoTwin {
-    fn episodes(&self) -> &[Measured] {
+    fn episodes(&self) -> &[EpisodeData] {
         &self.episodes
     }
 
-    fn episodes_mut(&mut self) -> &mut [Measured] {
+    fn episodes_mut(&mut self) -> &mut [EpisodeData] {
         &mut self.episodes
     }
 
@@ -200,19 +203,19 @@ impl Twin for ServoTwin {
         &self.channels
     }
 
-    fn structure(&self) -> Structure {
-        Structure::InTime
+    fn structure(&self) -> ResidualStructure {
+        ResidualStructure::OverTime
     }
 
     fn causes(&self) -> &[Cause] {
         &self.causes
     }
 
-    fn shared(&self) -> &[Parameter] {
+    fn shared(&self) -> &[FitParameter] {
         &self.shared
     }
 
-    fn own(&self) -> &[Parameter] {
+    fn own(&self) -> &[FitParameter] {
         &self.own
     }
 
@@ -220,7 +223,11 @@ impl Twin for ServoTwin {
         vec![self.episodes[episode].y[0]]
     }
 
-    fn predict(&self, episode: usize, at: &Values<'_>) -> Result<Vec<f64>, CalibrationError> {
+    fn predict(
+        &self,
+        episode: usize,
+        at: &EpisodeParameters<'_>,
+    ) -> Result<Vec<f64>, CalibrationError> {
         let measured = &self.episodes[episode];
         let [half_width, friction, damping, deadband, scale] = at.causes else {
             return Err(CalibrationError::simulation(
@@ -281,7 +288,7 @@ impl Twin for ServoTwin {
         Ok(measured
             .t_s
             .iter()
-            .map(|t| between(&track, step_s, t + offset))
+            .map(|t| hermite_interpolation(&track, step_s, t + offset))
             .collect())
     }
 }

@@ -126,7 +126,7 @@ impl Files {
 }
 
 /// A report's causes, for messages of failed tests.
-pub(crate) fn table(report: &dwell_calibration::Report) -> String {
+pub(crate) fn table(report: &dwell_calibration::CalibrationReport) -> String {
     let mut out = format!("{}\n", report.sentence);
     writeln!(
         out,

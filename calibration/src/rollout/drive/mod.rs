@@ -7,14 +7,14 @@ mod rig;
 pub use model::models;
 pub use rig::DriveRig;
 
-use super::motion::{Deviation, Motion};
+use super::motion::{Deviation, MeasuredMotion};
 use super::regime::Regime;
-use super::series::{Model, Modelled};
-use super::subject::Subject;
+use super::series::{ModelledSubject, SimulationModel};
+use super::subject::RolloutSubject;
 use crate::bundle::file::DriveRow;
-use crate::bundle::{self, Bundle, Episode};
+use crate::bundle::{self, Bundle, MeasuredEpisode};
 use crate::error::CalibrationError;
-use crate::report::Found;
+use crate::report::FoundEffects;
 use dwell_scene::random::RandomKey;
 use glam::{DQuat, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -34,7 +34,7 @@ pub struct NominalBase {
 
 /// Drives of one robot.
 #[derive(Clone, Debug)]
-pub struct Drives {
+pub struct DriveRecordings {
     /// The bundle's title.
     pub title: String,
     /// The licence of the data.
@@ -44,12 +44,12 @@ pub struct Drives {
     /// Samples per second, Hz.
     pub rate_hz: f64,
     /// The episodes, in the order of the file.
-    pub episodes: Vec<Drive>,
+    pub episodes: Vec<DriveRecording>,
 }
 
 /// One drive.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Drive {
+pub struct DriveRecording {
     /// Its name.
     pub name: String,
     /// Drives of one session are held out together.
@@ -60,11 +60,11 @@ pub struct Drive {
     pub planar: Vec<[f64; 3]>,
     /// How far the left and the right wheel turned since the sample before, rad. Shape (sample,).
     pub turned_rad: Vec<[f64; 2]>,
-    motions: Vec<Motion>,
+    motions: Vec<MeasuredMotion>,
     regimes: Vec<Regime>,
 }
 
-impl Drives {
+impl DriveRecordings {
     /// Reads a measured bundle of drives.
     ///
     /// # Errors
@@ -74,7 +74,8 @@ impl Drives {
     }
 
     pub(crate) fn of(bundle: &Bundle) -> Result<Self, CalibrationError> {
-        let (Some(base), bundle::file::Kind::Drive) = (&bundle.manifest.scene.base, bundle.kind())
+        let (Some(base), bundle::file::BundleKind::Drive) =
+            (&bundle.manifest.scene.base, bundle.kind())
         else {
             let found = format!("{:?}", bundle.kind());
             return Err(CalibrationError::field(
@@ -88,18 +89,18 @@ impl Drives {
             wheel_radius_m: base.wheel_radius_m,
             wheel_base_m: base.wheel_base_m,
         };
-        let drive = |episode: &Episode| {
+        let drive = |episode: &MeasuredEpisode| {
             let turned_rad = episode
                 .drive
                 .iter()
                 .map(|row| [row.left_rad, row.right_rad]);
-            let told = Drive::told(
+            let told = DriveRecording::told(
                 planar(&episode.drive),
                 turned_rad.collect(),
                 &nominal,
                 base.rate_hz,
             );
-            Drive {
+            DriveRecording {
                 name: episode.name.clone(),
                 group: episode.group.clone(),
                 kind: episode.conditions.clone(),
@@ -133,9 +134,9 @@ fn wrapped(angle_rad: f64) -> f64 {
 }
 
 /// The motion of a robot at a place in the plane, in a world whose y is up and in which yaw 0 looks along -z.
-fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> Motion {
+fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> MeasuredMotion {
     let rotation = DQuat::from_rotation_y(heading);
-    Motion {
+    MeasuredMotion {
         position: DVec3::new(-y, 0.0, -x),
         rotation,
         linear: rotation * DVec3::NEG_Z * speed_m_s,
@@ -143,7 +144,7 @@ fn motion([x, y, heading]: [f64; 3], speed_m_s: f64) -> Motion {
     }
 }
 
-impl Drive {
+impl DriveRecording {
     /// A drive without a name from what was measured.
     pub fn told(
         planar: Vec<[f64; 3]>,
@@ -168,14 +169,14 @@ impl Drive {
     }
 }
 
-impl Subject for Drives {
+impl RolloutSubject for DriveRecordings {
     type Rig = DriveRig;
 
     fn count(&self) -> usize {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[Motion] {
+    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
         &self.episodes[episode].motions
     }
 
@@ -207,7 +208,7 @@ impl Subject for Drives {
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<Motion>, CalibrationError> {
+    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let drive = &self.episodes[episode];
         let from = at.saturating_sub(PAST);
         let way = rig.way(&drive.turned_rad[from + 1..=at + samples], self.rate_hz)?;
@@ -255,7 +256,7 @@ fn mean(values: &[f64]) -> (f64, f64) {
     (mean, (squares / (count - 1.0).max(1.0)).sqrt())
 }
 
-impl Modelled for Drives {
+impl ModelledSubject for DriveRecordings {
     fn title(&self) -> &str {
         &self.title
     }
@@ -281,7 +282,12 @@ impl Modelled for Drives {
         0.5 * self.base.wheel_base_m
     }
 
-    fn rig(&self, model: &Model, values: &[f64], finer: u32) -> Result<DriveRig, CalibrationError> {
+    fn rig(
+        &self,
+        model: &SimulationModel,
+        values: &[f64],
+        finer: u32,
+    ) -> Result<DriveRig, CalibrationError> {
         let offset = model.value(values, model::HEADING_OFFSET, 0.0);
         DriveRig::new(
             &self.base,
@@ -292,10 +298,10 @@ impl Modelled for Drives {
         )
     }
 
-    fn found(&self, model: &Model, values: &[f64]) -> Found {
-        Found {
+    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects {
+        FoundEffects {
             laws: model::laws(model, values),
-            ..Found::default()
+            ..FoundEffects::default()
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Models of a base on two wheels.
 
-use crate::rollout::series::{Model, Parameter};
+use crate::rollout::series::{ModelParameter, SimulationModel};
 use dwell_scene::LawSpec;
 
 /// The angle by which the tracker's heading is off the robot's: a fault of the measurement, never put into the simulator.
@@ -8,8 +8,8 @@ pub(super) const HEADING_OFFSET: &str = "tracker_heading_offset_rad";
 
 /// The base as it is believed to be; another wheel base; unequal wheels; with the tracker's heading off; with slip. There was
 /// no gyro, so that its law cannot be judged.
-pub fn models() -> Vec<Model> {
-    let ratio = |name: &str| Parameter::new(name, "1", 1.0, [0.8, 1.25], 1e-4);
+pub fn models() -> Vec<SimulationModel> {
+    let ratio = |name: &str| ModelParameter::new(name, "1", 1.0, [0.8, 1.25], 1e-4);
     let wheels = || {
         vec![
             ratio("radius_ratio"),
@@ -17,12 +17,12 @@ pub fn models() -> Vec<Model> {
             ratio("radius_scale"),
         ]
     };
-    let with = |more: Parameter| {
+    let with = |more: ModelParameter| {
         let mut all = wheels();
         all.push(more);
         all
     };
-    let model = |name, about, extends, parameters| Model {
+    let model = |name, about, extends, parameters| SimulationModel {
         name,
         about,
         extends,
@@ -51,7 +51,7 @@ pub fn models() -> Vec<Model> {
             "tracker",
             "as wheels, and a tracker whose heading is off by a constant angle, fitted",
             Some("wheels"),
-            with(Parameter::new(
+            with(ModelParameter::new(
                 HEADING_OFFSET,
                 "rad",
                 0.0,
@@ -63,7 +63,7 @@ pub fn models() -> Vec<Model> {
             "slip",
             "as wheels, and the law wheel_slip, fitted",
             Some("wheels"),
-            with(Parameter::new(
+            with(ModelParameter::new(
                 "slip_per_m_s2",
                 "s2/m",
                 0.0,
@@ -75,7 +75,7 @@ pub fn models() -> Vec<Model> {
 }
 
 /// The laws of a model with these values.
-pub(super) fn laws(model: &Model, values: &[f64]) -> Vec<LawSpec> {
+pub(super) fn laws(model: &SimulationModel, values: &[f64]) -> Vec<LawSpec> {
     let law = |id: &str, names: &[&str]| {
         let found = names.iter().filter_map(|name| {
             let place = model.parameters.iter().position(|p| p.name == *name)?;

@@ -1,9 +1,9 @@
 //! The report of a series as one page: no network, no script.
 
 use super::SeriesReport;
+use crate::format_number::{number, percent};
 use crate::report::page;
-use crate::rollout::parts;
-use crate::words::{number, percent};
+use crate::rollout::html;
 use std::fmt::Write as _;
 
 impl SeriesReport {
@@ -26,10 +26,10 @@ impl SeriesReport {
         self.parameters(&mut out);
         out.push_str("<h2>Windows</h2><p class=\"soft\">From measured samples some samples ahead: root mean square (median).</p>");
         for outcome in &self.models {
-            parts::windows(&mut out, outcome.model.name, &outcome.windows);
+            html::windows(&mut out, outcome.model.name, &outcome.windows);
         }
-        parts::solver(&mut out, &self.solver);
-        parts::residuals(&mut out, &self.residuals);
+        html::solver(&mut out, &self.solver);
+        html::residuals(&mut out, &self.residuals);
         let found = serde_json::to_string_pretty(&self.found).unwrap_or_default();
         let _ = writeln!(
             out,

@@ -6,17 +6,17 @@ mod model;
 mod score;
 mod write;
 
-pub use model::{Model, Modelled, Parameter};
-pub use score::{EpisodeError, Gained, KindErrors};
+pub use model::{ModelParameter, ModelledSubject, SimulationModel};
+pub use score::{EpisodeError, KindErrors, ModelGain};
 
 use super::refine::sentence as told;
 use super::residuals::{self, Residuals};
 use super::study::folds;
-use super::{End, FINER, Refinement, WindowScore, Windowing, ends, refinements, windows};
+use super::{FINER, Refinement, WindowEnd, WindowOptions, WindowScore, ends, refinements, windows};
 use crate::error::CalibrationError;
 use crate::fit::{Variable, least_squares, median};
-use crate::progress::{Progress, Tell};
-use crate::report::{Found, page};
+use crate::progress::{CallbackProgress, ProgressReporter};
+use crate::report::{FoundEffects, page};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
@@ -60,7 +60,7 @@ impl Default for SeriesOptions {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelOutcome {
     /// The model.
-    pub model: Model,
+    pub model: SimulationModel,
     /// The parameters that each fold chose on the other folds. Shape (fold, parameter).
     pub chosen: Vec<Vec<f64>>,
     /// Every episode, out of fold.
@@ -68,7 +68,7 @@ pub struct ModelOutcome {
     /// Medians by kind of episode; the first row is of all.
     pub kinds: Vec<KindErrors>,
     /// Against the model that it extends.
-    pub gain: Option<Gained>,
+    pub gain: Option<ModelGain>,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
     /// What a quarter of the step changes.
@@ -95,7 +95,7 @@ pub struct SeriesReport {
     /// Which residuals are the solver's, a sentence for each model.
     pub solver: Vec<String>,
     /// The best model with the median of what its folds chose, for the simulator.
-    pub found: Found,
+    pub found: FoundEffects,
 }
 
 /// Compares models of a subject. `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go
@@ -107,19 +107,19 @@ pub struct SeriesReport {
 ///
 /// # Determinism
 /// Equal subject and options give the same bits for any number of threads.
-pub fn run<S: Modelled>(
+pub fn run<S: ModelledSubject>(
     subject: &S,
-    models: &[Model],
+    models: &[SimulationModel],
     options: &SeriesOptions,
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<SeriesReport, CalibrationError> {
     let fold_of = folds_of(subject, options)?;
-    let progress = Progress::new(progress);
+    let progress = CallbackProgress::new(progress);
     let mut outcomes: Vec<ModelOutcome> = Vec::with_capacity(models.len());
-    let mut windows: Vec<Vec<End>> = Vec::with_capacity(models.len());
+    let mut windows: Vec<Vec<WindowEnd>> = Vec::with_capacity(models.len());
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
-        let study = Study {
+        let study = ModelStudy {
             subject,
             model,
             fold_of: &fold_of,
@@ -142,7 +142,8 @@ pub fn run<S: Modelled>(
     progress.stage(1.0, "done")?;
     let kinds: Vec<&str> = (0..subject.count()).map(|e| subject.kind(e)).collect();
     let shown = models.iter().zip(&windows).take(page::COLOURS.len());
-    let rows: Vec<residuals::Row> = shown.map(|(model, ends)| (model.name, &ends[..])).collect();
+    let rows: Vec<residuals::ModelWindows> =
+        shown.map(|(model, ends)| (model.name, &ends[..])).collect();
     let best = outcomes
         .iter()
         .min_by(|a, b| a.square_mm2().total_cmp(&b.square_mm2()));
@@ -162,14 +163,14 @@ pub fn run<S: Modelled>(
             .iter()
             .map(|o| told(o.model.name, &o.refinements))
             .collect(),
-        found: best.map_or_else(Found::default, |best| {
+        found: best.map_or_else(FoundEffects::default, |best| {
             subject.found(&best.model, &best.typical())
         }),
         models: outcomes,
     })
 }
 
-fn folds_of<S: Modelled>(
+fn folds_of<S: ModelledSubject>(
     subject: &S,
     options: &SeriesOptions,
 ) -> Result<Vec<usize>, CalibrationError> {
@@ -206,20 +207,20 @@ fn folds_of<S: Modelled>(
 }
 
 /// A model on its way through the folds.
-struct Study<'a, S: Modelled> {
+struct ModelStudy<'a, S: ModelledSubject> {
     subject: &'a S,
-    model: &'a Model,
+    model: &'a SimulationModel,
     fold_of: &'a [usize],
     options: &'a SeriesOptions,
     key: RandomKey,
 }
 
-impl<S: Modelled> Study<'_, S> {
+impl<S: ModelledSubject> ModelStudy<'_, S> {
     fn run(
         &self,
         share: [f32; 2],
-        progress: &dyn Tell,
-    ) -> Result<(ModelOutcome, Vec<End>), CalibrationError> {
+        progress: &dyn ProgressReporter,
+    ) -> Result<(ModelOutcome, Vec<WindowEnd>), CalibrationError> {
         let threads = Threads::resolve(self.options.threads);
         let count = self.fold_of.iter().max().map_or(0, |most| most + 1);
         let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());
@@ -242,14 +243,14 @@ impl<S: Modelled> Study<'_, S> {
         };
         let found = threads.map(self.subject.count(), one);
         let episodes = found.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let windowing = Windowing {
+        let windowing = WindowOptions {
             stride: self.options.window_stride,
             guard: Some(self.key.child("windows")),
             threads,
         };
         let found = ends(self.subject, &own, &windowing)?;
         progress.check()?;
-        let unguarded = Windowing {
+        let unguarded = WindowOptions {
             guard: None,
             ..windowing
         };
@@ -271,7 +272,7 @@ impl<S: Modelled> Study<'_, S> {
         &self,
         fold: usize,
         threads: Threads,
-        progress: &dyn Tell,
+        progress: &dyn ProgressReporter,
     ) -> Result<Vec<f64>, CalibrationError> {
         if self.model.parameters.is_empty() {
             return Ok(Vec::new());

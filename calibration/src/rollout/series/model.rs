@@ -1,13 +1,13 @@
 //! Models that are tried on a series of episodes.
 
 use crate::error::CalibrationError;
-use crate::report::Found;
-use crate::rollout::Subject;
+use crate::report::FoundEffects;
+use crate::rollout::RolloutSubject;
 use serde::Serialize;
 
 /// A number that a model fits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Parameter {
+pub struct ModelParameter {
     /// Its name.
     pub name: String,
     /// SI unit, `"1"` for none.
@@ -21,7 +21,7 @@ pub struct Parameter {
     pub step: f64,
 }
 
-impl Parameter {
+impl ModelParameter {
     /// A number that is fitted.
     pub fn new(
         name: impl Into<String>,
@@ -42,7 +42,7 @@ impl Parameter {
 
 /// A way to simulate the episodes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Model {
+pub struct SimulationModel {
     /// A short name.
     pub name: &'static str,
     /// What it is, in a sentence.
@@ -50,10 +50,10 @@ pub struct Model {
     /// The model that it extends; `null`: none.
     pub extends: Option<&'static str>,
     /// What is fitted.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<ModelParameter>,
 }
 
-impl Model {
+impl SimulationModel {
     /// The value of a parameter by name; `otherwise` where the model does not have it.
     pub fn value(&self, values: &[f64], name: &str, otherwise: f64) -> f64 {
         let mut pairs = self.parameters.iter().zip(values);
@@ -63,7 +63,7 @@ impl Model {
 }
 
 /// A subject with models of it.
-pub trait Modelled: Subject {
+pub trait ModelledSubject: RolloutSubject {
     /// The bundle's title.
     fn title(&self) -> &str;
 
@@ -86,9 +86,13 @@ pub trait Modelled: Subject {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for what physics does not take.
-    fn rig(&self, model: &Model, values: &[f64], finer: u32)
-    -> Result<Self::Rig, CalibrationError>;
+    fn rig(
+        &self,
+        model: &SimulationModel,
+        values: &[f64],
+        finer: u32,
+    ) -> Result<Self::Rig, CalibrationError>;
 
     /// What goes into the simulator.
-    fn found(&self, model: &Model, values: &[f64]) -> Found;
+    fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects;
 }

@@ -1,11 +1,11 @@
 //! Errors of whole episodes, and what a model gains over another.
 
-use super::{ModelOutcome, Modelled};
+use super::{ModelOutcome, ModelledSubject};
 use crate::error::CalibrationError;
 use crate::fit::median;
-use crate::rollout::{Deviation, Motion};
+use crate::format_number::{number, percent};
+use crate::rollout::{Deviation, MeasuredMotion};
 use crate::select::share_gained;
-use crate::words::{number, percent};
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -53,7 +53,7 @@ pub struct KindErrors {
 
 /// What a model gains over the one that it extends, each episode out of fold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Gained {
+pub struct ModelGain {
     /// The other model.
     pub over: &'static str,
     /// Share of the squared error that goes away.
@@ -65,11 +65,11 @@ pub struct Gained {
 }
 
 /// The measured motions after the start of whole roll-outs, beside the predicted ones.
-fn rolled<S: Modelled>(
+fn rolled<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
-) -> Result<Vec<(Motion, Motion)>, CalibrationError> {
+) -> Result<Vec<(MeasuredMotion, MeasuredMotion)>, CalibrationError> {
     let measured = subject.measured(episode);
     let at = subject.past();
     let samples = measured.len().saturating_sub(at + 1);
@@ -81,7 +81,7 @@ fn rolled<S: Modelled>(
 }
 
 /// An episode's error.
-pub(super) fn error<S: Modelled>(
+pub(super) fn error<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
@@ -110,7 +110,7 @@ pub(super) fn error<S: Modelled>(
 }
 
 /// What a fit makes small: each episode counts as one, whatever its length. mm.
-pub(super) fn residuals<S: Modelled>(
+pub(super) fn residuals<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
     episode: usize,
@@ -160,13 +160,13 @@ pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
 }
 
 /// What `after` gains over `before`. Groups are drawn, not episodes: those of one session are alike.
-pub(super) fn gained<S: Modelled>(
+pub(super) fn gained<S: ModelledSubject>(
     subject: &S,
     before: &ModelOutcome,
     after: &ModelOutcome,
     draws: usize,
     key: RandomKey,
-) -> Gained {
+) -> ModelGain {
     let mut groups: BTreeMap<&str, [f64; 2]> = BTreeMap::new();
     let mut better = 0;
     for (k, (b, a)) in before.episodes.iter().zip(&after.episodes).enumerate() {
@@ -177,7 +177,7 @@ pub(super) fn gained<S: Modelled>(
     }
     let column = |k: usize| groups.values().map(|sums| sums[k]).collect::<Vec<f64>>();
     let (share, interval) = share_gained(&column(0), &column(1), draws, key);
-    Gained {
+    ModelGain {
         over: before.model.name,
         share,
         interval,

@@ -37,7 +37,7 @@ impl SeriesReport {
         let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, page::alone(residuals).as_bytes())?;
+            whole(folder, &name, page::to_svg_file(residuals).as_bytes())?;
         }
         whole(folder, "report.json", pretty(&self.value()).as_bytes())?;
         whole(folder, "report.html", self.to_html().as_bytes())?;

@@ -1,9 +1,9 @@
 //! The report of a study as one page: no network, no script.
 
 use super::StudyReport;
+use crate::format_number::{number, percent};
 use crate::report::page;
-use crate::rollout::parts;
-use crate::words::{number, percent};
+use crate::rollout::html;
 use std::fmt::Write as _;
 
 impl StudyReport {
@@ -150,10 +150,10 @@ impl StudyReport {
             self.noise.rotation_rad.to_degrees()
         );
         for report in &self.models {
-            parts::windows(out, report.model.name, &report.windows);
+            html::windows(out, report.model.name, &report.windows);
         }
-        parts::solver(out, &self.solver);
-        parts::residuals(out, &self.residuals);
+        html::solver(out, &self.solver);
+        html::residuals(out, &self.residuals);
     }
 
     fn pairs(&self, out: &mut String) {

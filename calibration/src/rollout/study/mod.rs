@@ -3,26 +3,27 @@
 
 mod folds;
 mod html;
-mod kept;
 mod model;
-mod peer;
+mod other_simulator;
 mod search;
+mod search_cache;
 mod write;
 
 pub(super) use folds::folds;
 pub use model::{ContactModel, ContactParameter, all as models, trials};
-pub use peer::{Comparison, Paired, Peer};
+pub use other_simulator::{OtherSimulator, PairedDifference, SimulatorComparison};
 
 use super::refine::sentence as told;
 use super::residuals::{self, Residuals};
 use super::{
-    End, FINER, Noise, Refinement, Rig, Score, Subject as _, Summary, Tracks, WindowScore,
-    Windowing, diverging, ends, refinements, scores, windows,
+    BoardRig, FINER, PoseTracks, Refinement, RolloutSubject as _, Score, ScoreSummary,
+    TrackerNoise, WindowEnd, WindowOptions, WindowScore, diverging, ends, refinements, scores,
+    windows,
 };
 use crate::error::CalibrationError;
-use crate::progress::{Progress, Tell};
-use crate::report::{Found, page};
-use crate::twin::stage::{BOARD_SUBSTANCE, THING_SUBSTANCE};
+use crate::progress::{CallbackProgress, ProgressReporter};
+use crate::report::{FoundEffects, page};
+use crate::twin::test_world::{BOARD_SUBSTANCE, THING_SUBSTANCE};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
@@ -90,9 +91,9 @@ pub struct ModelReport {
     /// The parameters that each fold chose on the other folds. Shape (fold, parameter).
     pub chosen: Vec<Vec<f64>>,
     /// All episodes, each out of fold.
-    pub summary: Summary,
+    pub summary: ScoreSummary,
     /// Those that do not diverge.
-    pub steady: Summary,
+    pub steady: ScoreSummary,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
     /// What a quarter of the step changes.
@@ -100,7 +101,7 @@ pub struct ModelReport {
     /// Every episode.
     pub episodes: Vec<EpisodeScore>,
     /// Against the peers, episode by episode.
-    pub against: Vec<Comparison>,
+    pub against: Vec<SimulatorComparison>,
 }
 
 /// The report of a study.
@@ -115,7 +116,7 @@ pub struct StudyReport {
     /// How it was made.
     pub options: StudyOptions,
     /// The tracker's noise from sample to sample.
-    pub noise: Noise,
+    pub noise: TrackerNoise,
     /// In a sentence.
     pub sentence: String,
     /// Which residuals are the solver's, a sentence for each model.
@@ -125,7 +126,7 @@ pub struct StudyReport {
     /// How residuals of the first models spread.
     pub residuals: Vec<Residuals>,
     /// The best model with the median of what its folds chose, for the simulator.
-    pub found: Found,
+    pub found: FoundEffects,
 }
 
 /// Studies the tracks. `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go on.
@@ -137,18 +138,18 @@ pub struct StudyReport {
 /// # Determinism
 /// Equal tracks and options give the same bits for any number of threads.
 pub fn run(
-    tracks: &Tracks,
+    tracks: &PoseTracks,
     models: &[ContactModel],
-    peers: &[Peer],
+    peers: &[OtherSimulator],
     options: &StudyOptions,
     progress: &mut dyn FnMut(f32, &str) -> bool,
 ) -> Result<StudyReport, CalibrationError> {
     check(tracks, options)?;
-    let progress = Progress::new(progress);
+    let progress = CallbackProgress::new(progress);
     let groups: Vec<&str> = tracks.episodes.iter().map(|e| e.group.as_str()).collect();
     let fold_of = folds::folds(&groups, options.folds, options.seed);
     let mut reports = Vec::with_capacity(models.len());
-    let mut windows: Vec<Vec<End>> = Vec::with_capacity(models.len());
+    let mut windows: Vec<Vec<WindowEnd>> = Vec::with_capacity(models.len());
     for (k, model) in models.iter().enumerate() {
         let share = [k, k + 1].map(|k| k as f32 / models.len() as f32);
         let (report, ends) = study(tracks, model, peers, &fold_of, options, share, &progress)?;
@@ -158,7 +159,8 @@ pub fn run(
         windows.push(ends);
     }
     let shown = models.iter().zip(&windows).take(page::COLOURS.len());
-    let rows: Vec<residuals::Row> = shown.map(|(model, ends)| (model.name, &ends[..])).collect();
+    let rows: Vec<residuals::ModelWindows> =
+        shown.map(|(model, ends)| (model.name, &ends[..])).collect();
     progress.stage(1.0, "done")?;
     let best = reports
         .iter()
@@ -175,12 +177,12 @@ pub fn run(
             .collect(),
         residuals: residuals::all(&rows, tracks.telling_horizon(), true, &[]),
         sentence: best.map_or_else(String::new, |best| sentence(best, &reports)),
-        found: best.map_or_else(Found::default, |best| found(tracks, best)),
+        found: best.map_or_else(FoundEffects::default, |best| found(tracks, best)),
         models: reports,
     })
 }
 
-fn check(tracks: &Tracks, options: &StudyOptions) -> Result<(), CalibrationError> {
+fn check(tracks: &PoseTracks, options: &StudyOptions) -> Result<(), CalibrationError> {
     let least = |field: &str, value: usize, least: usize| {
         if value >= least {
             return Ok(());
@@ -209,20 +211,20 @@ fn check(tracks: &Tracks, options: &StudyOptions) -> Result<(), CalibrationError
 }
 
 fn study(
-    tracks: &Tracks,
+    tracks: &PoseTracks,
     model: &ContactModel,
-    peers: &[Peer],
+    peers: &[OtherSimulator],
     fold_of: &[usize],
     options: &StudyOptions,
     share: [f32; 2],
-    progress: &dyn Tell,
-) -> Result<(ModelReport, Vec<End>), CalibrationError> {
+    progress: &dyn ProgressReporter,
+) -> Result<(ModelReport, Vec<WindowEnd>), CalibrationError> {
     let threads = Threads::resolve(options.threads);
     let key = RandomKey::root(options.seed)
         .child("study")
         .child(model.name);
-    let plain = Rig::new(tracks, model.contact_friction)?;
-    let plain_fine = Rig::finer(tracks, model.contact_friction, FINER)?;
+    let plain = BoardRig::new(tracks, model.contact_friction)?;
+    let plain_fine = BoardRig::finer(tracks, model.contact_friction, FINER)?;
     let (mut chosen, mut rigs, mut fine) = (Vec::new(), Vec::new(), Vec::new());
     for fold in 0..options.folds {
         let done = share[0] + (share[1] - share[0]) * fold as f32 / options.folds as f32;
@@ -233,7 +235,7 @@ fn study(
         } else {
             let key = key.child(fold as u64);
             let what = (tracks, model, fold);
-            kept::or_search(options.kept.as_deref(), what, options, || {
+            search_cache::cached_or_search(options.kept.as_deref(), what, options, || {
                 search::search(model, &plain, tracks, &train, options, key, progress)
             })?
         };
@@ -258,16 +260,16 @@ fn study(
         }
     }
     progress.check()?;
-    let own: Vec<&Rig> = fold_of.iter().map(|fold| &rigs[*fold]).collect();
-    let finer: Vec<&Rig> = fold_of.iter().map(|fold| &fine[*fold]).collect();
-    let windowing = Windowing {
+    let own: Vec<&BoardRig> = fold_of.iter().map(|fold| &rigs[*fold]).collect();
+    let finer: Vec<&BoardRig> = fold_of.iter().map(|fold| &fine[*fold]).collect();
+    let windowing = WindowOptions {
         stride: options.window_stride,
         guard: Some(key.child("windows")),
         threads,
     };
     let found = ends(tracks, &own, &windowing)?;
     progress.check()?;
-    let unguarded = Windowing {
+    let unguarded = WindowOptions {
         guard: None,
         ..windowing
     };
@@ -275,18 +277,18 @@ fn study(
     let every: Vec<Score> = by_episode.iter().map(|(score, _)| *score).collect();
     let steady = by_episode.iter().filter(|(_, diverges)| !diverges);
     let steady: Vec<Score> = steady.map(|(score, _)| *score).collect();
-    let against: Result<Vec<Comparison>, _> = peers
+    let against: Result<Vec<SimulatorComparison>, _> = peers
         .iter()
         .map(|peer| {
             let key = key.child("peer").child(peer.name.as_str());
-            peer::compare(tracks, &every, peer, options.bootstrap_draws, key)
+            other_simulator::compare(tracks, &every, peer, options.bootstrap_draws, key)
         })
         .collect();
     let report = ModelReport {
         model: model.clone(),
         chosen,
-        summary: Summary::of(&every),
-        steady: Summary::of(&steady),
+        summary: ScoreSummary::of(&every),
+        steady: ScoreSummary::of(&steady),
         windows: windows(&found),
         refinements: refined,
         episodes: all
@@ -335,10 +337,10 @@ fn sentence(best: &ModelReport, all: &[ModelReport]) -> String {
     text + "."
 }
 
-fn found(tracks: &Tracks, best: &ModelReport) -> Found {
+fn found(tracks: &PoseTracks, best: &ModelReport) -> FoundEffects {
     let settings = best.model.settings(&best.typical(), tracks.nominal);
     let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
-    Found {
+    FoundEffects {
         laws: settings.laws,
         parameters: [
             (format!("{pair}/friction"), settings.friction),

@@ -1,6 +1,6 @@
 //! Contact models whose parameters are fitted to tosses.
 
-use crate::rollout::{Nominal, Settings};
+use crate::rollout::{NominalContact, RigSettings};
 use dwell_physics::ContactFriction;
 use dwell_scene::LawSpec;
 use serde::Serialize;
@@ -133,7 +133,7 @@ impl ContactParameter {
 
 impl ContactModel {
     /// What a rig is set to for these values, one for each parameter.
-    pub fn settings(&self, values: &[f64], nominal: Nominal) -> Settings {
+    pub fn settings(&self, values: &[f64], nominal: NominalContact) -> RigSettings {
         let value = |name: &str| {
             let mut pairs = self.parameters.iter().zip(values);
             pairs.find(|(p, _)| p.name == name).map(|(_, v)| *v)
@@ -160,7 +160,7 @@ impl ContactModel {
         if let Some(radius) = value("torsion_radius_m") {
             laws.push(law("torsional_friction", &[("radius_m", radius)]));
         }
-        Settings {
+        RigSettings {
             friction: value("friction").unwrap_or(nominal.friction),
             restitution: value("restitution").unwrap_or(nominal.restitution),
             laws,

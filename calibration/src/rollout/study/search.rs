@@ -4,8 +4,8 @@ use super::StudyOptions;
 use super::model::ContactModel;
 use crate::error::CalibrationError;
 use crate::fit::CmaEs;
-use crate::progress::Tell;
-use crate::rollout::{Rig, Score, Tracks, scores};
+use crate::progress::ProgressReporter;
+use crate::rollout::{BoardRig, PoseTracks, Score, scores};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
@@ -33,12 +33,12 @@ pub(super) fn cost(scores: &[Score]) -> f64 {
 /// tried and their mean is chosen.
 pub(super) fn search(
     model: &ContactModel,
-    rig: &Rig,
-    tracks: &Tracks,
+    rig: &BoardRig,
+    tracks: &PoseTracks,
     train: &[usize],
     options: &StudyOptions,
     key: RandomKey,
-    progress: &dyn Tell,
+    progress: &dyn ProgressReporter,
 ) -> Result<Vec<f64>, CalibrationError> {
     let threads = Threads::resolve(options.threads);
     let starts = model.parameters.iter().map(|parameter| {

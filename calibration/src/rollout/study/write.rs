@@ -41,7 +41,7 @@ impl StudyReport {
         )?;
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, page::alone(residuals).as_bytes())?;
+            whole(folder, &name, page::to_svg_file(residuals).as_bytes())?;
         }
         whole(folder, "report.html", self.to_html().as_bytes())?;
         whole(folder, "found.json", format!("{found:#}\n").as_bytes())

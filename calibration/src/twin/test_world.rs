@@ -23,14 +23,14 @@ const WAITING_HEIGHT_M: f32 = 2.0;
 
 /// A physics world at its start, to be copied for every simulation.
 #[derive(Clone)]
-pub(crate) struct Stage {
+pub(crate) struct TestWorld {
     pub(crate) house: Arc<House>,
     pub(crate) world: PhysicsWorld,
     pub(crate) state: State,
 }
 
 /// What is simulated.
-pub(crate) struct Thing {
+pub(crate) struct TestObject {
     pub(crate) name: String,
     pub(crate) mass_kg: f32,
     pub(crate) collider: Collider,
@@ -40,7 +40,7 @@ pub(crate) struct Thing {
     pub(crate) board: bool,
 }
 
-impl Thing {
+impl TestObject {
     /// A ball.
     pub(crate) fn ball(name: &str, mass_kg: f64, radius_m: f64) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl Thing {
     }
 
     /// A box above a board.
-    pub(crate) fn tossed(name: &str, mass_kg: f64, half_extents_m: [f64; 3]) -> Self {
+    pub(crate) fn box_above_board(name: &str, mass_kg: f64, half_extents_m: [f64; 3]) -> Self {
         let half = Vec3::from(half_extents_m.map(|half| half as f32));
         Self {
             collider: Collider::cuboid(-half, half),
@@ -79,12 +79,12 @@ impl Thing {
     }
 }
 
-impl Stage {
+impl TestWorld {
     /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: a
     /// flight through larger coordinates would be rough by more than what is looked for.
     pub(crate) fn new(
         size_m: f32,
-        thing: &Thing,
+        thing: &TestObject,
         config: PhysicsConfig,
     ) -> Result<Self, CalibrationError> {
         let fault =
@@ -162,7 +162,7 @@ impl Stage {
     }
 }
 
-fn put(data: &mut HouseData, thing: &Thing) {
+fn put(data: &mut HouseData, thing: &TestObject) {
     let material = data.materials.push(Material::of(
         "thing",
         library().get_or_default(THING_SUBSTANCE),
@@ -289,7 +289,7 @@ fn octahedron() -> Mesh {
 }
 
 /// A quantity with its rate of change at equal steps, read between them by cubic Hermite interpolation.
-pub(crate) fn between(track: &[(f64, f64)], step_s: f64, t_s: f64) -> f64 {
+pub(crate) fn hermite_interpolation(track: &[(f64, f64)], step_s: f64, t_s: f64) -> f64 {
     let last = track.len() - 1;
     let place = (t_s / step_s).clamp(0.0, last as f64);
     let k = (place.floor() as usize).min(last.saturating_sub(1));
@@ -316,11 +316,11 @@ mod tests {
             .map(|t| (t * t, 2.0 * t))
             .collect();
         for t in [0.0, 0.05, 0.1234, 0.4] {
-            assert!((between(&track, 0.1, t) - t * t).abs() < 1e-12);
+            assert!((hermite_interpolation(&track, 0.1, t) - t * t).abs() < 1e-12);
         }
         assert!(
-            (between(&track, 0.1, -1.0)).abs() < 1e-12
-                && (between(&track, 0.1, 9.0) - 0.16).abs() < 1e-12
+            (hermite_interpolation(&track, 0.1, -1.0)).abs() < 1e-12
+                && (hermite_interpolation(&track, 0.1, 9.0) - 0.16).abs() < 1e-12
         );
     }
 }

@@ -1,9 +1,9 @@
 //! The simulation of a body above a board, ready to be started from any motion.
 
-use super::motion::Motion;
-use super::track::{TrackedBody, Tracks};
+use super::motion::MeasuredMotion;
+use super::pose_tracks::{PoseTracks, TrackedBody};
 use crate::error::CalibrationError;
-use crate::twin::stage::{BOARD_SUBSTANCE, Stage, THING_SUBSTANCE, Thing};
+use crate::twin::test_world::{BOARD_SUBSTANCE, THING_SUBSTANCE, TestObject, TestWorld};
 use dwell_physics::{ContactFriction, PhysicsConfig};
 use dwell_scene::{LawSpec, PartId};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -16,15 +16,15 @@ const BODY: PartId = PartId(0);
 
 /// A tiny house, a body above a board, to be copied for every roll-out.
 #[derive(Clone)]
-pub struct Rig {
-    stage: Stage,
+pub struct BoardRig {
+    stage: TestWorld,
     /// What turns the inertia of a solid body into the one that was measured.
     inertia: LawSpec,
 }
 
 /// What a rig is set to.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Settings {
+pub struct RigSettings {
     /// Coulomb friction of the pair.
     pub friction: f64,
     /// Restitution of the pair.
@@ -33,13 +33,13 @@ pub struct Settings {
     pub laws: Vec<LawSpec>,
 }
 
-impl Rig {
+impl BoardRig {
     /// Builds the house and its physics.
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a body that physics does not take.
     pub fn new(
-        tracks: &Tracks,
+        tracks: &PoseTracks,
         contact_friction: ContactFriction,
     ) -> Result<Self, CalibrationError> {
         Self::finer(tracks, contact_friction, 1)
@@ -48,14 +48,14 @@ impl Rig {
     /// The same with `times` as many steps between two samples.
     ///
     /// # Errors
-    /// As [`Rig::new`].
+    /// As [`BoardRig::new`].
     pub fn finer(
-        tracks: &Tracks,
+        tracks: &PoseTracks,
         contact_friction: ContactFriction,
         times: u32,
     ) -> Result<Self, CalibrationError> {
         let body = &tracks.body;
-        let thing = Thing::tossed(&body.name, body.mass_kg, body.half_extents_m);
+        let thing = TestObject::box_above_board(&body.name, body.mass_kg, body.half_extents_m);
         let rate_hz = tracks.rate_hz as f32;
         let config = PhysicsConfig {
             control_rate_hz: rate_hz,
@@ -65,13 +65,13 @@ impl Rig {
             sleeping: false,
             ..PhysicsConfig::default()
         };
-        let stage = Stage::new(20.0, &thing, config)?;
+        let stage = TestWorld::new(20.0, &thing, config)?;
         let gravity = [("world/gravity_m_s2", tracks.gravity_m_s2)];
         let rig = Self {
             stage: stage.with(Vec::new(), &gravity)?,
             inertia: inertia(&tracks.body),
         };
-        rig.set(&Settings {
+        rig.set(&RigSettings {
             friction: tracks.nominal.friction,
             restitution: tracks.nominal.restitution,
             laws: Vec::new(),
@@ -82,7 +82,7 @@ impl Rig {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a value or law that physics does not take.
-    pub fn set(&self, settings: &Settings) -> Result<Self, CalibrationError> {
+    pub fn set(&self, settings: &RigSettings) -> Result<Self, CalibrationError> {
         let pair = format!("pair/{THING_SUBSTANCE}~{BOARD_SUBSTANCE}");
         let (friction, restitution) = (format!("{pair}/friction"), format!("{pair}/restitution"));
         let values = [
@@ -100,7 +100,11 @@ impl Rig {
     ///
     /// # Errors
     /// [`CalibrationError::Simulation`] for a start that is not finite.
-    pub fn roll(&self, start: &Motion, samples: usize) -> Result<Vec<Motion>, CalibrationError> {
+    pub fn roll(
+        &self,
+        start: &MeasuredMotion,
+        samples: usize,
+    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let mut stage = self.stage.clone();
         // Near the origin single precision is finest, and the board is the same everywhere.
         let origin = DVec3::new(start.position.x, 0.0, start.position.z);
@@ -125,14 +129,19 @@ impl Rig {
     }
 }
 
-fn read(origin: DVec3, position: Vec3, rotation: Quat, velocity: &dwell_scene::Velocity) -> Motion {
+fn read(
+    origin: DVec3,
+    position: Vec3,
+    rotation: Quat,
+    velocity: &dwell_scene::Velocity,
+) -> MeasuredMotion {
     let quat = DQuat::from_xyzw(
         f64::from(rotation.x),
         f64::from(rotation.y),
         f64::from(rotation.z),
         f64::from(rotation.w),
     );
-    Motion {
+    MeasuredMotion {
         position: origin + position.as_dvec3(),
         rotation: quat.normalize(),
         linear: velocity.linear.as_dvec3(),

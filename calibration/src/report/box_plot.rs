@@ -2,9 +2,9 @@
 
 use super::html::escape;
 use super::page::COLOURS;
-use super::svg::{self, Scale};
+use super::svg::{self, AxisScale};
+use crate::format_number::number;
 use crate::rollout::Residuals;
-use crate::words::number;
 use std::fmt::Write as _;
 
 const LEFT: f64 = 56.0;
@@ -20,20 +20,20 @@ const STYLE: &str = "svg{--soft:#5f6b76;--line:#d8dee4;--before:#c2591a;--after:
 
 /// The picture inside a page.
 pub(crate) fn picture(residuals: &Residuals) -> String {
-    drawn(residuals, "")
+    draw_boxes(residuals, "")
 }
 
 /// The picture as a file.
-pub(crate) fn alone(residuals: &Residuals) -> String {
-    drawn(residuals, &format!("<style>{STYLE}</style>"))
+pub(crate) fn to_svg_file(residuals: &Residuals) -> String {
+    draw_boxes(residuals, &format!("<style>{STYLE}</style>"))
 }
 
-fn drawn(residuals: &Residuals, style: &str) -> String {
+fn draw_boxes(residuals: &Residuals, style: &str) -> String {
     let height = TOP + PLOT + BOTTOM;
     let full = svg::WIDTH.max(LEFT + GROUP * residuals.groups.len() as f64);
     let boxes = || residuals.groups.iter().flat_map(|group| &group.models);
     let most = boxes().map(|b| b.at[4]).fold(1e-9, f64::max);
-    let y = Scale {
+    let y = AxisScale {
         low: 0.0,
         high: most,
         from: TOP + PLOT,

@@ -2,8 +2,8 @@
 
 use super::residuals::Residuals;
 use super::{HORIZONS, Regime, WindowScore};
+use crate::format_number::number;
 use crate::report::page;
-use crate::words::number;
 use std::fmt::Write as _;
 
 /// What windows of a model deviate by.

@@ -3,7 +3,7 @@
 use crate::bundle::refused;
 use crate::error::CalibrationError;
 use crate::fit::median;
-use crate::rollout::{Score, Summary, Tracks};
+use crate::rollout::{PoseTracks, Score, ScoreSummary};
 use dwell_scene::file;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 16 << 20;
 
 /// Another simulator's scores.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Peer {
+pub struct OtherSimulator {
     /// Its name.
     pub name: String,
     /// By episode.
@@ -24,14 +24,14 @@ pub struct Peer {
 
 /// A row of a table of scores.
 #[derive(Deserialize)]
-struct Row {
+struct PeerScoreRow {
     episode: String,
     position_widths: f64,
     rotation_deg: f64,
     e_q: f64,
 }
 
-impl Peer {
+impl OtherSimulator {
     /// Reads a CSV table with the columns `episode, position_widths, rotation_deg, e_q`; the file's name is the peer's.
     ///
     /// # Errors
@@ -44,7 +44,7 @@ impl Peer {
             .deserialize()
             .enumerate()
         {
-            let row: Row = row.map_err(|error| CalibrationError::Syntax {
+            let row: PeerScoreRow = row.map_err(|error| CalibrationError::Syntax {
                 at: format!("{at} line {}", k + 2),
                 what: error.to_string(),
             })?;
@@ -65,7 +65,7 @@ impl Peer {
 
 /// One quantity, episode by episode: ours minus theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Paired {
+pub struct PairedDifference {
     /// The share of episodes in which ours is smaller.
     pub better_share: f64,
     /// The median difference; below 0: ours is smaller.
@@ -76,17 +76,17 @@ pub struct Paired {
 
 /// The comparison with a peer.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct SimulatorComparison {
     /// The peer.
     pub name: String,
     /// Its own figures on the shared episodes.
-    pub summary: Summary,
+    pub summary: ScoreSummary,
     /// Distance, as a share of the body's width.
-    pub position_widths: Paired,
+    pub position_widths: PairedDifference,
     /// Angle, degrees.
-    pub rotation_deg: Paired,
+    pub rotation_deg: PairedDifference,
     /// The published loss.
-    pub e_q: Paired,
+    pub e_q: PairedDifference,
 }
 
 /// Compares the scores of all episodes with a peer's.
@@ -94,12 +94,12 @@ pub struct Comparison {
 /// # Errors
 /// [`CalibrationError::Missing`] when the peer lacks an episode.
 pub(super) fn compare(
-    tracks: &Tracks,
+    tracks: &PoseTracks,
     ours: &[Score],
-    peer: &Peer,
+    peer: &OtherSimulator,
     draws: usize,
     key: RandomKey,
-) -> Result<Comparison, CalibrationError> {
+) -> Result<SimulatorComparison, CalibrationError> {
     let mut theirs = Vec::with_capacity(ours.len());
     for episode in &tracks.episodes {
         let Some(score) = peer.scores.get(&episode.name) else {
@@ -127,15 +127,15 @@ pub(super) fn compare(
         medians.sort_by(f64::total_cmp);
         let at = |share: f64| medians[(share * (medians.len() - 1) as f64).round() as usize];
         let better = differences.iter().filter(|d| **d < 0.0).count();
-        Paired {
+        PairedDifference {
             better_share: better as f64 / differences.len() as f64,
             median_difference: median(&mut differences.clone()),
             interval: [at(0.025), at(0.975)],
         }
     };
-    Ok(Comparison {
+    Ok(SimulatorComparison {
         name: peer.name.clone(),
-        summary: Summary::of(&theirs),
+        summary: ScoreSummary::of(&theirs),
         position_widths: paired(|s| s.position_widths, "position"),
         rotation_deg: paired(|s| s.rotation_deg, "rotation"),
         e_q: paired(|s| s.e_q, "e_q"),

@@ -1,11 +1,11 @@
 //! What people get wrong most often about measured data, found by what cannot be otherwise, and told with what to change.
 
-use super::Episode;
-use super::file::{Kind, Manifest};
+use super::MeasuredEpisode;
+use super::file::{BundleKind, Manifest};
 use crate::error::CalibrationError;
 use std::collections::BTreeMap;
 
-type Checked = Result<(), CalibrationError>;
+type UnitCheck = Result<(), CalibrationError>;
 
 /// How far a sample's time may be from its place in an even row, as a share of the spacing.
 const SPACING_TOLERANCE: f64 = 0.05;
@@ -22,15 +22,15 @@ const LEAST_RISE_M: f64 = 0.02;
 const RISE_SD: f64 = 12.0;
 
 /// A unit that is taken for the SI one: what it is called, how many of it are one of SI.
-type Unit = (&'static str, f64);
+type UnitScale = (&'static str, f64);
 
-const LENGTHS: [Unit; 4] = [
+const LENGTHS: [UnitScale; 4] = [
     ("millimetres", 1e3),
     ("centimetres", 1e2),
     ("inches", 1.0 / 0.0254),
     ("feet", 1.0 / 0.3048),
 ];
-const TIMES: [Unit; 3] = [
+const TIMES: [UnitScale; 3] = [
     ("milliseconds", 1e3),
     ("microseconds", 1e6),
     ("nanoseconds", 1e9),
@@ -38,12 +38,12 @@ const TIMES: [Unit; 3] = [
 /// Degrees in a radian.
 pub(super) const DEGREES: f64 = 180.0 / std::f64::consts::PI;
 
-fn is_about(found: f64, wanted: f64, tolerance: f64) -> bool {
+fn is_near(found: f64, wanted: f64, tolerance: f64) -> bool {
     (found / wanted - 1.0).abs() <= tolerance
 }
 
 /// What to do about numbers in another unit. `key`: of the map of `dwell measure import`.
-fn convert(what: &str, unit: Unit, key: &str) -> String {
+fn convert(what: &str, unit: UnitScale, key: &str) -> String {
     let (name, factor) = unit;
     let digits = if factor.fract() == 0.0 { 0 } else { 4 };
     format!(
@@ -54,7 +54,7 @@ fn convert(what: &str, unit: Unit, key: &str) -> String {
 
 /// What to do about angles that are larger by `factor` than radians; empty where degrees do not explain it.
 pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
-    is_about(factor, DEGREES, FACTOR_TOLERANCE)
+    is_near(factor, DEGREES, FACTOR_TOLERANCE)
         .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
 }
 
@@ -62,7 +62,7 @@ pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
 pub(super) fn lengths(what: &str, factor: f64) -> Option<String> {
     let unit = LENGTHS
         .iter()
-        .find(|unit| is_about(factor, unit.1, FACTOR_TOLERANCE))?;
+        .find(|unit| is_near(factor, unit.1, FACTOR_TOLERANCE))?;
     Some(convert(what, *unit, "metres_per_unit"))
 }
 
@@ -72,7 +72,7 @@ fn median(values: &mut [f64]) -> Option<f64> {
 }
 
 /// Refuses times that stand twice, or that do not rise evenly at a rate. `times`: rising.
-pub(super) fn even(at: &str, times: &[f64], rate_hz: f64) -> Checked {
+pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> UnitCheck {
     let Some(first) = times.first() else {
         return Ok(());
     };
@@ -86,21 +86,21 @@ pub(super) fn even(at: &str, times: &[f64], rate_hz: f64) -> Checked {
     let usual = median(&mut steps).unwrap_or(0.0);
     let unit = TIMES
         .iter()
-        .find(|unit| is_about(usual * rate_hz, unit.1, SPACING_TOLERANCE));
+        .find(|unit| is_near(usual * rate_hz, unit.1, SPACING_TOLERANCE));
     let missing = (last * rate_hz).round() - 1.0;
     let told = if last == 0.0 {
         "; it stands twice: leave one of the two rows out".to_owned()
     } else if let Some(unit) = unit {
         format!("; times {}", convert("are", *unit, "seconds_per_unit"))
-    } else if is_about(usual, 1.0, 1e-6) && rate_hz > 1.0 {
+    } else if is_near(usual, 1.0, 1e-6) && rate_hz > 1.0 {
         let (unit, key) = (("frames", rate_hz), "seconds_per_unit");
         format!("; times {}", convert("are counted", unit, key))
-    } else if !is_about(usual * rate_hz, 1.0, SPACING_TOLERANCE) {
+    } else if !is_near(usual * rate_hz, 1.0, SPACING_TOLERANCE) {
         let found = 1.0 / usual;
         format!(
             "; times rise by {usual:.6} s as a rule: write {found:.6} for rate_hz if that is meant"
         )
-    } else if missing >= 1.0 && is_about(last * rate_hz, missing + 1.0, SPACING_TOLERANCE) {
+    } else if missing >= 1.0 && is_near(last * rate_hz, missing + 1.0, SPACING_TOLERANCE) {
         format!(
             "; {missing} missing before it: fill them in, or end the episode there and give the rows after it \
              another episode's name"
@@ -116,12 +116,12 @@ pub(super) fn even(at: &str, times: &[f64], rate_hz: f64) -> Checked {
 }
 
 /// One number of a body over time.
-struct Track {
+struct CoordinateTrack {
     t_s: Vec<f64>,
     m: Vec<f64>,
 }
 
-impl Track {
+impl CoordinateTrack {
     /// Accelerations, m/s2: of each sample with those so many before and after it.
     fn accelerations(&self, reach: usize) -> impl Iterator<Item = f64> {
         let (t, y) = (&self.t_s, &self.m);
@@ -166,7 +166,7 @@ impl Track {
 }
 
 /// The tracks of an episode along x, y and z; empty where there is none.
-fn tracks(manifest: &Manifest, episode: &Episode) -> [Track; 3] {
+fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3] {
     ["x", "y", "z"].map(|axis| {
         let samples = episode.samples.iter();
         let of_axis = samples.filter(|s| manifest.channels[s.channel].name == axis);
@@ -185,21 +185,21 @@ fn tracks(manifest: &Manifest, episode: &Episode) -> [Track; 3] {
             )
         });
         let (t_s, m) = flown.chain(posed).unzip();
-        Track { t_s, m }
+        CoordinateTrack { t_s, m }
     })
 }
 
 /// Whether bodies fall along y by what the manifest says, in metres and seconds, and whether flights are flights alone.
-pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[Episode]) -> Checked {
+pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> UnitCheck {
     let file = match manifest.kind {
-        Kind::Trajectory => "trajectory.csv",
-        Kind::PoseTrajectory => "poses.csv",
-        Kind::Servo | Kind::ImpulseResponse | Kind::Drive => return Ok(()),
+        BundleKind::Trajectory => "trajectory.csv",
+        BundleKind::PoseTrajectory => "poses.csv",
+        BundleKind::Servo | BundleKind::ImpulseResponse | BundleKind::Drive => return Ok(()),
     };
     let at = format!("{name}/{file}");
-    let all: Vec<[Track; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
+    let all: Vec<[CoordinateTrack; 3]> = episodes.iter().map(|e| tracks(manifest, e)).collect();
     falls(&at, manifest, &all)?;
-    if manifest.kind != Kind::Trajectory {
+    if manifest.kind != BundleKind::Trajectory {
         return Ok(());
     }
     for (episode, [_, height, _]) in episodes.iter().zip(&all) {
@@ -217,10 +217,10 @@ pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[Episode]) -> C
 }
 
 /// What may be wrong with axes: along which one falls, whether upwards, and in what unit.
-type Guess = (usize, f64, Option<Unit>);
+type AxisGuess = (usize, f64, Option<UnitScale>);
 
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
-fn falls(at: &str, manifest: &Manifest, all: &[[Track; 3]]) -> Checked {
+fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitCheck {
     let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
     // By how many samples an acceleration reaches: near ones catch short flights, far ones see through noise.
     let shares = [4, 8, 16].map(|part| {
@@ -231,7 +231,7 @@ fn falls(at: &str, manifest: &Manifest, all: &[[Track; 3]]) -> Checked {
             for a in track.accelerations(reach).filter(|a| a.is_finite()) {
                 counts[axis] += 1;
                 for (k, factor) in factors().enumerate() {
-                    if is_about(a.abs(), g * factor, FACTOR_TOLERANCE) {
+                    if is_near(a.abs(), g * factor, FACTOR_TOLERANCE) {
                         let sign = if a < 0.0 { -1 } else { 1 };
                         *found.entry((axis, sign, k)).or_default() += 1;
                     }
@@ -269,7 +269,7 @@ fn falls(at: &str, manifest: &Manifest, all: &[[Track; 3]]) -> Checked {
         format!(
             "{:.4} along y, which points up{}",
             -g,
-            mend((axis, f64::from(sign), unit), manifest.kind)
+            suggested_fix((axis, f64::from(sign), unit), manifest.kind)
         ),
     ))
 }
@@ -280,10 +280,10 @@ fn factors() -> impl Iterator<Item = f64> {
 }
 
 /// What to change where a guess holds.
-fn mend((axis, sign, unit): Guess, kind: Kind) -> String {
+fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
     let mut told = String::new();
     if axis != 1 {
-        told.push_str(if kind == Kind::PoseTrajectory {
+        told.push_str(if kind == BundleKind::PoseTrajectory {
             "; is another axis up? Turn positions and rotations, or import with \"up\": \"z\" in the map"
         } else {
             "; is another axis up? Make the column of heights \"y\" (in the map: \"channels\")"
@@ -302,7 +302,7 @@ fn mend((axis, sign, unit): Guess, kind: Kind) -> String {
 }
 
 /// Refuses samples of an episode at one time, and those too far apart to show a motion. `times`: of one channel, rising.
-pub(super) fn clock(at: &str, times: &[f64]) -> Checked {
+pub(super) fn clock(at: &str, times: &[f64]) -> UnitCheck {
     let mut pairs = times.iter().zip(times.iter().skip(1));
     if let Some((twice, _)) = pairs.find(|(a, b)| a == b) {
         let allowed = "each time once for a channel: leave one of the two rows out, or give recordings that were put together \

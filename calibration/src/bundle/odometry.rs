@@ -1,9 +1,9 @@
 //! Drives of a robot: what stands in `drive.csv`, and whether it can be what it says.
 
 use super::check;
-use super::file::{Base, DriveRow, Manifest};
+use super::file::{BaseManifest, DriveRow, Manifest};
 use super::read::{episode, table};
-use super::{Episode, slips};
+use super::{MeasuredEpisode, unit_checks};
 use crate::error::CalibrationError;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,14 +18,14 @@ const WAYS: [f64; 2] = [0.5, 2.0];
 /// Squares of turns in a sample by the wheels, added up, above which their sense is compared with the tracker's, rad2.
 const TELLING_TURN_RAD2: f64 = 0.01;
 
-type Checked = Result<(), CalibrationError>;
+type OdometryCheck = Result<(), CalibrationError>;
 
 /// Reads the table into the episodes.
 pub(super) fn read(
     folder: &Path,
     by_name: &BTreeMap<String, usize>,
-    episodes: &mut [Episode],
-) -> Checked {
+    episodes: &mut [MeasuredEpisode],
+) -> OdometryCheck {
     table(folder, "drive.csv", |row: DriveRow, at| {
         check::time(at, row.t_s)?;
         for (field, value) in [("x", row.x), ("y", row.y)] {
@@ -49,7 +49,11 @@ pub(super) fn read(
 }
 
 /// Whether the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
-pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) -> Checked {
+pub(super) fn complete(
+    name: &str,
+    manifest: &Manifest,
+    episodes: &[MeasuredEpisode],
+) -> OdometryCheck {
     let Some(base) = &manifest.scene.base else {
         return Err(CalibrationError::Missing {
             at: format!("{name}/manifest.json"),
@@ -57,7 +61,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
             needed: "wheel_radius_m, wheel_base_m and rate_hz must be said".to_owned(),
         });
     };
-    let mut ways = Ways::default();
+    let mut ways = WheelAndTrackerPaths::default();
     for episode in episodes {
         let at = format!("{name}, episode {}", episode.name);
         let rows = &episode.drive;
@@ -70,7 +74,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
             });
         }
         let times: Vec<f64> = rows.iter().map(|row| row.t_s).collect();
-        slips::even(&at, &times, base.rate_hz)?;
+        unit_checks::check_even_sampling(&at, &times, base.rate_hz)?;
         rows.windows(2).for_each(|pair| ways.add(pair, base));
         ways.end(rows, base);
     }
@@ -79,7 +83,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[Episode]) ->
 
 /// How far robots went and turned, by the wheels and as the tracker saw it, m and rad.
 #[derive(Default)]
-struct Ways {
+struct WheelAndTrackerPaths {
     wheels_m: f64,
     /// Along the heading, so that a tracker's noise does not add up.
     tracker_m: f64,
@@ -92,14 +96,14 @@ struct Ways {
     turned_both: f64,
 }
 
-impl Ways {
-    fn add(&mut self, pair: &[DriveRow], base: &Base) {
+impl WheelAndTrackerPaths {
+    fn add(&mut self, pair: &[DriveRow], base: &BaseManifest) {
         let (before, now) = (&pair[0], &pair[1]);
         let along = |heading: f64| {
             (now.x - before.x) * libm::cos(heading) + (now.y - before.y) * libm::sin(heading)
         };
         self.tracker_m += along(now.heading);
-        self.by_degrees_m += along(now.heading / slips::DEGREES);
+        self.by_degrees_m += along(now.heading / unit_checks::DEGREES);
         self.wheels_m += 0.5 * base.wheel_radius_m * (now.left_rad + now.right_rad);
         let by_wheels = base.wheel_radius_m * (now.right_rad - now.left_rad) / base.wheel_base_m;
         self.turned += by_wheels * by_wheels;
@@ -108,18 +112,18 @@ impl Ways {
         self.turned_both += by_wheels * libm::atan2(libm::sin(turn), libm::cos(turn));
     }
 
-    fn end(&mut self, rows: &[DriveRow], base: &Base) {
+    fn end(&mut self, rows: &[DriveRow], base: &BaseManifest) {
         let ends =
             [rows.first(), rows.last()].map(|row| row.map_or(0.0, |r| r.left_rad + r.right_rad));
         self.since_start_m += 0.5 * base.wheel_radius_m * (ends[1] - ends[0]);
     }
 
-    fn judge(&self, at: &str) -> Checked {
+    fn judge(&self, at: &str) -> OdometryCheck {
         let is_right = |ratio: f64| (WAYS[0]..=WAYS[1]).contains(&ratio);
         let ratio = self.wheels_m / self.tracker_m;
         if self.wheels_m.abs() > TELLING_WAY_M && !is_right(ratio) {
             let hint = if is_right(self.wheels_m / self.by_degrees_m) {
-                slips::degrees("headings", slips::DEGREES)
+                unit_checks::degrees("headings", unit_checks::DEGREES)
             } else if is_right(self.since_start_m / self.tracker_m) {
                 Some("are turns of the wheels counted since the start? They are meant since the sample before".into())
             } else if is_right(-ratio) {
@@ -128,7 +132,7 @@ impl Ways {
                         .into(),
                 )
             } else {
-                slips::lengths("positions", 1.0 / ratio.abs())
+                unit_checks::lengths("positions", 1.0 / ratio.abs())
             };
             let hint = hint.unwrap_or_else(|| "check units, signs and wheel_radius_m".into());
             return Err(CalibrationError::field(
@@ -142,7 +146,7 @@ impl Ways {
         if self.turned < TELLING_TURN_RAD2 {
             return Ok(());
         }
-        if let Some(hint) = slips::degrees("headings", turns) {
+        if let Some(hint) = unit_checks::degrees("headings", turns) {
             let field = "the turns of the heading over those by the wheels";
             return Err(CalibrationError::field(
                 at,

@@ -1,8 +1,8 @@
 //! The motion that a window starts from, estimated from the measured poses up to it.
 
-use super::motion::Motion;
+use super::motion::MeasuredMotion;
+use super::pose_tracks::PoseTrack;
 use super::regime::Regime;
-use super::track::Track;
 use crate::bundle::turn;
 use crate::fit::median;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -18,17 +18,17 @@ const LEAST_NOISE: [f64; 2] = [1e-6, 1e-5];
 
 /// A tracker's noise from sample to sample: one standard deviation along each axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Noise {
+pub struct TrackerNoise {
     /// m.
     pub position_m: f64,
     /// rad.
     pub rotation_rad: f64,
 }
 
-impl Noise {
+impl TrackerNoise {
     /// What flights show of it: second differences of positions, freed from the fall, and of rotations have the square
     /// root of six times the noise of one sample. The median keeps what is no noise out.
-    pub fn of(episodes: &[Track], step_s: f64, gravity_m_s2: f64) -> Self {
+    pub fn of(episodes: &[PoseTrack], step_s: f64, gravity_m_s2: f64) -> Self {
         let fall = DVec3::NEG_Y * (gravity_m_s2 * step_s * step_s);
         let (mut shifts, mut turns) = (Vec::new(), Vec::new());
         for track in episodes {
@@ -61,13 +61,13 @@ impl Noise {
 /// H. E. Rauch, F. Tung, C. T. Striebel, AIAA Journal 3, 1445 (1965); accelerations as white noise: Y. Bar-Shalom, X. R. Li,
 /// T. Kirubarajan, Estimation with Applications to Tracking and Navigation (2001), section 6.2.2.
 pub fn window_start(
-    track: &Track,
+    track: &PoseTrack,
     at: usize,
     step_s: f64,
     gravity_m_s2: f64,
-    noise: &Noise,
+    noise: &TrackerNoise,
     nudge: Option<RandomKey>,
-) -> Motion {
+) -> MeasuredMotion {
     let past = (at + 1).saturating_sub(SAMPLES)..at + 1;
     let (motions, regimes) = (&track.motions[past.clone()], &track.regimes[past]);
     let here = track.motions[at];
@@ -87,7 +87,7 @@ pub fn window_start(
     let turned_by = |by: DVec3| (DQuat::from_scaled_axis(by) * here.rotation).normalize();
     if let ([place], [turned]) = (&places[..], &turns[..]) {
         // Nothing before: the velocities that were recorded must do.
-        return Motion {
+        return MeasuredMotion {
             position: *place,
             rotation: turned_by(*turned),
             ..here
@@ -105,7 +105,7 @@ pub fn window_start(
     let (turned, angular) = filtered(&turns, regimes, step_s, noise.rotation_rad, |regime| {
         (DVec3::ZERO, ANGULAR_RAD_S2[kind(regime)])
     });
-    Motion {
+    MeasuredMotion {
         position,
         rotation: turned_by(turned),
         linear,
@@ -202,17 +202,17 @@ mod tests {
     #[test]
     fn nudges_scatter_as_the_noise_of_the_tracker_does() {
         let (step_s, count) = (0.007, SAMPLES);
-        let noise = Noise {
+        let noise = TrackerNoise {
             position_m: 1e-3,
             rotation_rad: 1e-2,
         };
-        let still = Motion {
+        let still = MeasuredMotion {
             position: DVec3::Y,
             rotation: DQuat::IDENTITY,
             linear: DVec3::ZERO,
             angular: DVec3::ZERO,
         };
-        let track = Track {
+        let track = PoseTrack {
             name: String::new(),
             group: String::new(),
             motions: vec![still; count],

@@ -1,11 +1,11 @@
 //! Measured episodes as rows of motions at even spacing.
 
-use super::motion::{Deviation, Motion};
+use super::board_rig::BoardRig;
+use super::initial_state::{TrackerNoise, window_start};
+use super::motion::{Deviation, MeasuredMotion};
 use super::regime::{self, Regime};
-use super::rig::Rig;
-use super::start::{Noise, window_start};
-use super::subject::Subject;
-use crate::bundle::{self, Bundle, Episode, Rates, turn};
+use super::subject::RolloutSubject;
+use crate::bundle::{self, Bundle, MeasuredEpisode, PoseRates, turn};
 use crate::error::CalibrationError;
 use crate::twin::gravity_m_s2;
 use dwell_scene::random::RandomKey;
@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// What was measured of a body above a board.
 #[derive(Clone, Debug)]
-pub struct Tracks {
+pub struct PoseTracks {
     /// The bundle's title.
     pub title: String,
     /// The licence of the data.
@@ -22,15 +22,15 @@ pub struct Tracks {
     /// The body.
     pub body: TrackedBody,
     /// The contact values of body and board before any fit.
-    pub nominal: Nominal,
+    pub nominal: NominalContact,
     /// Samples per second, Hz.
     pub rate_hz: f64,
     /// Acceleration of free fall, m/s².
     pub gravity_m_s2: f64,
     /// The tracker's noise from sample to sample.
-    pub noise: Noise,
+    pub noise: TrackerNoise,
     /// The episodes, in the order of the file.
-    pub episodes: Vec<Track>,
+    pub episodes: Vec<PoseTrack>,
 }
 
 /// The body that was tracked: a box.
@@ -48,7 +48,7 @@ pub struct TrackedBody {
 
 /// Contact values before any fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Nominal {
+pub struct NominalContact {
     /// Coulomb friction of the pair.
     pub friction: f64,
     /// Restitution of the pair.
@@ -57,19 +57,19 @@ pub struct Nominal {
 
 /// One episode.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Track {
+pub struct PoseTrack {
     /// Its name.
     pub name: String,
     /// Episodes of one group are held out together.
     pub group: String,
     /// What was measured. Shape (sample,).
-    pub motions: Vec<Motion>,
+    pub motions: Vec<MeasuredMotion>,
     /// What the body did at each sample. Shape (sample,).
     pub regimes: Vec<Regime>,
     /// The sample that whole roll-outs start from.
     pub start: usize,
     /// The motion there, with velocities fitted to the flight before it where the bundle has them.
-    pub start_motion: Motion,
+    pub start_motion: MeasuredMotion,
 }
 
 impl TrackedBody {
@@ -89,7 +89,7 @@ fn solid(mass_kg: f64, half: [f64; 3]) -> [f64; 3] {
     [y + z, x + z, x + y].map(|sum| mass_kg * sum / 3.0)
 }
 
-impl Tracks {
+impl PoseTracks {
     /// Reads a measured bundle of pose trajectories.
     ///
     /// # Errors
@@ -125,7 +125,7 @@ impl Tracks {
         };
         let gravity_m_s2 = gravity_m_s2(&bundle.manifest);
         let step_s = 1.0 / form.rate_hz;
-        let episodes: Vec<Track> = bundle
+        let episodes: Vec<PoseTrack> = bundle
             .episodes
             .iter()
             .map(|episode| track(episode, &tracked, step_s, gravity_m_s2))
@@ -134,13 +134,13 @@ impl Tracks {
             title: bundle.manifest.title.clone(),
             licence: bundle.manifest.licence.clone(),
             body: tracked,
-            nominal: Nominal {
+            nominal: NominalContact {
                 friction: board.friction,
                 restitution: board.restitution,
             },
             rate_hz: form.rate_hz,
             gravity_m_s2,
-            noise: Noise::of(&episodes, step_s, gravity_m_s2),
+            noise: TrackerNoise::of(&episodes, step_s, gravity_m_s2),
             episodes,
         })
     }
@@ -155,14 +155,14 @@ impl Tracks {
 const DIVERGED_WIDTHS: f64 = 0.1;
 const DIVERGED_RAD: f64 = 0.174_533;
 
-impl Subject for Tracks {
-    type Rig = Rig;
+impl RolloutSubject for PoseTracks {
+    type Rig = BoardRig;
 
     fn count(&self) -> usize {
         self.episodes.len()
     }
 
-    fn measured(&self, episode: usize) -> &[Motion] {
+    fn measured(&self, episode: usize) -> &[MeasuredMotion] {
         &self.episodes[episode].motions
     }
 
@@ -183,12 +183,12 @@ impl Subject for Tracks {
 
     fn roll(
         &self,
-        rig: &Rig,
+        rig: &BoardRig,
         episode: usize,
         at: usize,
         samples: usize,
         nudge: Option<RandomKey>,
-    ) -> Result<Vec<Motion>, CalibrationError> {
+    ) -> Result<Vec<MeasuredMotion>, CalibrationError> {
         let track = &self.episodes[episode];
         let (step_s, g) = (self.step_s(), self.gravity_m_s2);
         rig.roll(
@@ -198,20 +198,25 @@ impl Subject for Tracks {
     }
 }
 
-fn track(episode: &Episode, body: &TrackedBody, step_s: f64, gravity_m_s2: f64) -> Track {
+fn track(
+    episode: &MeasuredEpisode,
+    body: &TrackedBody,
+    step_s: f64,
+    gravity_m_s2: f64,
+) -> PoseTrack {
     let poses = &episode.poses;
-    let motions: Vec<Motion> = (0..poses.len())
+    let motions: Vec<MeasuredMotion> = (0..poses.len())
         .map(|k| {
             let rates = poses[k].rates.unwrap_or_else(|| {
                 // Backward differences; the first sample has what the second has.
                 let k = k.max(1);
                 let (a, b) = (&poses[k - 1], &poses[k]);
-                Rates {
+                PoseRates {
                     linear: (b.position - a.position) / step_s,
                     angular: turn(a.rotation, b.rotation) / step_s,
                 }
             });
-            Motion {
+            MeasuredMotion {
                 position: poses[k].position,
                 rotation: poses[k].rotation,
                 linear: rates.linear,
@@ -224,12 +229,12 @@ fn track(episode: &Episode, body: &TrackedBody, step_s: f64, gravity_m_s2: f64) 
         None => (0, None),
     };
     let measured = motions[start];
-    let start_motion = rates.map_or(measured, |rates| Motion {
+    let start_motion = rates.map_or(measured, |rates| MeasuredMotion {
         linear: rates.linear,
         angular: rates.angular,
         ..measured
     });
-    Track {
+    PoseTrack {
         name: episode.name.clone(),
         group: episode.group.clone(),
         regimes: regime::of(&motions, body, step_s, DVec3::NEG_Y * gravity_m_s2),

@@ -5,12 +5,12 @@
 //!
 //! docs/cube-tosses.md, docs/robot-odometry.md and docs/ball-drops.md say how the bundles are made.
 
-use dwell_calibration::bundle::file::Kind;
-use dwell_calibration::rollout::drive::{self, Drives};
-use dwell_calibration::rollout::drop::Drops;
-use dwell_calibration::rollout::series::{self, Model, Modelled};
-use dwell_calibration::rollout::study::{self, Peer};
-use dwell_calibration::rollout::{Tracks, study::StudyOptions};
+use dwell_calibration::bundle::file::BundleKind;
+use dwell_calibration::rollout::drive::{self, DriveRecordings};
+use dwell_calibration::rollout::drop::BallDrops;
+use dwell_calibration::rollout::series::{self, ModelledSubject, SimulationModel};
+use dwell_calibration::rollout::study::{self, OtherSimulator};
+use dwell_calibration::rollout::{PoseTracks, study::StudyOptions};
 use std::error::Error;
 use std::path::Path;
 
@@ -35,13 +35,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (measured, out) = (Path::new(measured), Path::new(out));
     let sentence = match dwell_calibration::check(measured)?.0 {
-        Kind::PoseTrajectory => tosses(measured, out, &options, wanted, peers)?,
-        Kind::Drive => {
-            let drives = Drives::read(measured)?;
+        BundleKind::PoseTrajectory => tosses(measured, out, &options, wanted, peers)?,
+        BundleKind::Drive => {
+            let drives = DriveRecordings::read(measured)?;
             tried(&drives, drive::models(), out, &options, wanted)?
         }
-        Kind::Trajectory => {
-            let drops = Drops::read(measured)?;
+        BundleKind::Trajectory => {
+            let drops = BallDrops::read(measured)?;
             let models = drops.models();
             tried(&drops, models, out, &options, wanted)?
         }
@@ -67,16 +67,19 @@ fn tosses(
     let mut models = study::models();
     models.extend(study::trials());
     models.retain(|model| wanted(model.name));
-    let peers: Result<Vec<Peer>, _> = peers.iter().map(|p| Peer::read(Path::new(p))).collect();
-    let tracks = Tracks::read(measured)?;
+    let peers: Result<Vec<OtherSimulator>, _> = peers
+        .iter()
+        .map(|p| OtherSimulator::read(Path::new(p)))
+        .collect();
+    let tracks = PoseTracks::read(measured)?;
     let report = study::run(&tracks, &models, &peers?, &options, &mut told)?;
     report.write(out)?;
     Ok(report.sentence)
 }
 
-fn tried<S: Modelled>(
+fn tried<S: ModelledSubject>(
     subject: &S,
-    mut models: Vec<Model>,
+    mut models: Vec<SimulationModel>,
     out: &Path,
     options: &str,
     wanted: impl Fn(&str) -> bool,

@@ -4,7 +4,7 @@ use super::StudyOptions;
 use super::model::ContactModel;
 use crate::error::CalibrationError;
 use crate::report::whole;
-use crate::rollout::Tracks;
+use crate::rollout::PoseTracks;
 use dwell_scene::file;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -15,7 +15,7 @@ const MOST_BYTES: u64 = 1 << 20;
 
 /// What decides about the end of a search: equal questions have equal answers.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Question {
+struct SearchKey {
     title: String,
     samples: usize,
     model: String,
@@ -29,8 +29,8 @@ struct Question {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-struct Answer {
-    question: Question,
+struct SearchResult {
+    question: SearchKey,
     chosen: Vec<f64>,
 }
 
@@ -38,16 +38,16 @@ struct Answer {
 ///
 /// # Errors
 /// [`CalibrationError::Write`], and those of `search`.
-pub(super) fn or_search(
+pub(super) fn cached_or_search(
     folder: Option<&Path>,
-    (tracks, model, fold): (&Tracks, &ContactModel, usize),
+    (tracks, model, fold): (&PoseTracks, &ContactModel, usize),
     options: &StudyOptions,
     search: impl FnOnce() -> Result<Vec<f64>, CalibrationError>,
 ) -> Result<Vec<f64>, CalibrationError> {
     let Some(folder) = folder else {
         return search();
     };
-    let question = Question {
+    let question = SearchKey {
         title: tracks.title.clone(),
         samples: tracks.episodes.iter().map(|e| e.motions.len()).sum(),
         model: model.name.to_owned(),
@@ -62,7 +62,7 @@ pub(super) fn or_search(
     let name = format!("search-{}-{fold}.json", model.name);
     // What cannot be read is searched again.
     let text = file::read(&folder.join(&name), MOST_BYTES).unwrap_or_default();
-    if let Ok(answer) = serde_json::from_slice::<Answer>(&text)
+    if let Ok(answer) = serde_json::from_slice::<SearchResult>(&text)
         && answer.question == question
         && answer.chosen.len() == model.parameters.len()
     {
@@ -73,7 +73,7 @@ pub(super) fn or_search(
         path: folder.to_owned(),
         source,
     })?;
-    let answer = Answer { question, chosen };
+    let answer = SearchResult { question, chosen };
     let text = serde_json::to_string_pretty(&answer).unwrap_or_default();
     whole(folder, &name, text.as_bytes())?;
     Ok(answer.chosen)
