@@ -2,9 +2,9 @@
 
 use crate::arrays;
 use crate::doorway::Doorway;
-use crate::errors::{Fault, to_python};
-use crate::head::PyHead;
+use crate::errors::{PyFault, to_python};
 use crate::house::PyHouse;
+use crate::hrtf::PyHead;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::metrics::BandWidth;
 use dwell_acoustics::{
@@ -39,7 +39,7 @@ impl PyAcousticScene {
     ) -> PyResult<Self> {
         arrays::ready(py)?;
         let house = house.get().engines.house().clone();
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let config: AcousticConfig = serde_json::from_str(config_json)?;
             let laws: Vec<LawSpec> = serde_json::from_str(laws_json)?;
             let parameters: BTreeMap<String, f64> = serde_json::from_str(parameters_json)?;
@@ -59,7 +59,7 @@ impl PyAcousticScene {
         source_json: &str,
         mic: [f32; 3],
     ) -> PyResult<String> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let mic = Vec3::from_array(mic);
             let paths = self.scene.early_paths(&self.rays, &source, mic)?;
@@ -87,7 +87,7 @@ impl PyAcousticScene {
             }
             let responses =
                 scene.impulse_responses(&self.rays, &source, &receivers, key, threads)?;
-            Ok::<_, Fault>(responses)
+            Ok::<_, PyFault>(responses)
         })?;
         let arrays = responses.into_iter().map(|response| {
             let shape = [response.channels, response.len()];
@@ -105,7 +105,7 @@ impl PyAcousticScene {
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<String> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
             let mut all = Vec::with_capacity(receivers.len());
@@ -137,7 +137,7 @@ impl PyAcousticScene {
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<String> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let source: SoundSourcePose = serde_json::from_str(source_json)?;
             let receiver: Receiver = serde_json::from_str(receiver_json)?;
             let found = self.echograms(&source, &[receiver], seed, threads)?;
@@ -146,11 +146,11 @@ impl PyAcousticScene {
     }
 
     fn explain_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(serde_json::to_string(&self.scene.explain())?))
+        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&self.scene.explain())?))
     }
 
     fn config_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(serde_json::to_string(self.scene.config())?))
+        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(self.scene.config())?))
     }
 
     #[getter]
@@ -167,7 +167,7 @@ impl PyAcousticScene {
         receivers: &[Receiver],
         seed: u64,
         threads: Option<usize>,
-    ) -> Result<Vec<Echogram>, Fault> {
+    ) -> Result<Vec<Echogram>, PyFault> {
         let centres: Vec<Vec3> = receivers.iter().map(Receiver::position).collect();
         let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
         let echograms = self
@@ -186,7 +186,7 @@ pub(crate) fn response_metrics_json(
     width_json: &str,
 ) -> PyResult<String> {
     let samples = arrays::row("samples", &samples)?;
-    py.engine(|| -> Result<_, Fault> {
+    py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_impulse_response(samples, rate_hz, width);
         Ok(named_bands(serde_json::to_value(found)?, width).to_string())
@@ -203,7 +203,7 @@ pub(crate) fn ear_metrics_json(
     width_json: &str,
 ) -> PyResult<String> {
     let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
-    py.engine(|| -> Result<_, Fault> {
+    py.engine(|| -> Result<_, PyFault> {
         let width: BandWidth = serde_json::from_str(width_json)?;
         let found = metrics::of_ears(left, right, rate_hz, width);
         let mut found = serde_json::to_value(found)?;
@@ -229,7 +229,7 @@ pub(crate) fn synthesize<'py>(
     samples: usize,
 ) -> PyResult<Bound<'py, PyArray1<f32>>> {
     if samples > 100_000_000 {
-        return Err(to_python(Fault::Config(format!(
+        return Err(to_python(PyFault::Config(format!(
             "samples is {samples}; allowed are up to 100000000"
         ))));
     }

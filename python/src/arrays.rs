@@ -1,6 +1,6 @@
 //! NumPy: made ready before it is needed, and arrays that are read where they lie.
 
-use crate::errors::{Fault, to_python};
+use crate::errors::{PyFault, to_python};
 use numpy::{Element, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -21,6 +21,6 @@ pub(crate) fn row<'a, T: Element>(
 ) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| {
         let message = format!("{name}: expected a C-contiguous array");
-        to_python(Fault::Config(message))
+        to_python(PyFault::Config(message))
     })
 }

@@ -1,6 +1,6 @@
 //! Houses that people make and change, for Python: plans and edits come as JSON.
 
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::PyHouse;
 use dwell_acoustics::{Recording, signals};
 use dwell_houses::authoring::{self, FileAccess, HousePlan, UnmappedNames};
@@ -9,7 +9,7 @@ use dwell_scene::House;
 use serde_json::Value;
 
 /// The report of damage with a sentence for each warning.
-pub(crate) fn rows(report: &LoadReport) -> Result<Value, Fault> {
+pub(crate) fn rows(report: &LoadReport) -> Result<Value, PyFault> {
     let mut rows = serde_json::to_value(report)?;
     if let Some(warnings) = rows["warnings"].as_array_mut() {
         for (row, warning) in warnings.iter_mut().zip(report.warnings()) {
@@ -20,7 +20,7 @@ pub(crate) fn rows(report: &LoadReport) -> Result<Value, Fault> {
 }
 
 /// The house of a plan.
-pub(crate) fn built(plan_json: &str) -> Result<PyHouse, Fault> {
+pub(crate) fn built(plan_json: &str) -> Result<PyHouse, PyFault> {
     let plan = HousePlan::from_json(plan_json.as_bytes(), &FileLocation::file("plan"))?;
     let (house, report) = authoring::build(&plan, &FileAccess::Anywhere)?;
     check_signals(&house, 0)?;
@@ -28,7 +28,7 @@ pub(crate) fn built(plan_json: &str) -> Result<PyHouse, Fault> {
 }
 
 /// The same house with edits.
-pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, Fault> {
+pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, PyFault> {
     let edits = authoring::edits_from_json(edits_json)?;
     let (house, report) = authoring::edit(base.house(), &edits, &FileAccess::Anywhere)?;
     check_signals(&house, base.house().emitters.len())?;
@@ -38,7 +38,7 @@ pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, Fault>
 }
 
 /// Refuses sounds that nobody can make.
-fn check_signals(house: &House, known: usize) -> Result<(), Fault> {
+fn check_signals(house: &House, known: usize) -> Result<(), PyFault> {
     for emitter in house.emitters.iter().skip(known.min(house.emitters.len())) {
         let told = match emitter.sound_file {
             Some(file) => {
@@ -47,7 +47,7 @@ fn check_signals(house: &House, known: usize) -> Result<(), Fault> {
             }
             None => signals::info(&emitter.signal).map(drop),
         };
-        told.map_err(|error| Fault::House(error.to_string()))?;
+        told.map_err(|error| PyFault::House(error.to_string()))?;
     }
     Ok(())
 }
@@ -61,7 +61,7 @@ fn unmapped(house: &PyHouse) -> UnmappedNames {
 }
 
 /// Counts, rooms and categories, with what stayed unmapped, as JSON.
-pub(crate) fn info(house: &PyHouse) -> Result<String, Fault> {
+pub(crate) fn info(house: &PyHouse) -> Result<String, PyFault> {
     let mut info = dwell::info(&house.engines, house.report());
     info["unmapped"] = serde_json::to_value(unmapped(house))?;
     Ok(info.to_string())

@@ -2,10 +2,10 @@
 
 use crate::arrays;
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
-use crate::spare::PySpare;
+use crate::prepared_env::PySpare;
 use crate::world::PyWorld;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
@@ -24,7 +24,7 @@ pub(crate) struct PyBatch {
     batch: std::sync::Mutex<Batch>,
 }
 
-enum Lent<'py> {
+enum BorrowedBuffer<'py> {
     Uint8(PyReadwriteArrayDyn<'py, u8>),
     Float32(PyReadwriteArrayDyn<'py, f32>),
     Int32(PyReadwriteArrayDyn<'py, i32>),
@@ -39,13 +39,13 @@ fn refused(sensor: &str, dtype: Dtype) -> PyErr {
         Dtype::Int32 => "int32",
         Dtype::Text => "text",
     };
-    crate::errors::to_python(Fault::Config(format!(
+    crate::errors::to_python(PyFault::Config(format!(
         "{sensor}: expected a writeable C-contiguous {dtype} array"
     )))
 }
 
 /// An array of the caller to write into.
-fn lend<'py, T: numpy::Element>(
+fn borrow_buffers<'py, T: numpy::Element>(
     sensor: &str,
     dtype: Dtype,
     out: &Bound<'py, PyAny>,
@@ -58,14 +58,14 @@ fn lend<'py, T: numpy::Element>(
         return Err(refused(sensor, dtype));
     }
     array.try_readwrite().map_err(|error| match error {
-        BorrowError::AlreadyBorrowed => crate::errors::to_python(Fault::Usage(format!(
+        BorrowError::AlreadyBorrowed => crate::errors::to_python(PyFault::Usage(format!(
             "{sensor}: its buffer is in use by another call; one thread at a time steps an environment"
         ))),
         _ => refused(sensor, dtype),
     })
 }
 
-fn action(number: i64) -> Result<Option<DiscreteAction>, Fault> {
+fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
     if number == -1 {
         return Ok(None);
     }
@@ -74,7 +74,7 @@ fn action(number: i64) -> Result<Option<DiscreteAction>, Fault> {
         .and_then(|k| DiscreteAction::ALL.get(k).copied());
     let last = DiscreteAction::ALL.len() - 1;
     known.map(Some).ok_or_else(|| {
-        Fault::Config(format!(
+        PyFault::Config(format!(
             "action {number}; allowed are 0 to {last}, or -1 for none"
         ))
     })
@@ -85,7 +85,7 @@ impl PyBatch {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Batch) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&mut Batch) -> Result<T, PyFault> + Send,
     ) -> PyResult<T> {
         py.engine(|| {
             let mut batch = self.lock()?;
@@ -95,9 +95,11 @@ impl PyBatch {
     }
 
     /// The batch for one call, without the GIL. A call that found a bug left it poisoned: then it refuses.
-    pub(crate) fn lock(&self) -> Result<std::sync::MutexGuard<'_, Batch>, Fault> {
+    pub(crate) fn lock(&self) -> Result<std::sync::MutexGuard<'_, Batch>, PyFault> {
         self.batch.lock().map_err(|_| {
-            Fault::Usage("a bug of the engine stopped these environments; make new ones".to_owned())
+            PyFault::Usage(
+                "a bug of the engine stopped these environments; make new ones".to_owned(),
+            )
         })
     }
 }
@@ -105,7 +107,7 @@ impl PyBatch {
 /// What somebody else than the task says of a step.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Ruling {
+struct ExternalVerdict {
     reward: f64,
     terminated: bool,
     success: bool,
@@ -128,7 +130,7 @@ impl PyBatch {
             .iter()
             .map(|house| house.get().engines.clone())
             .collect();
-        let batch = py.engine(|| -> Result<Batch, Fault> {
+        let batch = py.engine(|| -> Result<Batch, PyFault> {
             let config: EnvConfig = serde_json::from_str(config_json)?;
             let threads = Threads::requested(threads)?;
             let count = shared.len();
@@ -188,7 +190,7 @@ impl PyBatch {
             let actions = numbers
                 .iter()
                 .map(|number| action(*number))
-                .collect::<Result<Vec<_>, Fault>>()?;
+                .collect::<Result<Vec<_>, PyFault>>()?;
             Ok(batch.step(&actions)?)
         })?;
         let out = PyDict::new(py);
@@ -239,10 +241,16 @@ impl PyBatch {
         for (k, out) in outs.iter().enumerate() {
             let Some(spec) = specs.get(k) else { break };
             lent.push(match (spec.dtype, out) {
-                (Dtype::Text, _) | (_, None) => Lent::Text(String::new()),
-                (Dtype::Uint8, Some(out)) => Lent::Uint8(lend(&spec.name, spec.dtype, out)?),
-                (Dtype::Float32, Some(out)) => Lent::Float32(lend(&spec.name, spec.dtype, out)?),
-                (Dtype::Int32, Some(out)) => Lent::Int32(lend(&spec.name, spec.dtype, out)?),
+                (Dtype::Text, _) | (_, None) => BorrowedBuffer::Text(String::new()),
+                (Dtype::Uint8, Some(out)) => {
+                    BorrowedBuffer::Uint8(borrow_buffers(&spec.name, spec.dtype, out)?)
+                }
+                (Dtype::Float32, Some(out)) => {
+                    BorrowedBuffer::Float32(borrow_buffers(&spec.name, spec.dtype, out)?)
+                }
+                (Dtype::Int32, Some(out)) => {
+                    BorrowedBuffer::Int32(borrow_buffers(&spec.name, spec.dtype, out)?)
+                }
             });
         }
         let mut slices = Vec::new();
@@ -250,16 +258,16 @@ impl PyBatch {
             let name = &spec.name;
             let refuse = |_| refused(name, spec.dtype);
             slices.push(match array {
-                Lent::Uint8(array) => {
+                BorrowedBuffer::Uint8(array) => {
                     ObservationBuffer::Uint8(array.as_slice_mut().map_err(refuse)?)
                 }
-                Lent::Float32(array) => {
+                BorrowedBuffer::Float32(array) => {
                     ObservationBuffer::Float32(array.as_slice_mut().map_err(refuse)?)
                 }
-                Lent::Int32(array) => {
+                BorrowedBuffer::Int32(array) => {
                     ObservationBuffer::Int32(array.as_slice_mut().map_err(refuse)?)
                 }
-                Lent::Text(text) => ObservationBuffer::Text(text),
+                BorrowedBuffer::Text(text) => ObservationBuffer::Text(text),
             });
         }
         self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
@@ -268,7 +276,7 @@ impl PyBatch {
     fn instruction(&self, py: Python<'_>, env: usize) -> PyResult<String> {
         self.with(py, |batch| {
             let episode = batch.env(env)?.episode();
-            let refuse = || Fault::Usage("no episode has begun; call reset first".to_owned());
+            let refuse = || PyFault::Usage("no episode has begun; call reset first".to_owned());
             Ok(episode.ok_or_else(refuse)?.instruction.clone())
         })
     }
@@ -297,7 +305,7 @@ impl PyBatch {
     /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
     fn rule(&self, py: Python<'_>, env: usize, ruling_json: &str) -> PyResult<String> {
         self.with(py, |batch| {
-            let ruling: Ruling = serde_json::from_str(ruling_json)?;
+            let ruling: ExternalVerdict = serde_json::from_str(ruling_json)?;
             let verdict = Verdict {
                 reward: ruling.reward,
                 terminated: ruling.terminated,
@@ -337,7 +345,7 @@ impl PyBatch {
             )
         })?;
         let rgb = seen.pop().ok_or_else(|| {
-            crate::errors::to_python(Fault::Usage("no picture was taken".to_owned()))
+            crate::errors::to_python(PyFault::Usage("no picture was taken".to_owned()))
         })?;
         picture::array(py, rgb)
     }

@@ -1,7 +1,7 @@
 //! Throughput of every stage, measured where nothing of Python is in the way.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use pyo3::prelude::*;
 
 /// Measures one stage: `load`, `render`, `physics`, `acoustics` or `env`; answers its figures as one JSON object.
@@ -13,7 +13,7 @@ pub(crate) fn bench_json(
     house: &str,
     options_json: &str,
 ) -> PyResult<String> {
-    py.engine(|| -> Result<String, Fault> {
+    py.engine(|| -> Result<String, PyFault> {
         let options = serde_json::from_str(options_json)?;
         Ok(dwell::bench::run(what, house, &options)?.to_string())
     })

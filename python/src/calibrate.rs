@@ -1,7 +1,7 @@
 //! Calibration for Python.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell_calibration::rollout::study::OtherSimulator;
 use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
@@ -19,7 +19,7 @@ pub(crate) fn calibrate(
     peers: Vec<String>,
 ) -> PyResult<String> {
     let mut raised = None;
-    let report = py.engine(|| -> Result<String, Fault> {
+    let report = py.engine(|| -> Result<String, PyFault> {
         let options = dwell_calibration::Options {
             house: house.map(str::to_owned),
             threads: Some(Threads::requested(None)?.count()),
@@ -55,11 +55,11 @@ pub(crate) fn calibrate(
 #[pyfunction]
 #[pyo3(signature = (folder, seed=0))]
 pub(crate) fn calibration_example(py: Python<'_>, folder: &str, seed: u64) -> PyResult<String> {
-    py.engine(|| Ok::<_, Fault>(dwell_calibration::example::write(Path::new(folder), seed)?))
+    py.engine(|| Ok::<_, PyFault>(dwell_calibration::example::write(Path::new(folder), seed)?))
 }
 
 /// Reads and checks a measured bundle; answers how many episodes it has.
 #[pyfunction]
 pub(crate) fn check_measured(py: Python<'_>, measured: &str) -> PyResult<usize> {
-    py.engine(|| Ok::<_, Fault>(dwell_calibration::check(Path::new(measured))?.1))
+    py.engine(|| Ok::<_, PyFault>(dwell_calibration::check(Path::new(measured))?.1))
 }

@@ -1,8 +1,8 @@
 //! The one doorway between Python and the engines: the GIL is released, errors become exceptions, panics stop here, signals
 //! come through, and what the engines log arrives in Python's `logging`.
 
-use crate::errors::{Fault, to_python};
-use crate::{bugs, forks, logs};
+use crate::errors::{PyFault, to_python};
+use crate::{fork_safety, logs, panics};
 use dwell_scene::interrupt;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
@@ -25,23 +25,23 @@ pub(crate) trait Doorway {
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
-        E: Into<Fault> + Send;
+        E: Into<PyFault> + Send;
 }
 
 impl Doorway for Python<'_> {
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
-        E: Into<Fault> + Send,
+        E: Into<PyFault> + Send,
     {
         if IS_ASKING.get() {
             let message = "a handler of signals, or of logs, runs in the middle of another call and cannot call dwell: \
                            let it set a flag, and call when that call has ended";
-            return Err(to_python(Fault::Usage(message.to_owned())));
+            return Err(to_python(PyFault::Usage(message.to_owned())));
         }
-        logs::heed(self);
-        let hears_signals = forks::is_main_thread(self);
-        let call = forks::Call::begin(self);
+        logs::set_level(self);
+        let hears_signals = fork_safety::is_main_thread(self);
+        let call = fork_safety::EngineCallGuard::begin(self);
         let outcome = self.detach(|| {
             // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
             let outcome = catch_unwind(AssertUnwindSafe(|| {
@@ -52,10 +52,10 @@ impl Doorway for Python<'_> {
                 };
                 match outcome {
                     Ok(done) => done.map_err(E::into),
-                    Err(_) => Err(Fault::Interrupted),
+                    Err(_) => Err(PyFault::Interrupted),
                 }
             }));
-            if matches!(outcome, Ok(Err(Fault::Interrupted))) {
+            if matches!(outcome, Ok(Err(PyFault::Interrupted))) {
                 tracing::debug!("a call was stopped before its work was done");
             }
             // Before the GIL is asked for: who forks holds it, and waits for calls to end.
@@ -67,11 +67,11 @@ impl Doorway for Python<'_> {
         let raised = raised.or(logs::deliver(self));
         match (raised, outcome) {
             // A panic goes first: the object is lost.
-            (_, Err(panic)) => Err(bugs::exception(self, panic.as_ref())),
+            (_, Err(panic)) => Err(panics::exception(self, panic.as_ref())),
             // What was done is lost, too, as with any call that a signal ends.
             (Some(raised), _) => Err(raised),
             (None, Ok(Ok(value))) => Ok(value),
-            (None, Ok(Err(Fault::Interrupted))) => Err(PyKeyboardInterrupt::new_err(())),
+            (None, Ok(Err(PyFault::Interrupted))) => Err(PyKeyboardInterrupt::new_err(())),
             (None, Ok(Err(fault))) => Err(to_python(fault)),
         }
     }

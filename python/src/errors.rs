@@ -24,7 +24,7 @@ create_exception!(
 
 /// What went wrong, with the exception it becomes.
 #[derive(Debug)]
-pub(crate) enum Fault {
+pub(crate) enum PyFault {
     Scene(String),
     House(String),
     HouseNotFound(String),
@@ -173,22 +173,22 @@ impl EngineBug {
 }
 
 /// The exception of a fault.
-pub(crate) fn to_python(fault: Fault) -> PyErr {
+pub(crate) fn to_python(fault: PyFault) -> PyErr {
     let (name, message) = match fault {
-        Fault::Scene(message) => ("SceneError", message),
-        Fault::House(message) => ("HouseError", message),
-        Fault::HouseNotFound(message) => ("HouseNotFoundError", message),
-        Fault::HouseFile(message) => ("HouseFileError", message),
-        Fault::Config(message) => ("ConfigError", message),
-        Fault::Usage(message) => ("UsageError", message),
-        Fault::Measured(message) => ("MeasuredDataError", message),
+        PyFault::Scene(message) => ("SceneError", message),
+        PyFault::House(message) => ("HouseError", message),
+        PyFault::HouseNotFound(message) => ("HouseNotFoundError", message),
+        PyFault::HouseFile(message) => ("HouseFileError", message),
+        PyFault::Config(message) => ("ConfigError", message),
+        PyFault::Usage(message) => ("UsageError", message),
+        PyFault::Measured(message) => ("MeasuredDataError", message),
         // The doorway raises what the handler did.
-        Fault::Interrupted => ("UsageError", "the call was stopped".to_owned()),
+        PyFault::Interrupted => ("UsageError", "the call was stopped".to_owned()),
     };
     Python::attach(|py| kind(py, name, message))
 }
 
-impl From<SceneError> for Fault {
+impl From<SceneError> for PyFault {
     fn from(error: SceneError) -> Self {
         match error {
             // Of the caller, not of a scene.
@@ -198,13 +198,13 @@ impl From<SceneError> for Fault {
     }
 }
 
-impl From<Interrupted> for Fault {
+impl From<Interrupted> for PyFault {
     fn from(_: Interrupted) -> Self {
         Self::Interrupted
     }
 }
 
-impl From<HousesError> for Fault {
+impl From<HousesError> for PyFault {
     fn from(error: HousesError) -> Self {
         let message = error.to_string();
         match error {
@@ -219,7 +219,7 @@ impl From<HousesError> for Fault {
     }
 }
 
-impl From<WorldError> for Fault {
+impl From<WorldError> for PyFault {
     fn from(error: WorldError) -> Self {
         match error {
             WorldError::Houses(error) => error.into(),
@@ -230,25 +230,25 @@ impl From<WorldError> for Fault {
     }
 }
 
-impl From<dwell_acoustics::AcousticsError> for Fault {
+impl From<dwell_acoustics::AcousticsError> for PyFault {
     fn from(error: dwell_acoustics::AcousticsError) -> Self {
         Self::Config(error.to_string())
     }
 }
 
-impl From<dwell_render::RenderError> for Fault {
+impl From<dwell_render::RenderError> for PyFault {
     fn from(error: dwell_render::RenderError) -> Self {
         Self::Config(error.to_string())
     }
 }
 
-impl From<CalibrationError> for Fault {
+impl From<CalibrationError> for PyFault {
     fn from(error: CalibrationError) -> Self {
         Self::Measured(error.to_string())
     }
 }
 
-impl From<serde_json::Error> for Fault {
+impl From<serde_json::Error> for PyFault {
     fn from(error: serde_json::Error) -> Self {
         Self::Config(dwell::plain_json_error(&error))
     }

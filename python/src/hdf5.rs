@@ -1,7 +1,7 @@
 //! HDF5 files for Python: as much of them as SOFA needs.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell_acoustics::hdf5::{Hdf5, MOST_BYTES};
 use dwell_houses::DataRoot;
 use numpy::{IntoPyArray, PyArray1};
@@ -19,14 +19,14 @@ pub(crate) struct PyHdf5 {
 impl PyHdf5 {
     #[staticmethod]
     fn open(py: Python<'_>, path: String) -> PyResult<Self> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let folder = Path::new(&path).parent().unwrap_or_else(|| Path::new(""));
             let name = Path::new(&path).file_name().unwrap_or_default();
             let bytes = DataRoot::new(folder)
                 .and_then(|root| root.read_named(&name.to_string_lossy(), MOST_BYTES));
-            let bytes = bytes.map_err(|error| Fault::Measured(error.to_string()))?;
+            let bytes = bytes.map_err(|error| PyFault::Measured(error.to_string()))?;
             let file =
-                Hdf5::open(bytes).map_err(|error| Fault::Measured(format!("{path}: {error}")))?;
+                Hdf5::open(bytes).map_err(|error| PyFault::Measured(format!("{path}: {error}")))?;
             Ok(Self { path, file })
         })
     }
@@ -57,7 +57,7 @@ impl PyHdf5 {
 }
 
 impl PyHdf5 {
-    fn fault(&self, error: &dwell_acoustics::AcousticsError) -> Fault {
-        Fault::Measured(format!("{}: {error}", self.path))
+    fn fault(&self, error: &dwell_acoustics::AcousticsError) -> PyFault {
+        PyFault::Measured(format!("{}: {error}", self.path))
     }
 }

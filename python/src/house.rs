@@ -2,8 +2,8 @@
 
 use crate::authoring;
 use crate::doorway::Doorway;
-use crate::errors::Fault;
-use crate::head::PyHead;
+use crate::errors::PyFault;
+use crate::hrtf::PyHead;
 use dwell::Engines;
 use dwell_houses::ExportLoss;
 use dwell_scene::material::library;
@@ -48,7 +48,7 @@ impl PyHouse {
     #[staticmethod]
     #[pyo3(signature = (house, threads=None))]
     fn open(py: Python<'_>, house: &str, threads: Option<usize>) -> PyResult<Self> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let (house, report) = dwell_houses::open_with(house, Threads::requested(threads)?)?;
             Ok(Self::from_house(house, authoring::rows(&report)?))
         })
@@ -67,14 +67,14 @@ impl PyHouse {
 
     /// A map file for what stayed unmapped; `house` stands in its head.
     fn map_template(&self, py: Python<'_>, house: &str) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(authoring::map_template(self, house)))
+        py.engine(|| Ok::<_, PyFault>(authoring::map_template(self, house)))
     }
 
     fn add_head(&self, py: Python<'_>, head: &Bound<'_, PyHead>) -> PyResult<()> {
         let head = &head.get().head;
         py.engine(|| {
             self.engines.add_head(head);
-            Ok::<_, Fault>(())
+            Ok::<_, PyFault>(())
         })
     }
 
@@ -87,7 +87,7 @@ impl PyHouse {
         absorption: Option<f32>,
         scattering: Option<f32>,
     ) -> PyResult<Self> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let mut materials = ShoeboxMaterials::default();
             if let Some(name) = substance {
                 let Some(found) = library().get(name) else {
@@ -95,7 +95,7 @@ impl PyHouse {
                         .iter()
                         .map(|substance| substance.name.as_str())
                         .collect();
-                    return Err(Fault::Config(format!(
+                    return Err(PyFault::Config(format!(
                         "no substance {name:?}; there are {known:?}"
                     )));
                 };
@@ -132,7 +132,7 @@ impl PyHouse {
         yaw_deg: f32,
         fixed_base: Option<bool>,
     ) -> PyResult<Self> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let (robot, report) = dwell_houses::open_robot(Path::new(path))?;
             let base = Pose::from_position_yaw(Vec3::from_array(position), yaw_deg.to_radians());
             let fixed = fixed_base.unwrap_or_else(|| robot.has_fixed_base());
@@ -146,32 +146,32 @@ impl PyHouse {
         py.engine(|| {
             let house = self.house();
             let room = house.room_at(Vec3::from_array(point));
-            Ok::<_, Fault>(room.map(|room| house.rooms[room].name.clone()))
+            Ok::<_, PyFault>(room.map(|room| house.rooms[room].name.clone()))
         })
     }
 
     #[getter]
     fn has_rooms(&self, py: Python<'_>) -> PyResult<bool> {
-        py.engine(|| Ok::<_, Fault>(!self.house().rooms.is_empty()))
+        py.engine(|| Ok::<_, PyFault>(!self.house().rooms.is_empty()))
     }
 
     /// How many rooms and objects there are.
     #[getter]
     fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
-        py.engine(|| Ok::<_, Fault>((self.house().rooms.len(), self.house().objects.len())))
+        py.engine(|| Ok::<_, PyFault>((self.house().rooms.len(), self.house().objects.len())))
     }
 
     /// Whether the other house holds the same in all its tables, meshes and images.
     fn same(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
         py.engine(|| {
             let (a, b) = (self.house(), other.house());
-            Ok::<_, Fault>(std::ptr::eq(a, b) || a.data() == b.data())
+            Ok::<_, PyFault>(std::ptr::eq(a, b) || a.data() == b.data())
         })
     }
 
     /// The same number for houses that hold the same.
     fn fingerprint(&self, py: Python<'_>) -> PyResult<u64> {
-        py.engine(|| Ok::<_, Fault>(self.house().fingerprint()))
+        py.engine(|| Ok::<_, PyFault>(self.house().fingerprint()))
     }
 
     #[getter]
@@ -184,7 +184,7 @@ impl PyHouse {
     }
 
     fn rooms_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(serde_json::to_string(&dwell::viewpoints(&self.engines)?)?))
+        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&dwell::viewpoints(&self.engines)?)?))
     }
 
     #[pyo3(signature = (level, key=None))]
@@ -204,16 +204,16 @@ impl PyHouse {
         py.engine(|| {
             let known: Result<dwell_render::ClassSet, _> = serde_json::from_value(table.into());
             let classes = known.map_err(|_| {
-                Fault::Config(format!(
+                PyFault::Config(format!(
                     "no table of classes {table:?}; there are coarse, fine and nyu40"
                 ))
             })?;
-            Ok::<_, Fault>(classes.names(self.house()))
+            Ok::<_, PyFault>(classes.names(self.house()))
         })
     }
 
     fn write(&self, py: Python<'_>, path: &str, form: &str) -> PyResult<Vec<String>> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let write = writer(form)?.write;
             Ok(sentences(&write(self.house(), Path::new(path))?))
         })
@@ -226,7 +226,7 @@ impl PyHouse {
         name: &str,
         form: &str,
     ) -> PyResult<(PathBuf, Vec<String>)> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let write = writer(form)?.write_into;
             let (path, losses) = write(self.house(), Path::new(root), name)?;
             Ok((path, sentences(&losses)))
@@ -235,12 +235,12 @@ impl PyHouse {
 
     #[staticmethod]
     fn finish_folder(py: Python<'_>, root: &str, form: &str) -> PyResult<()> {
-        py.engine(|| -> Result<_, Fault> { Ok((writer(form)?.finish)(Path::new(root))?) })
+        py.engine(|| -> Result<_, PyFault> { Ok((writer(form)?.finish)(Path::new(root))?) })
     }
 }
 
-fn writer(form: &str) -> Result<&'static dwell_houses::HouseWriter, Fault> {
-    dwell_houses::writer(form).map_err(|error| Fault::Config(error.to_string()))
+fn writer(form: &str) -> Result<&'static dwell_houses::HouseWriter, PyFault> {
+    dwell_houses::writer(form).map_err(|error| PyFault::Config(error.to_string()))
 }
 
 fn sentences(losses: &[ExportLoss]) -> Vec<String> {
@@ -253,7 +253,7 @@ pub(crate) fn describe_level(
     state: &State,
     level: &str,
     key: Option<u64>,
-) -> Result<Vec<String>, Fault> {
+) -> Result<Vec<String>, PyFault> {
     let scene = semantics.scene(state);
     let house = semantics.house();
     Ok(match level {
@@ -291,7 +291,7 @@ pub(crate) fn describe_level(
         }
         other => {
             let allowed = "object, room, house, graph, instructions";
-            return Err(Fault::Config(format!(
+            return Err(PyFault::Config(format!(
                 "level is {other:?}; allowed are {allowed}"
             )));
         }

@@ -1,13 +1,13 @@
 //! How large a JSON text becomes, before Python makes objects of it.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use pyo3::prelude::*;
 
 /// How deep arrays and objects are nested, and the most values and names that the text can hold.
 #[pyfunction]
 pub(crate) fn json_extent(py: Python<'_>, text: &[u8]) -> PyResult<(usize, usize)> {
-    py.engine(|| Ok::<_, Fault>(extent(text)))
+    py.engine(|| Ok::<_, PyFault>(extent(text)))
 }
 
 fn extent(text: &[u8]) -> (usize, usize) {

@@ -10,24 +10,24 @@ mod arrays;
 mod authoring;
 mod batch;
 mod bench;
-mod bugs;
+mod build_info;
 mod calibrate;
 mod doorway;
 mod errors;
-mod facts;
-mod forks;
+mod fork_safety;
 mod hdf5;
-mod head;
 mod house;
+mod hrtf;
 mod json;
+mod json_rows;
 mod logs;
 mod navigation;
+mod panics;
 mod picture;
-mod rows;
-mod running;
-mod show;
-mod spare;
+mod pictures_for_people;
+mod prepared_env;
 mod world;
+mod world_access;
 
 use pyo3::prelude::*;
 
@@ -35,27 +35,27 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     errors::register(module)?;
-    forks::register(module.py())?;
+    fork_safety::register(module.py())?;
     logs::install();
-    bugs::install_hook();
+    panics::install_hook();
     module.add_class::<house::PyHouse>()?;
     module.add_class::<world::PyWorld>()?;
     module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
-    module.add_class::<spare::PySpare>()?;
+    module.add_class::<prepared_env::PySpare>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
     module.add_class::<hdf5::PyHdf5>()?;
-    module.add_class::<head::PyHead>()?;
-    module.add_function(wrap_pyfunction!(facts::actions, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::tasks_json, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::sensors_json, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::laws_json, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::furniture_kinds, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::vocabulary, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::charset, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::max_text_length, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::doctor_json, module)?)?;
-    module.add_function(wrap_pyfunction!(facts::seed_range, module)?)?;
+    module.add_class::<hrtf::PyHead>()?;
+    module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::tasks_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::sensors_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::laws_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::furniture_kinds, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::vocabulary, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::charset, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::max_text_length, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::doctor_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::seed_range, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::response_metrics_json, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::ear_metrics_json, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;
@@ -64,14 +64,20 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
     module.add_function(wrap_pyfunction!(json::json_extent, module)?)?;
-    module.add_function(wrap_pyfunction!(spare::spares, module)?)?;
-    module.add_function(wrap_pyfunction!(show::map, module)?)?;
-    module.add_function(wrap_pyfunction!(show::dollhouse, module)?)?;
-    module.add_function(wrap_pyfunction!(show::floor_plan_json, module)?)?;
-    module.add_function(wrap_pyfunction!(show::fixtures_json, module)?)?;
-    module.add_function(wrap_pyfunction!(show::surfaces, module)?)?;
-    module.add_function(wrap_pyfunction!(show::texture, module)?)?;
+    module.add_function(wrap_pyfunction!(prepared_env::spares, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::map, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::dollhouse, module)?)?;
+    module.add_function(wrap_pyfunction!(
+        pictures_for_people::floor_plan_json,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(
+        pictures_for_people::fixtures_json,
+        module
+    )?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::surfaces, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::texture, module)?)?;
     module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
-    module.add_function(wrap_pyfunction!(bugs::panic_for_tests, module)?)?;
+    module.add_function(wrap_pyfunction!(panics::panic_for_tests, module)?)?;
     Ok(())
 }

@@ -27,17 +27,17 @@ const WARNING: i64 = 30;
 /// The least severe level that is recorded, in Python's numbers.
 static LEAST: AtomicI64 = AtomicI64::new(WARNING);
 static IS_WAITING: AtomicBool = AtomicBool::new(false);
-static QUEUE: Mutex<Queue> = Mutex::new(Queue {
+static QUEUE: Mutex<LogQueue> = Mutex::new(LogQueue {
     records: VecDeque::new(),
     lost: 0,
 });
 
-struct Queue {
-    records: VecDeque<Line>,
+struct LogQueue {
+    records: VecDeque<LogRecord>,
     lost: usize,
 }
 
-struct Line {
+struct LogRecord {
     logger: String,
     level: i64,
     text: String,
@@ -74,12 +74,12 @@ fn is_ours(target: &str) -> bool {
 
 /// The message, then the other fields in brackets.
 #[derive(Default)]
-struct Text {
+struct MessageText {
     message: String,
     fields: String,
 }
 
-impl Visit for Text {
+impl Visit for MessageText {
     fn record_debug(&mut self, field: &Field, value: &dyn Debug) {
         // Writing to a string cannot fail.
         let _ = if field.name() == "message" {
@@ -96,9 +96,9 @@ impl Visit for Text {
 }
 
 /// Takes events; spans are not told.
-struct Sink;
+struct LogSubscriber;
 
-impl Subscriber for Sink {
+impl Subscriber for LogSubscriber {
     fn enabled(&self, metadata: &Metadata<'_>) -> bool {
         metadata.is_event()
             && is_ours(metadata.target())
@@ -127,9 +127,9 @@ impl Subscriber for Sink {
     fn record_follows_from(&self, _: &Id, _: &Id) {}
 
     fn event(&self, event: &Event<'_>) {
-        let mut text = Text::default();
+        let mut text = MessageText::default();
         event.record(&mut text);
-        let Text { message, fields } = text;
+        let MessageText { message, fields } = text;
         let text = if fields.is_empty() {
             message
         } else {
@@ -140,7 +140,7 @@ impl Subscriber for Sink {
             queue.lost += 1;
             return;
         }
-        queue.records.push_back(Line {
+        queue.records.push_back(LogRecord {
             logger: logger(event.metadata().target()),
             level: number(*event.metadata().level()),
             text: printable(text),
@@ -156,7 +156,7 @@ impl Subscriber for Sink {
 /// Takes events from now on.
 pub(crate) fn install() {
     // Fails only where this extension has one already: then that is it.
-    let _ = tracing::subscriber::set_global_default(Sink);
+    let _ = tracing::subscriber::set_global_default(LogSubscriber);
 }
 
 /// The loggers `dwell` and root, once somebody has imported `logging`: before that nobody can have set a level.
@@ -173,7 +173,7 @@ fn loggers(py: Python<'_>) -> Option<&'static (Py<PyAny>, Py<PyAny>)> {
 }
 
 /// Looks at the level that is wanted.
-pub(crate) fn heed(py: Python<'_>) {
+pub(crate) fn set_level(py: Python<'_>) {
     let Some((own, root)) = loggers(py) else {
         return;
     };

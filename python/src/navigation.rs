@@ -1,7 +1,7 @@
 //! Where one can walk, for Python.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::PyHouse;
 use dwell::Engines;
 use dwell_scene::interrupt;
@@ -24,11 +24,11 @@ const MOST_SAMPLES: usize = 10_000_000;
 #[pyclass(name = "Navigation", module = "dwell._native", frozen)]
 pub(crate) struct PyNavigation {
     house: Arc<House>,
-    moment: Mutex<Moment>,
+    moment: Mutex<GridAtState>,
 }
 
 /// A house as it stands: the grid, which others may have too until this one follows something.
-struct Moment {
+struct GridAtState {
     grid: Arc<NavGrid>,
     /// Where everything stands; `None`: as the house starts.
     state: Option<State>,
@@ -36,7 +36,7 @@ struct Moment {
 
 impl PyNavigation {
     /// Of a house as it starts: every house keeps the grids of its latest walkers.
-    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, Fault> {
+    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, PyFault> {
         let grid = engines.grid(&serde_json::from_str(config_json)?)?;
         Ok(Self::at(engines.house(), grid, None))
     }
@@ -46,7 +46,7 @@ impl PyNavigation {
         house: &Arc<House>,
         state: &State,
         config_json: &str,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, PyFault> {
         let config: NavConfig = serde_json::from_str(config_json)?;
         let grid = Arc::new(NavGrid::build(house, state, &config)?);
         Ok(Self::at(house, grid, Some(state.clone())))
@@ -55,12 +55,12 @@ impl PyNavigation {
     fn at(house: &Arc<House>, grid: Arc<NavGrid>, state: Option<State>) -> Self {
         Self {
             house: house.clone(),
-            moment: Mutex::new(Moment { grid, state }),
+            moment: Mutex::new(GridAtState { grid, state }),
         }
     }
 
     /// Follows what has moved; returns how many columns were looked at again.
-    pub(crate) fn follow(&self, state: &State) -> Result<usize, Fault> {
+    pub(crate) fn follow(&self, state: &State) -> Result<usize, PyFault> {
         let mut moment = self.moment()?;
         interrupt::uninterruptible(|| {
             // A grid that others have, too, is theirs.
@@ -71,21 +71,21 @@ impl PyNavigation {
     }
 
     /// The grid for one call, which no signal ends half-way.
-    fn with<T>(&self, work: impl FnOnce(&NavGrid) -> T) -> Result<T, Fault> {
+    fn with<T>(&self, work: impl FnOnce(&NavGrid) -> T) -> Result<T, PyFault> {
         let moment = self.moment()?;
         Ok(interrupt::uninterruptible(|| work(&moment.grid)))
     }
 
-    fn moment(&self) -> Result<MutexGuard<'_, Moment>, Fault> {
+    fn moment(&self) -> Result<MutexGuard<'_, GridAtState>, PyFault> {
         self.moment.lock().map_err(|_| {
             let message = "a bug of the engine stopped this navigation; make a new one";
-            Fault::Usage(message.to_owned())
+            PyFault::Usage(message.to_owned())
         })
     }
 }
 
 /// Corners (n, 3), length in m, the shut doors on the way by name.
-type Way<'py> = (Bound<'py, PyArray2<f32>>, f64, Vec<String>);
+type RouteTuple<'py> = (Bound<'py, PyArray2<f32>>, f64, Vec<String>);
 
 fn positions(py: Python<'_>, points: Vec<Vec3>) -> PyResult<Bound<'_, PyArray2<f32>>> {
     let count = points.len();
@@ -118,7 +118,7 @@ impl PyNavigation {
         let bytes = py.engine(|| {
             let moment = self.moment()?;
             let state = moment.state.as_ref();
-            Ok::<_, Fault>(state.map(|state| state.to_bytes(&self.house)))
+            Ok::<_, PyFault>(state.map(|state| state.to_bytes(&self.house)))
         })?;
         Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
     }
@@ -166,7 +166,7 @@ impl PyNavigation {
         let points = py.engine(|| {
             if count > MOST_SAMPLES {
                 let message = format!("count is {count}; allowed are 0 to {MOST_SAMPLES}");
-                return Err(Fault::Config(message));
+                return Err(PyFault::Config(message));
             }
             self.with(|grid| -> Vec<Vec3> {
                 let start = start.map(|start| grid.nearest(Vec3::from_array(start), NEAR_M));
@@ -188,7 +188,7 @@ impl PyNavigation {
         py: Python<'py>,
         start: [f32; 3],
         goal: [f32; 3],
-    ) -> PyResult<Option<Way<'py>>> {
+    ) -> PyResult<Option<RouteTuple<'py>>> {
         let ends = (Vec3::from_array(start), Vec3::from_array(goal));
         let route = py.engine(|| self.with(|grid| grid.route(ends.0, ends.1)))?;
         let Some(route) = route else { return Ok(None) };
@@ -209,7 +209,7 @@ impl PyNavigation {
             let map = self.with(|grid| grid.occupancy(LevelId(level)))?;
             map.ok_or_else(|| {
                 let count = self.house.levels.len();
-                Fault::Config(format!("no storey {level}; there are {count}"))
+                PyFault::Config(format!("no storey {level}; there are {count}"))
             })
         })?;
         let [x, z] = map.corner;
@@ -226,7 +226,7 @@ impl PyNavigation {
                 json!({"name": self.house.objects[object].name, "openness": door.openness,
                     "is_open": door.is_open, "cells": cells, "islands": door.islands})
             });
-            Ok::<_, Fault>(serde_json::to_string(&doors.collect::<Vec<_>>())?)
+            Ok::<_, PyFault>(serde_json::to_string(&doors.collect::<Vec<_>>())?)
         })
     }
 }

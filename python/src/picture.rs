@@ -1,6 +1,6 @@
 //! One picture of a world, as Python asks for it.
 
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell::sensors::{Observation, ObservationData};
 use dwell::{CameraMount, PictureRequest, World, camera_mount};
 use dwell_render::{Camera, Preset, Projection};
@@ -15,7 +15,7 @@ use serde::Deserialize;
 /// A picture that is asked for.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
-struct ViewSettings {
+struct PictureSettings {
     camera: CameraSettings,
     agent: Option<u32>,
     position: [f32; 3],
@@ -61,7 +61,7 @@ impl Default for CameraSettings {
     }
 }
 
-impl Default for ViewSettings {
+impl Default for PictureSettings {
     fn default() -> Self {
         Self {
             camera: CameraSettings::default(),
@@ -79,12 +79,12 @@ pub(crate) fn render(
     world: &World,
     view_json: &str,
     channels: &[String],
-) -> Result<Vec<Observation>, Fault> {
-    let settings: ViewSettings = serde_json::from_str(view_json)?;
+) -> Result<Vec<Observation>, PyFault> {
+    let settings: PictureSettings = serde_json::from_str(view_json)?;
     let own = &settings.camera;
     let camera = match (own.projection, own.fov_deg) {
         (Some(_), Some(fov_deg)) => {
-            return Err(Fault::Config(format!(
+            return Err(PyFault::Config(format!(
                 "camera.fov_deg is {fov_deg}; allowed is None beside a projection"
             )));
         }
@@ -119,18 +119,18 @@ pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<
 }
 
 /// Where the camera stands.
-fn place(world: &World, settings: &ViewSettings) -> Result<CameraMount, Fault> {
+fn place(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFault> {
     let own = &settings.camera;
     let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);
     if !mount.is_valid() {
-        return Err(Fault::Config(
+        return Err(PyFault::Config(
             "camera: position and angles must be finite".to_owned(),
         ));
     }
     if let Some(number) = settings.agent {
         let count = world.state().agents.len();
         if number as usize >= count {
-            return Err(Fault::Usage(format!(
+            return Err(PyFault::Usage(format!(
                 "no agent {number}; there are {count}"
             )));
         }
@@ -138,7 +138,7 @@ fn place(world: &World, settings: &ViewSettings) -> Result<CameraMount, Fault> {
     }
     let rotation = match settings.forward {
         Some(forward) => rotation_from_forward(Vec3::from_array(forward)).ok_or_else(|| {
-            Fault::Config(format!(
+            PyFault::Config(format!(
                 "forward is {forward:?}; allowed is a direction that is not zero"
             ))
         })?,
@@ -151,7 +151,7 @@ fn place(world: &World, settings: &ViewSettings) -> Result<CameraMount, Fault> {
     if pose.is_valid() {
         Ok(CameraMount::World(pose * mount))
     } else {
-        Err(Fault::Config(
+        Err(PyFault::Config(
             "position and angles must be finite".to_owned(),
         ))
     }

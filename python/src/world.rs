@@ -3,12 +3,12 @@
 use crate::arrays;
 use crate::batch::PyBatch;
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::{PyHouse, describe_level};
+use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
-use crate::rows::{AgentRow, BodyRow, PlaceRow, SoundRow};
-use crate::running::{GuideTo, Running};
+use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, StepSizes, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
@@ -25,12 +25,12 @@ use std::sync::{Mutex, TryLockError};
 /// A running world with its own state over a shared house.
 #[pyclass(name = "World", module = "dwell._native", frozen)]
 pub(crate) struct PyWorld {
-    source: Source,
-    guide: Mutex<GuideTo>,
+    source: WorldSource,
+    guide: Mutex<ActiveGuide>,
 }
 
 /// Where a world lives.
-enum Source {
+enum WorldSource {
     Own(Box<Mutex<World>>),
     /// In an environment of a batch, which goes on stepping it.
     Env {
@@ -44,7 +44,7 @@ impl PyWorld {
     pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault> + Send,
     ) -> PyResult<T> {
         py.engine(|| self.reach(|running| interrupt::uninterruptible(|| work(running))))
     }
@@ -53,7 +53,7 @@ impl PyWorld {
     fn prepare<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault> + Send,
     ) -> PyResult<T> {
         // Within the guards: they would take the unwinding for a panic.
         py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
@@ -63,7 +63,7 @@ impl PyWorld {
     pub(crate) fn look<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&Running<'_>) -> Result<T, Fault> + Send,
+        work: impl FnOnce(&WorldAccess<'_>) -> Result<T, PyFault> + Send,
     ) -> PyResult<T> {
         py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
     }
@@ -71,23 +71,23 @@ impl PyWorld {
     /// The world for one call, without the GIL.
     fn reach<T>(
         &self,
-        work: impl FnOnce(&mut Running<'_>) -> Result<T, Fault>,
-    ) -> Result<T, Fault> {
+        work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault>,
+    ) -> Result<T, PyFault> {
         let mut guide = self.guide.lock().map_err(|_| stopped())?;
         let work = |world: &mut World, stride| {
             let guide = &mut *guide;
-            work(&mut Running {
+            work(&mut WorldAccess {
                 world,
                 guide,
                 stride,
             })
         };
         match &self.source {
-            Source::Own(world) => {
+            WorldSource::Own(world) => {
                 let mut world = world.lock().map_err(|_| stopped())?;
                 work(&mut world, StepSizes::default())
             }
-            Source::Env { batch, env } => {
+            WorldSource::Env { batch, env } => {
                 let mut batch = batch.get().lock()?;
                 let env = batch.env_mut(*env)?;
                 let stride = *env.stride();
@@ -99,14 +99,14 @@ impl PyWorld {
     /// The world of environment `env`.
     pub(crate) fn of_env(batch: Py<PyBatch>, env: usize) -> Self {
         Self {
-            source: Source::Env { batch, env },
+            source: WorldSource::Env { batch, env },
             guide: Mutex::default(),
         }
     }
 }
 
-fn stopped() -> Fault {
-    Fault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
+fn stopped() -> PyFault {
+    PyFault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
 }
 
 #[pymethods]
@@ -121,14 +121,14 @@ impl PyWorld {
     ) -> PyResult<Self> {
         arrays::ready(py)?;
         let engines = house.get().engines.clone();
-        let world = py.engine(|| -> Result<World, Fault> {
+        let world = py.engine(|| -> Result<World, PyFault> {
             let config: WorldConfig = serde_json::from_str(config_json)?;
             let mut world = World::new(engines, &config)?;
             world.reset(RandomKey::root(seed))?;
             Ok(world)
         })?;
         Ok(Self {
-            source: Source::Own(Box::new(Mutex::new(world))),
+            source: WorldSource::Own(Box::new(Mutex::new(world))),
             guide: Mutex::default(),
         })
     }
@@ -140,7 +140,7 @@ impl PyWorld {
                 "controls: expected shape (agent, 4), found (_, {})",
                 controls.ncols()
             );
-            return Err(crate::errors::to_python(Fault::Config(message)));
+            return Err(crate::errors::to_python(PyFault::Config(message)));
         }
         let controls: Vec<AgentControl> = controls
             .rows()
@@ -178,7 +178,7 @@ impl PyWorld {
             let last = DiscreteAction::ALL.len() - 1;
             let known = DiscreteAction::ALL.get(action).copied();
             let action = known.ok_or_else(|| {
-                Fault::Config(format!("action {action}; allowed are 0 to {last}"))
+                PyFault::Config(format!("action {action}; allowed are 0 to {last}"))
             })?;
             let outcome = running.world.act_discrete(agent, action, &running.stride)?;
             Ok(running.outcome_json(&outcome)?.to_string())
@@ -275,7 +275,7 @@ impl PyWorld {
     ) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let heard = self.prepare(py, |running| {
             if samples == 0 || samples > 10 * running.world.config().sound_rate_hz as usize {
-                return Err(Fault::Config(format!(
+                return Err(PyFault::Config(format!(
                     "samples is {samples}; allowed are 1 to ten seconds' worth"
                 )));
             }
@@ -294,14 +294,14 @@ impl PyWorld {
         self.with(py, |running| {
             let row: SoundRow = serde_json::from_str(sound_json)?;
             let place = match row.at {
-                PlaceRow::Position(position) => SoundPlace::Point(position.into()),
-                PlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
-                PlaceRow::Agent(agent) => SoundPlace::Agent(running.agent(agent)?),
+                SoundPlaceRow::Position(position) => SoundPlace::Point(position.into()),
+                SoundPlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
+                SoundPlaceRow::Agent(agent) => SoundPlace::Agent(running.agent(agent)?),
             };
             let usual_db = dwell::usual_level_db(&row.sound)?;
             let Some(level_db) = row.level_db.or(usual_db) else {
                 let message = "level_db is missing; a file does not say how loud it was";
-                return Err(Fault::Config(message.to_owned()));
+                return Err(PyFault::Config(message.to_owned()));
             };
             Ok(running.world.play(PlayRequest {
                 sound: row.sound,
@@ -389,7 +389,7 @@ impl PyWorld {
             {
                 let grid = running.world.engines().navigation(&body)?;
                 let Some(cell) = grid.nearest(Vec3::from_array(goal), 0.6) else {
-                    return Err(Fault::Config(format!(
+                    return Err(PyFault::Config(format!(
                         "nobody can stand within 0.6 m of {goal:?}"
                     )));
                 };
@@ -398,7 +398,7 @@ impl PyWorld {
                     ShortestPathFollower::new(id, grid, &[cell], running.stride),
                 ));
             }
-            let Running { world, guide, .. } = running;
+            let WorldAccess { world, guide, .. } = running;
             Ok(guide
                 .as_mut()
                 .and_then(|(_, guide)| guide.walk(world))
@@ -454,7 +454,7 @@ impl PyWorld {
                 "velocity" => JointCommand::Velocity(value),
                 "effort" => JointCommand::Effort(value),
                 other => {
-                    return Err(Fault::Config(format!(
+                    return Err(PyFault::Config(format!(
                         "kind is {other:?}; allowed are off, position, velocity, effort"
                     )));
                 }
@@ -503,7 +503,7 @@ impl PyWorld {
                         },
                     })
                 })
-                .collect::<Result<_, Fault>>()?;
+                .collect::<Result<_, PyFault>>()?;
             Ok(running.world.set_bodies(&bodies)?)
         })
     }
@@ -527,7 +527,7 @@ impl PyWorld {
             let values: Vec<(Address, f64)> = values
                 .iter()
                 .map(|(address, value)| Ok((address.parse()?, *value)))
-                .collect::<Result<_, Fault>>()?;
+                .collect::<Result<_, PyFault>>()?;
             Ok(running.world.set_parameters(&values)?)
         })
     }
@@ -550,10 +550,10 @@ impl PyWorld {
 
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
         // Whoever waits for a step of another thread would undo it.
-        if let Source::Own(world) = &self.source
+        if let WorldSource::Own(world) = &self.source
             && let Err(TryLockError::WouldBlock) = world.try_lock()
         {
-            return Err(crate::errors::to_python(Fault::Usage(
+            return Err(crate::errors::to_python(PyFault::Usage(
                 "restore: this world is busy in another thread; wait for its step to end"
                     .to_owned(),
             )));

@@ -1,7 +1,7 @@
 //! Environments that wait for their place in a batch.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::PyHouse;
 use dwell::{Engines, Env, EnvConfig};
 use dwell_scene::parallel::Threads;
@@ -16,9 +16,9 @@ pub(crate) struct PySpare {
 
 impl PySpare {
     /// The environment, once.
-    pub(crate) fn take(&self) -> Result<Env, Fault> {
+    pub(crate) fn take(&self) -> Result<Env, PyFault> {
         let mut env = self.env.lock().unwrap_or_else(PoisonError::into_inner);
-        let refuse = || Fault::Usage("this environment has its place already".to_owned());
+        let refuse = || PyFault::Usage("this environment has its place already".to_owned());
         env.take().ok_or_else(refuse)
     }
 }
@@ -37,7 +37,7 @@ pub(crate) fn spares(
         .iter()
         .map(|house| house.get().engines.clone())
         .collect();
-    py.engine(|| -> Result<_, Fault> {
+    py.engine(|| -> Result<_, PyFault> {
         let config: EnvConfig = serde_json::from_str(config_json)?;
         let threads = Threads::requested(threads)?;
         let envs = threads.map(shared.len(), |k| {
@@ -46,9 +46,9 @@ pub(crate) fn spares(
                 env.begin(seed)?;
                 env.warm_up(Threads::ONE)?;
             }
-            Ok::<_, Fault>(env)
+            Ok::<_, PyFault>(env)
         });
-        let wrap = |env: Result<Env, Fault>| {
+        let wrap = |env: Result<Env, PyFault>| {
             Ok(PySpare {
                 env: Mutex::new(Some(env?)),
             })

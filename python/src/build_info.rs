@@ -1,7 +1,7 @@
 //! What this build knows: actions, tasks, sensors, laws, words, and the machine it runs on.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell::DiscreteAction;
 use dwell_scene::parallel::{self, Threads};
 use pyo3::prelude::*;
@@ -86,7 +86,7 @@ pub(crate) fn max_text_length() -> usize {
 /// First seed, end and fields of a HOUSE string that stands for several houses; nothing for any other.
 #[pyfunction]
 pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u64, String)>> {
-    py.engine(|| -> Result<_, Fault> {
+    py.engine(|| -> Result<_, PyFault> {
         let found = dwell_houses::seed_range(house)?;
         Ok(found.map(|(seeds, fields)| (seeds.start, seeds.end, fields.to_owned())))
     })
@@ -98,7 +98,7 @@ pub(crate) fn doctor_json(py: Python<'_>) -> PyResult<String> {
     py.engine(doctor)
 }
 
-fn doctor() -> Result<String, Fault> {
+fn doctor() -> Result<String, PyFault> {
     let threads = Threads::requested(None)?.count();
     Ok(json!({
         "version": env!("CARGO_PKG_VERSION"),

@@ -4,7 +4,7 @@
 //! catches it. The backtrace goes to the log `dwell.python.bugs`, level debug, where `RUST_BACKTRACE=1` asks for one.
 
 use crate::doorway::Doorway;
-use crate::errors::{EngineBug, Fault};
+use crate::errors::{EngineBug, PyFault};
 use crate::world::PyWorld;
 use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
@@ -63,7 +63,7 @@ pub(crate) fn panic_for_tests(py: Python<'_>, world: Option<&Bound<'_, PyWorld>>
         Some(world) => world.get().with(py, |_| panic!("a world's, on purpose")),
         None => py.engine(|| {
             Threads::exactly(2).map(4, |k| assert!(k != 3, "a pool's, on purpose"));
-            Ok::<_, Fault>(())
+            Ok::<_, PyFault>(())
         }),
     }
 }

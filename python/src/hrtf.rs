@@ -1,7 +1,7 @@
 //! Heads for Python.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell_acoustics::Head;
 use dwell_acoustics::head::HrirMeasurement;
 use glam::DVec3;
@@ -16,14 +16,14 @@ pub(crate) struct PyHead {
 
 fn shape(name: &str, expected: &str, found: &[usize]) -> PyErr {
     let message = format!("{name}: expected shape {expected}, found {found:?}");
-    crate::errors::to_python(Fault::Config(message))
+    crate::errors::to_python(PyFault::Config(message))
 }
 
 #[pymethods]
 impl PyHead {
     #[staticmethod]
     fn sphere(py: Python<'_>, radius_m: f64) -> PyResult<Self> {
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let head = Head::sphere(radius_m)?;
             Ok(Self { head })
         })
@@ -62,7 +62,7 @@ impl PyHead {
             delays_samples: delays.iter().copied().collect(),
             rate_hz,
         };
-        py.engine(|| -> Result<_, Fault> {
+        py.engine(|| -> Result<_, PyFault> {
             let head = Head::measured(&measurement)?;
             Ok(Self { head })
         })
@@ -76,6 +76,6 @@ impl PyHead {
 
     /// What was found in the measurement, as a JSON object; `null` for a sphere.
     fn about_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, Fault>(serde_json::to_string(&self.head.about())?))
+        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&self.head.about())?))
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures and shapes of worlds for people: maps, doll's houses, meshes for viewers.
 
 use crate::doorway::Doorway;
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::world::PyWorld;
 use dwell_render::{Dollhouse, DollhouseConfig, StoreyMap};
@@ -12,7 +12,7 @@ use numpy::{IntoPyArray, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-type Picture<'py> = Bound<'py, PyArray3<u8>>;
+type RgbArray<'py> = Bound<'py, PyArray3<u8>>;
 
 /// A storey from above: the picture (height, width, 3), x and z of its upper left corner, pixels a metre.
 #[pyfunction]
@@ -21,7 +21,7 @@ pub(crate) fn map<'py>(
     world: &Bound<'py, PyWorld>,
     level: u32,
     longest_edge: u32,
-) -> PyResult<(Picture<'py>, f32, f32, f32)> {
+) -> PyResult<(RgbArray<'py>, f32, f32, f32)> {
     let (rgb, map) = world.get().look(py, |running| {
         let world = &running.world;
         let map = StoreyMap::new(world.house(), LevelId(level), longest_edge)?;
@@ -43,7 +43,7 @@ pub(crate) fn dollhouse<'py>(
     world: &Bound<'py, PyWorld>,
     level: u32,
     config_json: &str,
-) -> PyResult<Picture<'py>> {
+) -> PyResult<RgbArray<'py>> {
     let (rgb, size) = world.get().look(py, |running| {
         let world = &running.world;
         let config: DollhouseConfig = serde_json::from_str(config_json)?;
@@ -55,7 +55,7 @@ pub(crate) fn dollhouse<'py>(
     picture(py, rgb, size)
 }
 
-fn picture(py: Python<'_>, rgb: Vec<u8>, (height, width): (u32, u32)) -> PyResult<Picture<'_>> {
+fn picture(py: Python<'_>, rgb: Vec<u8>, (height, width): (u32, u32)) -> PyResult<RgbArray<'_>> {
     rgb.into_pyarray(py)
         .reshape([height as usize, width as usize, 3])
 }
@@ -125,14 +125,14 @@ pub(crate) fn texture<'py>(
     py: Python<'py>,
     house: &Bound<'py, PyHouse>,
     texture: u32,
-) -> PyResult<Picture<'py>> {
+) -> PyResult<RgbArray<'py>> {
     let house: &House = house.get().engines.house();
     let Some(found) = house.textures.get(dwell_scene::TextureId(texture)) else {
         let count = house.textures.len();
-        let fault = Fault::Config(format!("no texture {texture}; there are {count}"));
+        let fault = PyFault::Config(format!("no texture {texture}; there are {count}"));
         return Err(crate::errors::to_python(fault));
     };
     let (height, width) = (found.height as usize, found.width as usize);
-    let rgba = py.engine(|| Ok::<_, Fault>(found.rgba().to_vec()))?;
+    let rgba = py.engine(|| Ok::<_, PyFault>(found.rgba().to_vec()))?;
     rgba.into_pyarray(py).reshape([height, width, 4])
 }

@@ -1,6 +1,6 @@
 //! A running world, and how Python names what is in it.
 
-use crate::errors::Fault;
+use crate::errors::PyFault;
 use dwell::{ShortestPathFollower, StepSizes, World};
 use dwell_physics::ActionOutcome;
 use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
@@ -10,18 +10,18 @@ use serde_json::json;
 const NAMES: usize = 12;
 
 /// A guide, and the bits of the goal that it leads to.
-pub(crate) type GuideTo = Option<([u32; 3], ShortestPathFollower)>;
+pub(crate) type ActiveGuide = Option<([u32; 3], ShortestPathFollower)>;
 
 /// What a `World` of Python works on: a world of its own, or that of an environment.
-pub(crate) struct Running<'a> {
+pub(crate) struct WorldAccess<'a> {
     pub(crate) world: &'a mut World,
-    pub(crate) guide: &'a mut GuideTo,
+    pub(crate) guide: &'a mut ActiveGuide,
     /// How far discrete actions go.
     pub(crate) stride: StepSizes,
 }
 
-impl Running<'_> {
-    pub(crate) fn object(&self, named: &serde_json::Value) -> Result<ObjectId, Fault> {
+impl WorldAccess<'_> {
+    pub(crate) fn object(&self, named: &serde_json::Value) -> Result<ObjectId, PyFault> {
         let house = self.world.house();
         let by_id = named
             .as_i64()
@@ -33,7 +33,7 @@ impl Running<'_> {
         found.ok_or_else(|| {
             let known = house.objects.iter().map(|object| object.name.as_str());
             let near = dwell_houses::nearest(named.as_str().unwrap_or_default(), known, NAMES);
-            Fault::Config(format!(
+            PyFault::Config(format!(
                 "no object {named}; of the {} the nearest are {near:?}",
                 house.objects.len()
             ))
@@ -41,7 +41,7 @@ impl Running<'_> {
     }
 
     /// A part by its object's name and its own; without one the object's first part that moves.
-    pub(crate) fn part(&self, object: &str, part: Option<&str>) -> Result<PartId, Fault> {
+    pub(crate) fn part(&self, object: &str, part: Option<&str>) -> Result<PartId, PyFault> {
         let house = self.world.house();
         let id = self.object(&json!(object))?;
         let mut parts = house.objects[id].parts();
@@ -54,20 +54,25 @@ impl Running<'_> {
             .ok_or_else(|| {
                 let parts = house.objects[id].parts();
                 let known: Vec<_> = parts.map(|id| &house.parts[id].name).collect();
-                Fault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
+                PyFault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
             })
     }
 
-    pub(crate) fn agent(&self, agent: usize) -> Result<AgentId, Fault> {
+    pub(crate) fn agent(&self, agent: usize) -> Result<AgentId, PyFault> {
         let count = self.world.state().agents.len();
         if agent < count {
             Ok(AgentId::from_index(agent))
         } else {
-            Err(Fault::Usage(format!("no agent {agent}; there are {count}")))
+            Err(PyFault::Usage(format!(
+                "no agent {agent}; there are {count}"
+            )))
         }
     }
 
-    pub(crate) fn outcome_json(&self, outcome: &ActionOutcome) -> Result<serde_json::Value, Fault> {
+    pub(crate) fn outcome_json(
+        &self,
+        outcome: &ActionOutcome,
+    ) -> Result<serde_json::Value, PyFault> {
         let house = self.world.house();
         let name = |object: ObjectId| house.objects[object].name.clone();
         let pointed = outcome.pointed.map(|pointed| {

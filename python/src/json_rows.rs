@@ -32,14 +32,14 @@ pub(crate) struct AgentRow {
 #[serde(deny_unknown_fields)]
 pub(crate) struct SoundRow {
     pub(crate) sound: SoundName,
-    pub(crate) at: PlaceRow,
+    pub(crate) at: SoundPlaceRow,
     pub(crate) level_db: Option<f32>,
     pub(crate) loops: bool,
 }
 
 #[derive(serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum PlaceRow {
+pub(crate) enum SoundPlaceRow {
     Position([f32; 3]),
     Object(String),
     Agent(usize),

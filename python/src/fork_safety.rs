@@ -30,9 +30,9 @@ thread_local! {
 }
 
 /// A call of an engine, as long as it lasts.
-pub(crate) struct Call(());
+pub(crate) struct EngineCallGuard(());
 
-impl Call {
+impl EngineCallGuard {
     /// Begins a call, after those who are about to fork. A call within another does not wait: that one is waited for.
     pub(crate) fn begin(py: Python<'_>) -> Self {
         while OWN.get() == 0 && FORKS.load(Ordering::SeqCst) > 0 {
@@ -44,7 +44,7 @@ impl Call {
     }
 }
 
-impl Drop for Call {
+impl Drop for EngineCallGuard {
     fn drop(&mut self) {
         OWN.set(OWN.get().saturating_sub(1));
         CALLS.fetch_sub(1, Ordering::SeqCst);
@@ -60,12 +60,12 @@ pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
         return is_main;
     }
     // Where threading cannot say, nobody is asked about signals.
-    let is_main = asked(py).unwrap_or(false);
+    let is_main = is_registered(py).unwrap_or(false);
     MAIN.set(Some((generation, is_main)));
     is_main
 }
 
-fn asked(py: Python<'_>) -> PyResult<bool> {
+fn is_registered(py: Python<'_>) -> PyResult<bool> {
     let threading = py.import("threading")?;
     let main = threading.call_method0("main_thread")?.getattr("ident")?;
     main.eq(threading.call_method0("get_ident")?)
