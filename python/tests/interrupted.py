@@ -142,6 +142,13 @@ def make_world() -> Call:
     return lambda: dwell.World(next(houses)).render(agent=0)
 
 
+def _mujoco(folder: Path, bodies: Iterator[str]) -> dwell.House:
+    path = folder / "pile.xml"
+    ground = '<geom type="plane" size="9 9 1"/>'
+    path.write_text(f"<mujoco><worldbody>{ground}{''.join(bodies)}</worldbody></mujoco>")
+    return dwell.House.open(str(path))
+
+
 def make_pile(folder: Path) -> Call:
     """A world of 4,096 things, each a little in its neighbours."""
     places = enumerate(itertools.product(range(16), repeat=3))
@@ -150,16 +157,19 @@ def make_pile(folder: Path) -> Call:
         '<geom type="box" size="0.1 0.1 0.1"/></body>'
         for k, (x, y, z) in places
     )
-    path = folder / "pile.xml"
-    ground = '<geom type="plane" size="9 9 1"/>'
-    path.write_text(f"<mujoco><worldbody>{ground}{''.join(bodies)}</worldbody></mujoco>")
-    house = dwell.House.open(str(path))
+    house = _mujoco(folder, bodies)
     return lambda: dwell.World(house)
 
 
-def snapshot() -> Call:
-    """Packing a world of 300 desks that fall apart."""
-    world = dwell.World(heap(300))
+def snapshot(folder: Path) -> Call:
+    """Packing a world of 2,197 boxes that fall on each other."""
+    places = enumerate(itertools.product(range(13), repeat=3))
+    bodies = (
+        f'<body name="thing_{k}" pos="{0.21 * x} {0.21 * y} {0.11 + 0.21 * z}"><freejoint/>'
+        '<geom type="box" size="0.1 0.1 0.1"/></body>'
+        for k, (x, y, z) in places
+    )
+    world = dwell.World(_mujoco(folder, bodies))
     for _ in range(5):
         world.step()
     return lambda: world.snapshot()

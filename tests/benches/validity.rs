@@ -8,7 +8,7 @@
 
 use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
-use dwell_tests::validity::{Depth, look, of_other_bytes};
+use dwell_tests::validity::{CheckDepth, look, of_other_bytes};
 use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -29,9 +29,9 @@ fn main() -> ExitCode {
         Threads::exactly(count.max(1) as usize)
     });
     let depth = if arguments.iter().any(|argument| argument == "--settled") {
-        Depth::Settled
+        CheckDepth::Settled
     } else {
-        Depth::Geometric
+        CheckDepth::Geometric
     };
     let began = Instant::now();
     let (mut faulty, mut given_up, mut counts) = (0, 0, [0; 2]);

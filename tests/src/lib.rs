@@ -3,8 +3,8 @@
 pub mod flip;
 pub mod golden;
 pub mod hostile;
-pub mod observed;
-pub mod seen;
+pub mod observations;
+pub mod pixel_counts;
 pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig};

@@ -18,7 +18,7 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, House, Pose, State, units};
 use dwell_tests::flip::flip;
-use dwell_tests::seen::adapter_paths;
+use dwell_tests::pixel_counts::adapter_paths;
 use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;

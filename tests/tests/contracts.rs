@@ -2,7 +2,7 @@
 
 use dwell::{Batch, DiscreteAction, tasks};
 use dwell_scene::parallel::Threads;
-use dwell_tests::observed::{all_sensors, observe};
+use dwell_tests::observations::{all_sensors, observe};
 
 #[test]
 fn every_sensor_fills_its_buffer_within_its_range() {

@@ -9,7 +9,7 @@ use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, WorldConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, LawSpec, Locomotion};
-use dwell_tests::observed::{all_sensors, observe};
+use dwell_tests::observations::{all_sensors, observe};
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use dwell_houses::builtin;
 use dwell_houses::generate::HouseSpec;
 use dwell_scene::parallel::Threads;
-use dwell_tests::validity::{Depth, Looked, look, of_other_bytes};
+use dwell_tests::validity::{CheckCounts, CheckDepth, look, of_other_bytes};
 use std::collections::BTreeMap;
 
 /// Seeds that are looked at in every run.
@@ -11,7 +11,7 @@ const SEEDS: u64 = 300;
 /// Of these, seeds whose houses settle for two seconds.
 const SETTLED: u64 = 30;
 
-fn assert_valid(all: &[Looked]) {
+fn assert_valid(all: &[CheckCounts]) {
     let mut faults = Vec::new();
     let mut given_up = BTreeMap::<&str, usize>::new();
     for looked in all {
@@ -37,13 +37,13 @@ fn assert_valid(all: &[Looked]) {
 
 #[test]
 fn houses_of_seeds_are_valid_as_they_stand() {
-    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), Depth::Geometric);
+    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), CheckDepth::Geometric);
     assert_valid(&Threads::default().map(SEEDS as usize, look));
 }
 
 #[test]
 fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
-    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), Depth::Settled);
+    let look = |seed: usize| look(seed as u64, &HouseSpec::default(), CheckDepth::Settled);
     assert_valid(&Threads::default().map(SETTLED as usize, look));
 }
 
@@ -56,16 +56,16 @@ fn houses_of_seeds_are_the_same_alone_and_beside_others() {
 /// Its grid has lines half a micrometre apart: strips of floor between them were triangles without area, which held everything.
 #[test]
 fn a_house_whose_lines_differ_by_rounding_is_valid() {
-    assert_valid(&[look(1743, &HouseSpec::default(), Depth::Settled)]);
+    assert_valid(&[look(1743, &HouseSpec::default(), CheckDepth::Settled)]);
 }
 
 #[test]
 fn built_in_houses_are_valid_and_stay_as_they_are() {
     let specs = builtin::names().iter().map(|name| builtin::spec(name));
-    let looked: Vec<Looked> = specs
+    let looked: Vec<CheckCounts> = specs
         .map(|known| {
             let (seed, spec) = known.expect("every built-in house has a spec");
-            look(seed, &spec, Depth::Settled)
+            look(seed, &spec, CheckDepth::Settled)
         })
         .collect();
     assert_valid(&looked);

@@ -9,7 +9,7 @@ use dwell_render::{Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, House, HouseData, Pose, StructureKind};
 use dwell_tests::golden::views::{self, ROOMS};
-use dwell_tests::golden::{Golden, Kept, LOOKS};
+use dwell_tests::golden::{Golden, LOOKS, StoredObservation};
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -130,7 +130,7 @@ fn lit(world: &World) -> Observation {
 
 /// Mean difference and share of rough pixels from the golden picture, and whether that is allowed.
 fn judge(observation: &Observation) -> (f64, f64, bool) {
-    let kept = Kept::of(observation).unwrap();
+    let kept = StoredObservation::of(observation).unwrap();
     let difference = golden()
         .difference("preset_lit_living_room", &kept)
         .unwrap();
@@ -242,7 +242,7 @@ fn small_errors_of_exact_sensors_are_found() {
                 data,
             };
             golden()
-                .difference(&name, &Kept::of(&spoilt).unwrap())
+                .difference(&name, &StoredObservation::of(&spoilt).unwrap())
                 .and_then(|found| found.judge())
         };
         assert_eq!(judge(image.data.clone()), Ok(()), "{name}");
@@ -279,7 +279,7 @@ fn a_missing_golden_picture_fails_with_a_sentence() {
         data: ObservationData::Uint8(vec![0; 3]),
     };
     let sentence = golden()
-        .difference("nowhere", &Kept::of(&pixel).unwrap())
+        .difference("nowhere", &StoredObservation::of(&pixel).unwrap())
         .unwrap_err();
     assert!(
         sentence.contains("there is no") && sentence.contains("UPDATE_GOLDEN=1"),

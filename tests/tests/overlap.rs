@@ -6,7 +6,7 @@ use dwell::{Batch, DiscreteAction, Env, EnvConfig, SensorConfig, WorldConfig};
 use dwell_render::BackEnd;
 use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
-use dwell_tests::seen::{adapter_paths, try_observe};
+use dwell_tests::pixel_counts::{adapter_paths, try_observe};
 use serde_json::json;
 
 const COUNT: usize = 5;

@@ -10,7 +10,7 @@ use dwell_physics::BodyState;
 use dwell_render::{BackEnd, Camera, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, LawSpec, Pose, Velocity};
-use dwell_tests::seen::{adapter_paths, observe};
+use dwell_tests::pixel_counts::{adapter_paths, observe};
 use glam::Vec3;
 use serde_json::json;
 

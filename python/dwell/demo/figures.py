@@ -12,7 +12,7 @@ _RUNS: dict[str, dict[str, Any]] = {
     "load": {"repeats": 2},
     "render": {"repeats": 2},
     "physics": {"repeats": 2, "steps": 40},
-    "acoustics": {"repeats": 1, "presets": ["rl"]},
+    "acoustics": {"repeats": 1, "presets": ["rl"], "walks": 1},
     "env": {"envs": 2, "steps": 20},
 }
 

@@ -1,6 +1,6 @@
 //! How far a picture may be from the golden one.
 
-use super::store::Kept;
+use super::store::StoredObservation;
 use crate::flip::flip;
 
 /// How far colours may be away: perceptual differences (FLIP), 0 to 1.
@@ -84,9 +84,9 @@ impl Difference {
     }
 
     /// The differences, white what is rough.
-    pub(super) fn picture(&self) -> Kept {
+    pub(super) fn picture(&self) -> StoredObservation {
         let shade = |one: &f64| [(255.0 * (one / self.bounds.rough).min(1.0)) as u8; 3];
-        Kept::Color {
+        StoredObservation::Color {
             width: self.width.max(1),
             rgb: self.each.iter().flat_map(shade).collect(),
         }
@@ -94,9 +94,12 @@ impl Difference {
 }
 
 /// How far `found` is from `golden`.
-pub(super) fn compare(golden: &Kept, found: &Kept) -> Result<Difference, String> {
+pub(super) fn compare(
+    golden: &StoredObservation,
+    found: &StoredObservation,
+) -> Result<Difference, String> {
     match (golden, found) {
-        (Kept::Color { width, rgb }, Kept::Color { rgb: found, .. })
+        (StoredObservation::Color { width, rgb }, StoredObservation::Color { rgb: found, .. })
             if rgb.len() == found.len() =>
         {
             Ok(Difference {
@@ -106,13 +109,16 @@ pub(super) fn compare(golden: &Kept, found: &Kept) -> Result<Difference, String>
                 inexcusable: 0,
             })
         }
-        (Kept::Ids { width, ids }, Kept::Ids { ids: found, .. }) if ids.len() == found.len() => {
+        (StoredObservation::Ids { width, ids }, StoredObservation::Ids { ids: found, .. })
+            if ids.len() == found.len() =>
+        {
             let differ = |k: usize| f64::from(u8::from(ids[k] != found[k]));
             Ok(exact(*width, ids.len(), differ, |a, b| ids[a] != ids[b]))
         }
-        (Kept::Steps { width, step, steps }, Kept::Steps { steps: found, .. })
-            if steps.len() == found.len() =>
-        {
+        (
+            StoredObservation::Steps { width, step, steps },
+            StoredObservation::Steps { steps: found, .. },
+        ) if steps.len() == found.len() => {
             let pixels = steps.len() / 3;
             let step_of = |pixel: usize| step[(pixel * step.len() / pixels).min(step.len() - 1)];
             let apart = |a: &[u16], b: &[u16]| {
@@ -127,7 +133,9 @@ pub(super) fn compare(golden: &Kept, found: &Kept) -> Result<Difference, String>
             let edge = |a: usize, b: usize| apart(&steps[at(a)], &steps[at(b)]) > 655.0;
             Ok(exact(*width, pixels, differ, edge))
         }
-        (Kept::List(rows), Kept::List(found)) if rows.len() == found.len() => {
+        (StoredObservation::List(rows), StoredObservation::List(found))
+            if rows.len() == found.len() =>
+        {
             // What is not a number differs from everything.
             let apart = |(a, b): (&f64, &f64)| {
                 let part = (a - b).abs() / (1.0 + a.abs());

@@ -7,4 +7,4 @@ mod store;
 pub mod views;
 
 pub use compare::{Bounds, Difference, EXACT, LOOKS};
-pub use store::{Golden, Kept};
+pub use store::{Golden, StoredObservation};

@@ -12,7 +12,7 @@ type Color8 = ImageBuffer<Rgb<u8>, Vec<u8>>;
 
 /// What a file can hold of an observation.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kept {
+pub enum StoredObservation {
     /// sRGB bytes. Shape (height, width, 3).
     Color {
         /// Pixels across.
@@ -57,7 +57,7 @@ fn ranges(sensor: &str) -> Option<&'static [(f64, f64)]> {
     })
 }
 
-impl Kept {
+impl StoredObservation {
     /// What a file can hold of an observation.
     ///
     /// # Errors
@@ -217,7 +217,8 @@ impl Golden {
 
     /// Compares an observation with the golden one of that name, or takes its place.
     pub fn check(&mut self, name: &str, observation: &Observation) {
-        let checked = Kept::of(observation).and_then(|kept| self.check_kept(name, &kept));
+        let checked =
+            StoredObservation::of(observation).and_then(|kept| self.check_kept(name, &kept));
         if let Err(fault) = checked {
             self.faults.push(format!("{name}: {fault}"));
         }
@@ -226,7 +227,7 @@ impl Golden {
     /// The same for a picture. `rgb`: shape (height, `width`, 3).
     pub fn check_color(&mut self, name: &str, width: u32, rgb: Vec<u8>) {
         let width = width as usize;
-        let checked = self.check_kept(name, &Kept::Color { width, rgb });
+        let checked = self.check_kept(name, &StoredObservation::Color { width, rgb });
         if let Err(fault) = checked {
             self.faults.push(format!("{name}: {fault}"));
         }
@@ -236,7 +237,7 @@ impl Golden {
     ///
     /// # Errors
     /// A sentence, where there is none or where it has another size.
-    pub fn difference(&self, name: &str, kept: &Kept) -> Result<Difference, String> {
+    pub fn difference(&self, name: &str, kept: &StoredObservation) -> Result<Difference, String> {
         let path = self.folder.join(format!("{name}.{}", kept.extension()));
         if !path.exists() {
             return Err(format!(
@@ -247,7 +248,7 @@ impl Golden {
         compare(&kept.read(&path)?, kept)
     }
 
-    fn check_kept(&mut self, name: &str, kept: &Kept) -> Result<(), String> {
+    fn check_kept(&mut self, name: &str, kept: &StoredObservation) -> Result<(), String> {
         let file = format!("{name}.{}", kept.extension());
         self.names.push(file.clone());
         if self.update {

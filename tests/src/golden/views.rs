@@ -14,10 +14,10 @@ use std::sync::Arc;
 pub const FAR_M: f64 = 13.0;
 
 /// A place to look from: its name, the house, the eye in m, yaw and pitch in degrees.
-pub type Viewpoint = (&'static str, &'static str, [f32; 3], [f32; 2]);
+pub type GoldenView = (&'static str, &'static str, [f32; 3], [f32; 2]);
 
 /// A room of each built-in house.
-pub const ROOMS: [Viewpoint; 4] = [
+pub const ROOMS: [GoldenView; 4] = [
     (
         "living_room",
         "builtin:apartment",
@@ -144,7 +144,7 @@ pub fn company() -> World {
 /// [`WorldError`] for a sensor that there is not.
 pub fn look(
     world: &World,
-    (_, _, eye, [yaw_deg, pitch_deg]): Viewpoint,
+    (_, _, eye, [yaw_deg, pitch_deg]): GoldenView,
     camera: Camera,
     preset: Preset,
     sensors: &[&str],

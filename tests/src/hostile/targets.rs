@@ -47,9 +47,9 @@ impl Target for Sample {
 }
 
 /// A WAV, FLAC or Ogg Vorbis file.
-struct Sounds;
+struct SoundFiles;
 
-impl Target for Sounds {
+impl Target for SoundFiles {
     fn files(&self) -> Vec<(String, Vec<u8>)> {
         let of = |name: &str, bytes: &[u8]| (name.to_owned(), bytes.to_vec());
         let coded = [
@@ -79,9 +79,9 @@ impl Target for Sounds {
 }
 
 /// A measured head: an HDF5 file.
-struct Heads;
+struct HeadFiles;
 
-impl Target for Heads {
+impl Target for HeadFiles {
     fn files(&self) -> Vec<(String, Vec<u8>)> {
         let earliest = include_bytes!("../../../acoustics/tests/data/earliest.sofa");
         let latest = include_bytes!("../../../acoustics/tests/data/latest.sofa");
@@ -138,12 +138,12 @@ fn ramp(bits: u16) -> Vec<u8> {
 }
 
 /// The bundle of measured throws that `dwell demo` shows.
-struct Measured {
+struct MeasuredBundle {
     folder: TempDir,
     files: Vec<(PathBuf, Vec<u8>)>,
 }
 
-impl Measured {
+impl MeasuredBundle {
     fn new() -> Self {
         let folder = tempfile::tempdir().expect("a folder for a moment");
         let written = dwell_calibration::example::write(folder.path(), 1);
@@ -157,7 +157,7 @@ impl Measured {
     }
 }
 
-impl Target for Measured {
+impl Target for MeasuredBundle {
     fn files(&self) -> Vec<(String, Vec<u8>)> {
         let of = |(path, bytes): &(PathBuf, Vec<u8>)| {
             let name = path.strip_prefix(self.folder.path()).unwrap_or(path);
@@ -183,9 +183,9 @@ impl Target for Measured {
 
 fn target(name: &str) -> Box<dyn Target> {
     match name {
-        "bundle" => Box::new(Measured::new()),
-        "sound" => Box::new(Sounds),
-        "head" => Box::new(Heads),
+        "bundle" => Box::new(MeasuredBundle::new()),
+        "sound" => Box::new(SoundFiles),
+        "head" => Box::new(HeadFiles),
         _ if NAMES.contains(&name) => Box::new(sample(name)),
         _ => panic!("no target {name:?}; there are {NAMES:?} and {OTHERS:?}"),
     }

@@ -1,6 +1,6 @@
 //! What a furnished house must keep to as it stands: shown by oracles that share no code with the generator.
 
-use super::Fault;
+use super::RuleViolation;
 use dwell_furniture::tables::category;
 use dwell_furniture::testing::overlap::{ConvexPiece, deepest, object_pieces, part_pieces};
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
@@ -21,7 +21,7 @@ struct Body {
 }
 
 /// Every rule that can be looked at without physics: its name, and what breaks it.
-pub(super) fn faults(house: &House) -> Vec<Fault> {
+pub(super) fn faults(house: &House) -> Vec<RuleViolation> {
     let body = |id: ObjectId| {
         let pieces = object_pieces(house, id);
         let bounds = around(&pieces);
@@ -37,7 +37,7 @@ pub(super) fn faults(house: &House) -> Vec<Fault> {
         ("reach", unreached(house)),
     ];
     let faults = rules.into_iter().flat_map(|(rule, found)| {
-        let fault = move |what| Fault { rule, what };
+        let fault = move |what| RuleViolation { rule, what };
         found.into_iter().map(fault)
     });
     faults.collect()

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// How far the rules are looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Depth {
+pub enum CheckDepth {
     /// As the house stands.
     Geometric,
     /// After two seconds of physics, too.
@@ -18,7 +18,7 @@ pub enum Depth {
 
 /// Something that breaks a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct RuleViolation {
     /// `overlap` (more than 5 mm), `joint` (meets something in its range), `place` (out of its room), `light`, `name`,
     /// `reach` (a room that nobody can enter), `bytes` (not the same beside other houses), `start` (physics had to move
     /// it), `settle` (a pickable thing moved more than 2 cm in 2 s), `physics`, `generate`.
@@ -29,7 +29,7 @@ pub struct Fault {
 
 /// What was looked at.
 #[derive(Clone, Debug)]
-pub struct Looked {
+pub struct CheckCounts {
     /// The seed.
     pub seed: u64,
     /// How many rooms and objects it has.
@@ -37,12 +37,12 @@ pub struct Looked {
     /// What was wanted and given up.
     pub given_up: Vec<String>,
     /// What breaks a rule.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<RuleViolation>,
 }
 
 /// Looks at the house of a seed and spec.
-pub fn look(seed: u64, spec: &HouseSpec, depth: Depth) -> Looked {
-    let mut looked = Looked {
+pub fn look(seed: u64, spec: &HouseSpec, depth: CheckDepth) -> CheckCounts {
+    let mut looked = CheckCounts {
         seed,
         counts: [0; 2],
         given_up: Vec::new(),
@@ -52,14 +52,14 @@ pub fn look(seed: u64, spec: &HouseSpec, depth: Depth) -> Looked {
         Ok(generated) => generated,
         Err(error) => {
             let (rule, what) = ("generate", error.to_string());
-            looked.faults.push(Fault { rule, what });
+            looked.faults.push(RuleViolation { rule, what });
             return looked;
         }
     };
     looked.counts = [house.rooms.len(), house.objects.len()];
     looked.given_up = report.given_up;
     looked.faults = geometric::faults(&house);
-    if depth == Depth::Settled {
+    if depth == CheckDepth::Settled {
         looked.faults.extend(settled::faults(&Arc::new(house)));
     }
     looked

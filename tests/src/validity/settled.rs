@@ -1,6 +1,6 @@
 //! What a furnished house must keep to when its physics begins.
 
-use super::Fault;
+use super::RuleViolation;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
 use dwell_scene::{House, Id, ObjectId, State};
 use glam::Vec3;
@@ -12,8 +12,8 @@ const DURATION_S: f32 = 2.0;
 const FARTHEST_M: f32 = 0.02;
 
 /// Lets physics run with nobody in the house: what overlapped at the start, and pickable things that moved.
-pub(super) fn faults(house: &Arc<House>) -> Vec<Fault> {
-    let fault = |rule, what| Fault { rule, what };
+pub(super) fn faults(house: &Arc<House>) -> Vec<RuleViolation> {
+    let fault = |rule, what| RuleViolation { rule, what };
     let mut state = State::new(house);
     let place = |state: &State, id: ObjectId| -> Vec3 {
         state.part_pose[house.objects[id].first_part].position

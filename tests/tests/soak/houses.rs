@@ -10,7 +10,7 @@ use dwell_physics::AgentControl;
 use dwell_scene::AgentId;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{RandomKey, RandomStream};
-use dwell_tests::observed::{all_sensors, observe};
+use dwell_tests::observations::{all_sensors, observe};
 use glam::Vec3;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;

@@ -51,17 +51,21 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     let rooms: Vec<WalkFigure> = spots
         .iter()
         .filter_map(|spot| WalkFigure::free(&rays, *spot))
-        .take(ROOMS)
+        .take(ROOMS.min(options.walks))
         .collect();
     let wanted: Vec<Metrics> = rooms
         .iter()
         .map(|figure| wanted(&engines, &rays, *figure, threads))
         .collect::<Result<_, _>>()?;
     for preset in &options.presets {
-        let walks = rooms.iter().zip(&wanted);
-        let walks: Vec<WalkBench> = walks
-            .flat_map(|place| (0..SEEDS).map(move |seed| (place, seed)))
-            .map(|((figure, wanted), seed)| walk(&engines, &rays, preset, *figure, wanted, seed))
+        // Walks in a room differ by their rays.
+        let walks = rooms.iter().zip(&wanted).cycle();
+        let walks: Vec<WalkBench> = (0..options.walks)
+            .zip(walks)
+            .map(|(k, (figure, wanted))| {
+                let seed = (k / rooms.len()) as u64;
+                walk(&engines, &rays, preset, *figure, wanted, seed)
+            })
             .collect::<Result<_, _>>()?;
         let middle = |of: fn(&WalkBench) -> Option<f64>| {
             let mut values: Vec<f64> = walks.iter().filter_map(of).collect();
@@ -88,10 +92,8 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
     Ok(Value::Object(rates))
 }
 
-/// Rooms in which a stream is measured.
+/// Rooms in which a stream is measured, at most.
 const ROOMS: usize = 4;
-/// Walks in each room, with other rays: what one says of a decay is chance by a third.
-const SEEDS: u64 = 4;
 /// Samples of a block: 50 ms at 16 kHz.
 const BLOCK: usize = 800;
 /// Blocks of a walk: 10 s.

@@ -62,6 +62,9 @@ pub struct BenchOptions {
     pub steps: usize,
     /// Presets of `acoustics`; default both, `rl` and `full`.
     pub presets: Vec<String>,
+    /// Walks of 10 s in which `acoustics` measures streams, over up to four rooms in turns; default 16. What one says of a decay is
+    /// chance by a third.
+    pub walks: usize,
     /// What `physics` steps instead of the house's own objects; `None`: those.
     pub boxes: Option<BenchBoxes>,
     /// Worlds that `physics` steps together, to be compared with one; default 64.
@@ -92,6 +95,7 @@ impl Default for BenchOptions {
             envs: 4,
             steps: 200,
             presets: vec!["rl".to_owned(), "full".to_owned()],
+            walks: 16,
             boxes: None,
             worlds: 64,
         }
@@ -106,6 +110,7 @@ impl BenchOptions {
             ("envs", self.envs, 4096),
             ("steps", self.steps, 1_000_000),
             ("worlds", self.worlds, 4096),
+            ("walks", self.walks, 1000),
             ("batches", self.batches, 4096),
         ]) {
             if !(1..=high).contains(&value) {
