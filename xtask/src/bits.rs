@@ -3,7 +3,7 @@
 //! The standard library's `sin` and kin, and glam's functions that call them, are the platform's. Clippy's list of disallowed
 //! methods would hold for tests too, where they are the natural oracle; so the sources are read here, up to their tests.
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -58,8 +58,8 @@ const MAKERS: &[&str] = &[
     "from_angle",
 ];
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
-    let mut outcome = Outcome::default();
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
+    let mut outcome = CheckOutcome::default();
     let mut count = 0;
     for name in CRATES {
         let mut files = Vec::new();

@@ -3,7 +3,7 @@
 //! The doorway (`python/src/doorway.rs`) releases the GIL, maps errors, stops panics and lets signals through; a function
 //! that forgets it does none of that. The sources are read, because no lint knows what pyo3 makes of them.
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use std::fs;
 use std::path::Path;
 
@@ -32,8 +32,8 @@ const WAYS: &[&str] = &[
     ".prepare(py",
 ];
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
-    let mut outcome = Outcome::default();
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
+    let mut outcome = CheckOutcome::default();
     let folder = root.join("python/src");
     let shown = |error: std::io::Error| format!("{}: {error}", folder.display());
     let mut names = Vec::new();

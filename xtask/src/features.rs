@@ -3,16 +3,16 @@
 //! Cargo unites features over the packages a command names. Where a test-only dependency asks for one more feature of,
 //! say, bitflags, everything above bitflags compiles a second time for the extension, rapier included.
 
-use crate::outcome::Outcome;
-use crate::tree::{self, Tree};
+use crate::findings::CheckOutcome;
+use crate::tree::{self, DependencyTree};
 use std::path::Path;
 
 /// Packages with heavy dependencies that are built alone besides the whole workspace.
 const BUILT_ALONE: &[&str] = &["dwell-python"];
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let all = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     for name in BUILT_ALONE {
         let alone = tree::tree(root, &["--package", name, "--edges", "normal,build"])?;
         outcome.findings.extend(differences(name, &alone, &all));
@@ -24,7 +24,7 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
     Ok(outcome)
 }
 
-fn differences(name: &str, alone: &Tree, all: &Tree) -> Vec<String> {
+fn differences(name: &str, alone: &DependencyTree, all: &DependencyTree) -> Vec<String> {
     let mut findings = Vec::new();
     for (id, package) in &alone.packages {
         let shared = all.packages.get(id).map(|package| &package.features);

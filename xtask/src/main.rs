@@ -5,19 +5,19 @@ mod bits;
 mod check;
 mod doorway;
 mod features;
+mod findings;
 mod layers;
 mod licences;
 mod manifests;
 mod notices;
-mod outcome;
 mod sizes;
 mod tree;
 
-use outcome::Outcome;
+use findings::CheckOutcome;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-type Command = fn(&Path) -> Result<Outcome, String>;
+type Command = fn(&Path) -> Result<CheckOutcome, String>;
 
 /// Name, what it does, the function. Adding a command is one line here.
 const COMMANDS: &[(&str, &str, Command)] = &[

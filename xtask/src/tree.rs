@@ -5,11 +5,11 @@ use std::path::Path;
 use std::process::Command;
 
 /// Name and version.
-pub(crate) type Id = (String, String);
+pub(crate) type PackageId = (String, String);
 
 /// A package of the graph.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Package {
+pub(crate) struct DependencyPackage {
     /// SPDX expression of the manifest, or nothing.
     pub licence: String,
     /// Each set of features it is built with; two where host and target differ.
@@ -22,14 +22,14 @@ pub(crate) struct Package {
 
 /// Packages and who uses whom.
 #[derive(Debug, Default)]
-pub(crate) struct Tree {
-    pub packages: BTreeMap<Id, Package>,
+pub(crate) struct DependencyTree {
+    pub packages: BTreeMap<PackageId, DependencyPackage>,
     /// User, used.
-    pub edges: BTreeSet<(Id, Id)>,
+    pub edges: BTreeSet<(PackageId, PackageId)>,
 }
 
 /// The graph that `cargo tree` prints for `selection`, such as `["--workspace", "-e", "normal"]`.
-pub(crate) fn tree(root: &Path, selection: &[&str]) -> Result<Tree, String> {
+pub(crate) fn tree(root: &Path, selection: &[&str]) -> Result<DependencyTree, String> {
     let mut args = vec!["tree", "--prefix", "depth", "--format", "|{p}|{l}|{f}"];
     args.extend(selection);
     parse(&cargo(root, &args)?)
@@ -54,9 +54,9 @@ pub(crate) fn cargo(root: &Path, args: &[&str]) -> Result<String, String> {
     String::from_utf8(output.stdout).map_err(|error| format!("cargo printed no UTF-8: {error}"))
 }
 
-fn parse(text: &str) -> Result<Tree, String> {
-    let mut tree = Tree::default();
-    let mut path: Vec<Id> = Vec::new();
+fn parse(text: &str) -> Result<DependencyTree, String> {
+    let mut tree = DependencyTree::default();
+    let mut path: Vec<PackageId> = Vec::new();
     for line in text.lines().filter(|line| !line.trim().is_empty()) {
         let mut fields = line.split('|');
         let (Some(depth), Some(package), Some(licence), Some(features)) =
@@ -102,10 +102,10 @@ fn parse(text: &str) -> Result<Tree, String> {
     Ok(tree)
 }
 
-impl Tree {
+impl DependencyTree {
     /// What becomes part of a library that is made of `package`: all it uses, but for derive macros and what only they use.
-    pub(crate) fn linked(&self, package: &str) -> BTreeSet<Id> {
-        let mut open: Vec<&Id> = self
+    pub(crate) fn linked(&self, package: &str) -> BTreeSet<PackageId> {
+        let mut open: Vec<&PackageId> = self
             .packages
             .keys()
             .filter(|(name, _)| name == package)
@@ -126,7 +126,7 @@ impl Tree {
 }
 
 #[cfg(test)]
-pub(crate) fn made_up(text: &str) -> Tree {
+pub(crate) fn made_up(text: &str) -> DependencyTree {
     parse(text).unwrap()
 }
 
@@ -134,7 +134,7 @@ pub(crate) fn made_up(text: &str) -> Tree {
 mod tests {
     use super::*;
 
-    fn id(name: &str) -> Id {
+    fn id(name: &str) -> PackageId {
         (name.to_owned(), "1.0.0".to_owned())
     }
 

@@ -2,7 +2,7 @@
 
 mod stages;
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use crate::{bits, doorway, features, layers, licences, sizes};
 use stages::Stage;
 use std::path::Path;
@@ -10,8 +10,8 @@ use std::process::Command;
 use std::time::Instant;
 
 #[expect(clippy::unnecessary_wraps, reason = "every command has this signature")]
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
-    let mut outcome = Outcome::default();
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
+    let mut outcome = CheckOutcome::default();
     for stage in stages::all(root) {
         println!("-- {}", stage.name);
         timed(&mut outcome, stage.name, || run_program(root, &stage));
@@ -38,7 +38,7 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
     Ok(outcome)
 }
 
-fn timed(outcome: &mut Outcome, name: &str, stage: impl FnOnce() -> Result<bool, String>) {
+fn timed(outcome: &mut CheckOutcome, name: &str, stage: impl FnOnce() -> Result<bool, String>) {
     let started = Instant::now();
     let verdict = match stage() {
         Ok(true) => "ok",

@@ -5,12 +5,12 @@ mod rules;
 mod uses;
 mod walls;
 
+use crate::findings::CheckOutcome;
 use crate::manifests::{self, Member};
-use crate::outcome::Outcome;
 use crate::tree;
 use std::path::Path;
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let members = manifests::members(root)?;
     let tree = tree::tree(
         root,
@@ -22,7 +22,7 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
             "all",
         ],
     )?;
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     outcome
         .findings
         .extend(uses::check(&members, rules::CRATES, root));

@@ -13,7 +13,7 @@ pub(crate) struct Rule {
 
 /// A dependency that only these members may reach.
 #[derive(Debug)]
-pub(crate) struct Wall {
+pub(crate) struct DependencyWall {
     pub dependency: &'static str,
     pub behind: &'static [&'static str],
 }
@@ -132,24 +132,24 @@ pub(crate) const CRATES: &[Rule] = &[
 ];
 
 /// Each engine's foundation can be exchanged as long as nobody else sees it.
-pub(crate) const WALLS: &[Wall] = &[
-    Wall {
+pub(crate) const WALLS: &[DependencyWall] = &[
+    DependencyWall {
         dependency: "rapier3d",
         behind: &["dwell-physics"],
     },
-    Wall {
+    DependencyWall {
         dependency: "parry3d",
         behind: &["dwell-physics"],
     },
-    Wall {
+    DependencyWall {
         dependency: "wgpu",
         behind: &["dwell-render"],
     },
-    Wall {
+    DependencyWall {
         dependency: "pyo3",
         behind: &["dwell-python"],
     },
-    Wall {
+    DependencyWall {
         dependency: "numpy",
         behind: &["dwell-python"],
     },

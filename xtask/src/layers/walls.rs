@@ -1,12 +1,16 @@
 //! Foundations that one crate hides: reached by nobody else, neither declared nor through someone else's crate.
 
-use super::rules::Wall;
+use super::rules::DependencyWall;
 use crate::manifests::Member;
-use crate::tree::Tree;
+use crate::tree::DependencyTree;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Each breach: who reaches what, on which way.
-pub(crate) fn check(members: &[Member], tree: &Tree, walls: &[Wall]) -> Vec<String> {
+pub(crate) fn check(
+    members: &[Member],
+    tree: &DependencyTree,
+    walls: &[DependencyWall],
+) -> Vec<String> {
     let mut uses: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for ((user, _), (used, _)) in &tree.edges {
         uses.entry(user).or_default().insert(used);
@@ -73,7 +77,7 @@ mod tests {
     use crate::manifests::Dependency;
     use crate::tree::made_up;
 
-    const WALLS: &[Wall] = &[Wall {
+    const WALLS: &[DependencyWall] = &[DependencyWall {
         dependency: "rigid",
         behind: &["physics"],
     }];

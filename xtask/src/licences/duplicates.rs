@@ -1,8 +1,8 @@
 //! One package in two versions: compiled twice, and types that do not fit each other.
 
 use super::FILE;
-use crate::outcome::Outcome;
-use crate::tree::Tree;
+use crate::findings::CheckOutcome;
+use crate::tree::DependencyTree;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -18,14 +18,14 @@ pub(crate) struct Exemption {
 }
 
 /// Duplicates without an exemption, and exemptions without a duplicate.
-pub(crate) fn check(tree: &Tree, exemptions: &[Exemption]) -> Outcome {
+pub(crate) fn check(tree: &DependencyTree, exemptions: &[Exemption]) -> CheckOutcome {
     let mut versions: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (name, version) in tree.packages.keys() {
         versions.entry(name).or_default().push(version);
     }
     versions.retain(|_, versions| versions.len() > 1);
 
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     for exemption in exemptions {
         match versions.remove(exemption.name.as_str()) {
             Some(found) => outcome.notes.push(format!(

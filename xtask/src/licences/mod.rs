@@ -3,8 +3,8 @@
 mod duplicates;
 pub(crate) mod spdx;
 
-use crate::outcome::Outcome;
-use crate::tree::{self, Tree};
+use crate::findings::CheckOutcome;
+use crate::tree::{self, DependencyTree};
 use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -22,7 +22,7 @@ struct Policy {
     duplicate: Vec<duplicates::Exemption>,
 }
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let text =
         std::fs::read_to_string(root.join(FILE)).map_err(|error| format!("{FILE}: {error}"))?;
     let policy: Policy = toml::from_str(&text).map_err(|error| format!("{FILE}: {error}"))?;
@@ -42,7 +42,7 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
     )?;
     let built = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
 
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     outcome
         .findings
         .extend(licences(&everything, &policy.allowed));
@@ -60,7 +60,7 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
     Ok(outcome)
 }
 
-fn licences(tree: &Tree, allowed: &BTreeSet<String>) -> Vec<String> {
+fn licences(tree: &DependencyTree, allowed: &BTreeSet<String>) -> Vec<String> {
     let mut findings = Vec::new();
     for ((name, version), package) in &tree.packages {
         match spdx::satisfied(&package.licence, allowed) {
@@ -79,7 +79,7 @@ fn licences(tree: &Tree, allowed: &BTreeSet<String>) -> Vec<String> {
 }
 
 /// Everything comes from a registry or from this repository.
-fn foreign_sources(tree: &Tree, root: &Path) -> Vec<String> {
+fn foreign_sources(tree: &DependencyTree, root: &Path) -> Vec<String> {
     let mut findings = Vec::new();
     for ((name, version), package) in &tree.packages {
         if let Some(source) = &package.source
@@ -93,7 +93,7 @@ fn foreign_sources(tree: &Tree, root: &Path) -> Vec<String> {
     findings
 }
 
-fn singles(shipped: &Tree, single: &[String]) -> Vec<String> {
+fn singles(shipped: &DependencyTree, single: &[String]) -> Vec<String> {
     let mut findings = Vec::new();
     for name in single {
         let versions: Vec<&str> = shipped

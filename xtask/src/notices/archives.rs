@@ -1,6 +1,6 @@
 //! The unpacked archives of the packages that are linked: who wrote them, and which licence files they carry.
 
-use crate::tree::{Id, cargo};
+use crate::tree::{PackageId, cargo};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,10 @@ struct Metadata {
 const NAMES: &[&str] = &["licen", "copying", "copyright", "notice", "unlicense"];
 
 /// All packages of the workspace's graph on a platform.
-pub(crate) fn manifests(root: &Path, platform: &str) -> Result<BTreeMap<Id, Manifest>, String> {
+pub(crate) fn manifests(
+    root: &Path,
+    platform: &str,
+) -> Result<BTreeMap<PackageId, Manifest>, String> {
     let text = cargo(
         root,
         &[

@@ -6,11 +6,11 @@
 mod archives;
 mod page;
 
+use crate::findings::CheckOutcome;
 use crate::licences::spdx;
-use crate::outcome::Outcome;
-use crate::tree::{self, Id};
+use crate::tree::{self, PackageId};
 use archives::Manifest;
-use page::Work;
+use page::IncludedWork;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -21,9 +21,9 @@ const PLATFORMS: &[&str] = &["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-
 /// Relative to the repository's root.
 const FOLDER: &str = "python/third-party";
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
-    let mut outcome = Outcome::default();
-    let mut linked: BTreeMap<Id, (String, Manifest)> = BTreeMap::new();
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
+    let mut outcome = CheckOutcome::default();
+    let mut linked: BTreeMap<PackageId, (String, Manifest)> = BTreeMap::new();
     for platform in PLATFORMS {
         let tree = tree::tree(
             root,
@@ -71,9 +71,9 @@ pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
 /// known by.
 fn crates(
     root: &Path,
-    linked: &BTreeMap<Id, (String, Manifest)>,
-    outcome: &mut Outcome,
-) -> Result<Vec<Work>, String> {
+    linked: &BTreeMap<PackageId, (String, Manifest)>,
+    outcome: &mut CheckOutcome,
+) -> Result<Vec<IncludedWork>, String> {
     let mut works = Vec::new();
     for ((name, version), (licence, manifest)) in linked {
         let mut texts = manifest.texts()?;
@@ -93,7 +93,7 @@ fn crates(
         if !manifest.authors.is_empty() {
             origin = format!("{origin} | {}", manifest.authors.join(", "));
         }
-        works.push(Work {
+        works.push(IncludedWork {
             title: format!("{name} {version}"),
             licence: licence.clone(),
             origin,
@@ -104,7 +104,7 @@ fn crates(
 }
 
 fn of_siblings(
-    linked: &BTreeMap<Id, (String, Manifest)>,
+    linked: &BTreeMap<PackageId, (String, Manifest)>,
     manifest: &Manifest,
 ) -> Result<Vec<String>, String> {
     for (_, other) in linked.values() {
@@ -119,18 +119,19 @@ fn of_siblings(
 }
 
 /// What zig, the wheel's linker, adds of its own.
-fn of_zig(root: &Path) -> Result<Vec<Work>, String> {
+fn of_zig(root: &Path) -> Result<Vec<IncludedWork>, String> {
     let folder = ziglang(root).ok_or(
         "ziglang, the wheel's linker, is not in .venv; `make wheel` installs it and calls this",
     )?;
-    let work = |title: &str, licence: &str, origin: &str, file: &str| -> Result<Work, String> {
-        Ok(Work {
-            title: title.to_owned(),
-            licence: licence.to_owned(),
-            origin: origin.to_owned(),
-            texts: vec![archives::read(&folder.join(file))?],
-        })
-    };
+    let work =
+        |title: &str, licence: &str, origin: &str, file: &str| -> Result<IncludedWork, String> {
+            Ok(IncludedWork {
+                title: title.to_owned(),
+                licence: licence.to_owned(),
+                origin: origin.to_owned(),
+                texts: vec![archives::read(&folder.join(file))?],
+            })
+        };
     Ok(vec![
         work(
             "LLVM libunwind, as zig builds it",
@@ -166,11 +167,11 @@ mod tests {
     use super::*;
 
     /// One crate under `licence` in a folder without any text.
-    fn listed(licence: &str) -> (Vec<Work>, Outcome) {
+    fn listed(licence: &str) -> (Vec<IncludedWork>, CheckOutcome) {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
         let manifest = Manifest::lying_in(&root.join("xtask/src/notices"));
         let id = ("a".to_owned(), "1".to_owned());
-        let mut outcome = Outcome::default();
+        let mut outcome = CheckOutcome::default();
         let linked = [(id, (licence.to_owned(), manifest))].into();
         let works = crates(root, &linked, &mut outcome).unwrap();
         (works, outcome)

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// A work that is inside.
 #[derive(Debug)]
-pub(crate) struct Work {
+pub(crate) struct IncludedWork {
     /// Name and version, or what it is called.
     pub title: String,
     /// SPDX expression.
@@ -23,7 +23,7 @@ list. A text that several works share stands once. Where a licence offers a choi
 ";
 
 /// The page as a text file.
-pub(crate) fn page(works: &[Work]) -> String {
+pub(crate) fn page(works: &[IncludedWork]) -> String {
     let mut texts: Vec<(String, &str)> = Vec::new();
     let mut page = format!("{HEAD}\n");
     for work in works {
@@ -68,8 +68,8 @@ fn number<'a>(texts: &mut Vec<(String, &'a str)>, text: &'a str) -> usize {
 mod tests {
     use super::*;
 
-    fn work(title: &str, texts: &[&str]) -> Work {
-        Work {
+    fn work(title: &str, texts: &[&str]) -> IncludedWork {
+        IncludedWork {
             title: title.to_owned(),
             licence: "MIT".to_owned(),
             origin: "host".to_owned(),

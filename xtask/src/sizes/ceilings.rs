@@ -1,6 +1,6 @@
 //! Figures that may only rise on purpose: `xtask/ceilings.toml`.
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -18,8 +18,8 @@ pub(crate) fn read(root: &Path) -> Result<Ceilings, String> {
 
 impl Ceilings {
     /// A figure beside its ceiling; `None` is a figure that was not taken in this checkout.
-    pub(crate) fn compare(&self, key: &str, what: &str, value: Option<f64>) -> Outcome {
-        let mut outcome = Outcome::default();
+    pub(crate) fn compare(&self, key: &str, what: &str, value: Option<f64>) -> CheckOutcome {
+        let mut outcome = CheckOutcome::default();
         match (self.0.get(key), value) {
             (None, _) => outcome
                 .findings

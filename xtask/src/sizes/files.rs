@@ -1,6 +1,6 @@
 //! Small files, one concept each: lists the long ones.
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use std::path::{Path, PathBuf};
 
 /// Above this a file fails.
@@ -20,11 +20,11 @@ const SKIP: &[&str] = &[
 /// In one of the first lines of a file whose length is that of its data.
 const MARKS: &[&str] = &["@generated", "@table"];
 
-pub(crate) fn check(root: &Path) -> Result<Outcome, String> {
+pub(crate) fn check(root: &Path) -> Result<CheckOutcome, String> {
     let mut paths = Vec::new();
     walk(root, &mut paths).map_err(|error| format!("{}: {error}", root.display()))?;
     paths.sort();
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     let mut lines = Vec::new();
     for path in &paths {
         let text = std::fs::read_to_string(path)
@@ -46,13 +46,13 @@ pub(crate) fn check(root: &Path) -> Result<Outcome, String> {
     Ok(outcome)
 }
 
-fn judge(name: &str, text: &str) -> Outcome {
+fn judge(name: &str, text: &str) -> CheckOutcome {
     let lines = text.lines().count();
     let data = text
         .lines()
         .take(10)
         .any(|line| MARKS.iter().any(|mark| line.contains(mark)));
-    let mut outcome = Outcome::default();
+    let mut outcome = CheckOutcome::default();
     if lines > LIMIT_LINES && data {
         outcome
             .notes
@@ -105,6 +105,6 @@ mod tests {
     fn the_limit_itself_passes_with_a_question() {
         let outcome = judge("a.rs", &"x\n".repeat(600));
         assert!(outcome.passed() && outcome.notes[0].contains("second concept"));
-        assert_eq!(judge("a.rs", &"x\n".repeat(400)), Outcome::default());
+        assert_eq!(judge("a.rs", &"x\n".repeat(400)), CheckOutcome::default());
     }
 }

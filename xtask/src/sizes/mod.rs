@@ -3,11 +3,11 @@
 mod ceilings;
 mod files;
 
-use crate::outcome::Outcome;
+use crate::findings::CheckOutcome;
 use crate::tree;
 use std::path::Path;
 
-pub(crate) fn run(root: &Path) -> Result<Outcome, String> {
+pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let mut outcome = files::check(root)?;
     let ceilings = ceilings::read(root)?;
     let build = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;

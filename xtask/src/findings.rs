@@ -4,14 +4,14 @@ use std::fmt::Write;
 
 /// Facts worth printing, and findings that must be mended.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(crate) struct Outcome {
+pub(crate) struct CheckOutcome {
     /// Printed, never a failure.
     pub notes: Vec<String>,
     /// Each says where, what was found, what is allowed. One is enough to fail.
     pub findings: Vec<String>,
 }
 
-impl Outcome {
+impl CheckOutcome {
     pub(crate) fn passed(&self) -> bool {
         self.findings.is_empty()
     }
