@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from dwell import _native
-from dwell.envs.runner import GOAL_KEYS, INFO_KEYS
+from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS
 from pages import rust
 from pages.observations import observation_table, settings_table, specifications
 from pages.sources import text

@@ -7,8 +7,8 @@ import json
 import dwell
 from dwell import _native
 from dwell.envs.config import env_json
-from dwell.envs.custom import Native, NativeSensors
-from dwell.envs.spaces import Spec, specs
+from dwell.envs.python_tasks import NativeSettings, NativeSensors
+from dwell.envs.spaces import SensorSpace, specs
 from pages import rust
 from pages.tables import code, number, table
 
@@ -22,9 +22,9 @@ def sensor_names() -> list[str]:
     return [row["name"] for row in json.loads(_native.sensors_json())]
 
 
-def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -> list[Spec]:
+def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -> list[SensorSpace]:
     """What sensors give; those that are only named with default settings."""
-    config = env_json(Native(task, sensors=sensors))
+    config = env_json(NativeSettings(task, sensors=sensors))
     room = dwell.House.shoebox(_ROOM_M, substance="plaster")
     return specs(_native.Batch([room.native], config))
 
@@ -41,13 +41,13 @@ def with_setting(**setting: float) -> list[str]:
     return [name for name in sensor_names() if has(name)]
 
 
-def observation_table(rows: list[Spec]) -> str:
+def observation_table(rows: list[SensorSpace]) -> str:
     """Name, shape, dtype, unit and range of observations."""
     head = ("name", "space", "shape", "dtype", "unit", "lowest", "highest", "what it is")
     return table(head, [_row(spec) for spec in rows])
 
 
-def _row(spec: Spec) -> tuple[str, ...]:
+def _row(spec: SensorSpace) -> tuple[str, ...]:
     kind = type(spec.space()).__name__
     if spec.is_text:
         length = f"{number(spec.high)} characters"

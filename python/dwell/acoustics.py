@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, shown, to_json, whole
+from dwell.arguments import point, quoted, to_json, whole
 from dwell.configs import AcousticSettings, checked
 from dwell.echogram import Echogram
 from dwell.heads import Head
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
-from dwell.outside import tell_outside
-from dwell.settings import Laws, found
+from dwell.outside_rooms import warn_outside_rooms
+from dwell.world_settings import Laws, found
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -136,9 +136,9 @@ class AcousticScene:
     def _tell_outside(
         self, source: Source | Sequence[float], receivers: Sequence[Receiver]
     ) -> None:
-        tell_outside(self.house, "a source", source_of(source).position)
+        warn_outside_rooms(self.house, "a source", source_of(source).position)
         for receiver in receivers:
-            tell_outside(self.house, "a microphone", receiver.pose["position"])
+            warn_outside_rooms(self.house, "a microphone", receiver.pose["position"])
 
     def metrics(
         self,
@@ -227,7 +227,7 @@ class AcousticScene:
 def _receivers(name: str, given: object) -> list[Receiver]:
     """Receivers; points become microphones."""
     if isinstance(given, str | bytes) or not isinstance(given, Sequence | np.ndarray):
-        raise ConfigError(f"{name} is {shown(given)}; expected a list of receivers or points")
+        raise ConfigError(f"{name} is {quoted(given)}; expected a list of receivers or points")
     return [one if isinstance(one, Receiver) else Receiver.omni(one) for one in given]
 
 

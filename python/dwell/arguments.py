@@ -30,7 +30,7 @@ _TOO_LARGE = 10**MOST_DIGITS
 _Record = TypeVar("_Record")
 
 
-def shown(value: object, most: int = 200) -> str:
+def quoted(value: object, most: int = 200) -> str:
     """``repr`` for error messages: never much text, and of everything.
 
     Whole numbers of thousands of digits, and lists in each other without end, have none.
@@ -45,8 +45,8 @@ def shown(value: object, most: int = 200) -> str:
 def some(values: Sequence[object], most: int = 8) -> str:
     """The first of many for error messages, and how many there are."""
     if len(values) <= most:
-        return shown([*values])
-    return f"[{', '.join(map(shown, values[:most]))}, …] ({len(values)} in all)"
+        return quoted([*values])
+    return f"[{', '.join(map(quoted, values[:most]))}, …] ({len(values)} in all)"
 
 
 def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
@@ -55,11 +55,11 @@ def whole(name: str, value: object, *, low: int = 0, high: int = _MOST) -> int:
     try:
         number = operator.index(value)  # type: ignore[arg-type] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {shown(value)}; allowed are {allowed}") from None
+        raise ConfigError(f"{name} is {quoted(value)}; allowed are {allowed}") from None
     if isinstance(value, bool) or not low <= number <= high:
         if number > _MOST:
             allowed = f"whole numbers from {low} to {high}"
-        raise ConfigError(f"{name} is {shown(value)}; allowed are {allowed}")
+        raise ConfigError(f"{name} is {quoted(value)}; allowed are {allowed}")
     return number
 
 
@@ -71,7 +71,7 @@ def finite(name: str, value: object) -> float:
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
-        raise ConfigError(f"{name} is {shown(value)}; expected a number") from None
+        raise ConfigError(f"{name} is {quoted(value)}; expected a number") from None
     if not math.isfinite(number):
         raise ConfigError(f"{name} is {number}; allowed are finite numbers")
     if abs(number) > _LARGEST:
@@ -88,7 +88,7 @@ def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray
         if array.dtype.kind not in "fiu" and array.size > 0:
             raise TypeError
     except (TypeError, ValueError, RecursionError):
-        raise ConfigError(f"{name}: expected real numbers, found {shown(values)}") from None
+        raise ConfigError(f"{name}: expected real numbers, found {quoted(values)}") from None
     # What the type does not hold becomes infinite, and is refused by its place.
     with np.errstate(over="ignore"):
         return np.ascontiguousarray(array, dtype)
@@ -97,13 +97,13 @@ def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray
 def text(name: str, value: object) -> str:
     """Text."""
     if not isinstance(value, str):
-        raise ConfigError(f"{name} is {shown(value)}; expected text")
+        raise ConfigError(f"{name} is {quoted(value)}; expected text")
     if not value.isascii():
         try:
             value.encode()
         except UnicodeEncodeError:
             raise ConfigError(
-                f"{name} is {shown(value)}; expected text that UTF-8 can hold"
+                f"{name} is {quoted(value)}; expected text that UTF-8 can hold"
             ) from None
     return value
 
@@ -111,18 +111,18 @@ def text(name: str, value: object) -> str:
 def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     """One of several words."""
     if value not in allowed:
-        raise ConfigError(f"{name} is {shown(value)}; allowed are {', '.join(allowed)}")
+        raise ConfigError(f"{name} is {quoted(value)}; allowed are {', '.join(allowed)}")
     return text(name, value)
 
 
 def texts(name: str, values: object) -> list[str]:
     """A list of text; one text alone is none."""
     if isinstance(values, str | bytes | Mapping):
-        raise ConfigError(f"{name} is {shown(values)}; expected a list of text")
+        raise ConfigError(f"{name} is {quoted(values)}; expected a list of text")
     try:
         rows = list(values)  # type: ignore[call-overload] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {shown(values)}; expected a list of text") from None
+        raise ConfigError(f"{name} is {quoted(values)}; expected a list of text") from None
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
 
 
@@ -131,20 +131,20 @@ def path(name: str, value: object) -> str:
     try:
         return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
-        raise ConfigError(f"{name} is {shown(value)}; expected text or a path") from None
+        raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
 
 
 def flag(name: str, value: object) -> bool:
     """``True`` or ``False``."""
     if not isinstance(value, bool | np.bool_):
-        raise ConfigError(f"{name} is {shown(value)}; allowed are True and False")
+        raise ConfigError(f"{name} is {quoted(value)}; allowed are True and False")
     return bool(value)
 
 
 def mapping(name: str, value: object, of: str = "values by name") -> dict[str, Any]:
     """A mapping whose keys are text."""
     if not isinstance(value, Mapping):
-        raise ConfigError(f"{name} is {shown(value)}; expected {of}")
+        raise ConfigError(f"{name} is {quoted(value)}; expected {of}")
     return {text(f"a name in {name}", key): part for key, part in value.items()}
 
 
@@ -156,12 +156,12 @@ def fields(
     for key, part in mapping(name, value).items():
         if key not in known:
             at = f"{name}: " if name else ""
-            raise ConfigError(f"{at}no field {key!r}; {allowed_instead(key, known)}")
+            raise ConfigError(f"{at}no field {key!r}; {allowed_values(key, known)}")
         checked[key] = known[key](f"{name}.{key}" if name else key, part)
     return checked
 
 
-def allowed_instead(name: str, known: Iterable[str]) -> str:
+def allowed_values(name: str, known: Iterable[str]) -> str:
     """What there is where ``name`` is not: the nearest names first, then all."""
     names = [*known]
     if not names:
@@ -178,7 +178,7 @@ def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> Non
         ConfigError: There is one; the message has the nearest names.
     """
     for name in unknown:
-        raise ConfigError(f"{of}: no argument {name!r}; {allowed_instead(name, known)}")
+        raise ConfigError(f"{of}: no argument {name!r}; {allowed_values(name, known)}")
 
 
 def record(
@@ -186,7 +186,7 @@ def record(
 ) -> dict[str, Any]:
     """The fields of a data class, numbers or one of several ``words``."""
     if not isinstance(value, kind):
-        raise ConfigError(f"{name} is {shown(value)}; expected a dwell.{kind.__name__}")
+        raise ConfigError(f"{name} is {quoted(value)}; expected a dwell.{kind.__name__}")
     checked: dict[str, Any] = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
         part, at = getattr(value, field.name), f"{name}.{field.name}"
@@ -211,7 +211,7 @@ def point(name: str, value: object) -> tuple[float, float, float]:
         parts = []
     if len(parts) != 3:
         raise ConfigError(
-            f"{name}: expected three numbers (x, y, z) in metres, found {shown(value)}"
+            f"{name}: expected three numbers (x, y, z) in metres, found {quoted(value)}"
         )
     x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
@@ -224,7 +224,7 @@ def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     except TypeError:
         parts = []
     if len(parts) != 3:
-        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {shown(value)}")
+        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {quoted(value)}")
     x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
 
@@ -237,14 +237,14 @@ def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
         parts = []
     length = math.hypot(*parts)
     if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
-        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {shown(value)}")
+        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {quoted(value)}")
     return tuple(part / length for part in parts)
 
 
 def pair(name: str, value: object) -> tuple[float, float]:
     """Two finite numbers."""
     if isinstance(value, str | bytes) or not isinstance(value, Sequence) or len(value) != 2:
-        raise ConfigError(f"{name}: expected two numbers, found {shown(value)}")
+        raise ConfigError(f"{name}: expected two numbers, found {quoted(value)}")
     first, second = (finite(f"{name}[{k}]", part) for k, part in enumerate(value))
     return first, second
 
@@ -253,7 +253,7 @@ def file_name(name: str, value: object) -> str:
     """A name of a file or folder that leads nowhere else: letters, digits, ``_``, ``-``, ``.``."""
     if not isinstance(value, str) or not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,99}", value):
         raise ConfigError(
-            f"{name} is {shown(value)}; allowed are 1 to 100 letters, digits, _, - and ."
+            f"{name} is {quoted(value)}; allowed are 1 to 100 letters, digits, _, - and ."
         )
     return value
 
@@ -280,7 +280,7 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
         )
     if value is None or isinstance(value, str | int):
         return value
-    raise ConfigError(f"{at} is {shown(value)}; expected numbers, text, lists or mappings")
+    raise ConfigError(f"{at} is {quoted(value)}; expected numbers, text, lists or mappings")
 
 
 def to_json(settings: Mapping[str, object] | Sequence[object], at: str = "") -> str:

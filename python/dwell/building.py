@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, _native, arguments
 from dwell.arguments import choice, finite, flag, pair, path, text, whole
-from dwell.editing import Edits, Rgb, rgb
-from dwell.files import atomic
+from dwell.editing import EditList, Rgb, rgb
+from dwell.files import atomic_write
 from dwell.house import House
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ Covering = str | tuple[str, Rgb]
 Compass = Literal["north", "east", "south", "west"]
 
 
-class HouseBuilder(Edits):
+class HouseBuilder(EditList):
     """A house from a plan: rooms first, then doors, windows and things.
 
     A room is its free floor; what is left between two rooms is the wall between them, and an outer
@@ -225,7 +225,7 @@ class HouseBuilder(Edits):
         to = Path(path("file", file))
         if not to.name.endswith(".plan.json"):
             raise ConfigError(f"file is {to.name!r}; expected a name that ends in .plan.json")
-        with atomic(to) as draft:
+        with atomic_write(to) as draft:
             draft.write_text(json.dumps(self.plan(), indent=1) + "\n", encoding="utf-8")
         return to
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal, get_args
 
 from dwell._native import ConfigError
-from dwell.arguments import choice, finite, mapping, shown, text, triple, whole
+from dwell.arguments import choice, finite, mapping, quoted, text, triple, whole
 
 Channel = Literal[
     "rgb",
@@ -87,7 +87,7 @@ class Camera:
 def camera_settings(name: str, camera: object) -> dict[str, Any]:
     """A camera's numbers, checked, as the native side takes them."""
     if not isinstance(camera, Camera):
-        raise ConfigError(f"{name} is {shown(camera)}; expected a dwell.Camera")
+        raise ConfigError(f"{name} is {quoted(camera)}; expected a dwell.Camera")
     settings: dict[str, Any] = {
         "width": whole(f"{name}.width", camera.width, low=1, high=_MOST_PIXELS),
         "height": whole(f"{name}.height", camera.height, low=1, high=_MOST_PIXELS),
@@ -100,7 +100,7 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
     _within(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
     if not settings["near_m"] < settings["far_m"] <= _FURTHEST_M:
         raise ConfigError(
-            f"{name}.far_m is {shown(camera.far_m)}; allowed is more than near_m, at most 1e6 m"
+            f"{name}.far_m is {quoted(camera.far_m)}; allowed is more than near_m, at most 1e6 m"
         )
     if camera.fov_deg is not None:
         fov_deg = finite(f"{name}.fov_deg", camera.fov_deg)

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from dwell.echogram import CELL_COLUMNS, CELL_ROWS, CENTRES_HZ, Echogram
-from dwell.pictures import scale_colors
+from dwell.false_color import scale_colors
 
 PAPER = (250, 249, 246)
 INK = (38, 40, 46)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, flag, mapping, shown, text, whole
+from dwell.arguments import fields, finite, flag, mapping, quoted, text, whole
 from dwell.heads import Head
 
 Home = Literal["studio", "apartment", "house", "office"]
@@ -196,7 +196,7 @@ def bodies(agents: object) -> list[dict[str, Any]]:
     rows = []
     for k, body in enumerate(agents):
         if not isinstance(body, Mapping):
-            raise ConfigError(f"agents[{k}] is {shown(body)}; expected a mapping")
+            raise ConfigError(f"agents[{k}] is {quoted(body)}; expected a mapping")
         rows.append(fields(f"agents[{k}]", body, known))
     return rows
 
@@ -213,6 +213,6 @@ def checked(kind: type, settings: Mapping[str, Any]) -> dict[str, Any]:
         annotation = kind.__annotations__.get(name)
         rule = getattr(annotation, "__forward_arg__", str(annotation))
         if rule.startswith("Literal") and not isinstance(value, str):
-            raise ConfigError(f"{name} is {shown(value)}; allowed are {rule[8:-1]}")
+            raise ConfigError(f"{name} is {quoted(value)}; allowed are {rule[8:-1]}")
         rows[name] = _CHECKS.get(rule, _as_is)(name, value)
     return rows

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from dwell.arguments import finite, numbers, shown
+from dwell.arguments import finite, numbers, quoted
 
 #: Octave bands, 63 Hz to 8 kHz.
 BANDS = 8
@@ -131,7 +131,7 @@ def _bands(name: str, value: float | Sequence[float]) -> npt.NDArray[np.float64]
     """One number for each octave."""
     bands = np.asarray(numbers(name, value, np.float64)).reshape(np.shape(value))
     if bands.shape not in ((), (BANDS,)) or not np.isfinite(bands).all():
-        raise ValueError(f"{name} is {shown(value)}; allowed is a number, or {BANDS} of them")
+        raise ValueError(f"{name} is {quoted(value)}; allowed is a number, or {BANDS} of them")
     return np.broadcast_to(bands, (BANDS,))
 
 
@@ -152,6 +152,6 @@ def directivity_json(directivity: str | Directivity) -> Any:  # noqa: ANN401 - a
     if directivity not in DIRECTIVITIES:
         names = ", ".join(DIRECTIVITIES)
         raise ValueError(
-            f"directivity: no {shown(directivity)}; there are {names}, and dwell.Directivity"
+            f"directivity: no {quoted(directivity)}; there are {names}, and dwell.Directivity"
         )
     return DIRECTIVITIES[directivity]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import choice, finite, flag, path, point, text, whole
 from dwell.house import House
-from dwell.playing import emitter_sound
+from dwell.sound_api import emitter_sound
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -26,7 +26,7 @@ Mobility = Literal["fixed", "movable"]
 Side = Literal["floor", "walls", "ceiling"]
 
 
-class Edits:
+class EditList:
     """Changes that are noted, one after another; what :class:`HouseEdit` and the builder share.
 
     A thing goes where ``at`` is (x, y, z in m), which is the middle of its lower face unless
@@ -494,7 +494,7 @@ class Edits:
         return self._note("rename", fields)
 
 
-class HouseEdit(Edits):
+class HouseEdit(EditList):
     """Changes of a house that are noted until :meth:`done` makes a new house of them.
 
     As a context it makes the house at the end, and :attr:`house` is it.

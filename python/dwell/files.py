@@ -133,7 +133,7 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
 
 
 @contextlib.contextmanager
-def atomic(path: _Name, *, new: bool = False) -> Iterator[Path]:
+def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
     """A temporary file that takes the place of ``path`` when all went well.
 
     A link is followed where it leads to a regular file, which is replaced.

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dwell import ConfigError, DwellError, MeasuredDataError, _native, arguments
-from dwell.arguments import finite, shown
+from dwell.arguments import finite, quoted
 
 #: The built-in head's, m.
 RADIUS_M = 0.0875
@@ -149,7 +149,7 @@ def head_of(name: str, head: object) -> Head | None:
     if isinstance(head, str | os.PathLike):
         return Head.from_sofa(head)
     raise ConfigError(
-        f"{name} is {shown(head)}; allowed are a dwell.Head or the path of a SOFA file"
+        f"{name} is {quoted(head)}; allowed are a dwell.Head or the path of a SOFA file"
     )
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole
-from dwell.house_names import HouseNames
+from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_json
 
 if TYPE_CHECKING:
@@ -86,13 +86,13 @@ class House:
         """The houses that a HOUSE string stands for where several are taken.
 
         ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``; any other
-        string is itself. :class:`dwell.house_names.HouseNames` holds longer ranges.
+        string is itself. :class:`dwell.house_names.HouseList` holds longer ranges.
 
         Raises:
             HouseError: The range is empty or none of whole numbers.
             ConfigError: It is longer than 1,000,000 seeds.
         """
-        names = HouseNames([house])
+        names = HouseList([house])
         if len(names) > _MOST_LISTED:
             raise ConfigError(f"{house}: {len(names)} seeds; at most {_MOST_LISTED} are listed")
         return list(names)
@@ -100,7 +100,7 @@ class House:
     @staticmethod
     def builtins() -> list[str]:
         """The houses that come with dwell, as HOUSE strings."""
-        from dwell.machine import facts_of_machine
+        from dwell.machine_info import facts_of_machine
 
         return [f"builtin:{name}" for name in facts_of_machine()["houses"]]
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from dwell._native import ConfigError
-from dwell.arguments import finite, point, shown, whole
+from dwell.arguments import finite, point, quoted, whole
 from dwell.directivity import Directivity, directivity_json
 from dwell.heads import Head, head_of
 
@@ -111,11 +111,11 @@ class Receiver:
         """
         expected = "expected 1 to 128 microphones or points"
         if isinstance(microphones, str | bytes | Mapping):
-            raise ConfigError(f"microphones is {shown(microphones)}; {expected}")
+            raise ConfigError(f"microphones is {quoted(microphones)}; {expected}")
         try:
             given = list(microphones)
         except TypeError:
-            raise ConfigError(f"microphones is {shown(microphones)}; {expected}") from None
+            raise ConfigError(f"microphones is {quoted(microphones)}; {expected}") from None
         items = [
             item if isinstance(item, Microphone) else Microphone(point(f"microphones[{k}]", item))
             for k, item in enumerate(given)

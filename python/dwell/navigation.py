@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, record, shown, whole
+from dwell.arguments import point, record, quoted, whole
 
 if TYPE_CHECKING:
     from dwell.house import House
@@ -148,5 +148,5 @@ class Navigation:
         """
         native = getattr(world, "native", None)
         if not isinstance(native, _native.World):
-            raise ConfigError(f"world is {shown(world)}; expected a dwell.World")
+            raise ConfigError(f"world is {quoted(world)}; expected a dwell.World")
         return native.follow(self._native)

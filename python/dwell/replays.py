@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native
-from dwell.arguments import flag, mapping, shown, text, texts, to_json, whole
-from dwell.files import atomic, read_json
+from dwell.arguments import flag, mapping, quoted, text, texts, to_json, whole
+from dwell.files import atomic_write, read_json
 from dwell.house import House
 
 if TYPE_CHECKING:
-    from dwell.envs.custom import RewardChoice, TaskChoice
-    from dwell.envs.runner import Runner
+    from dwell.envs.python_tasks import RewardChoice, TaskChoice
+    from dwell.envs.native_batch import NativeBatch
     from dwell.world import World
 
 #: What a file says of itself.
@@ -29,7 +29,7 @@ MOST_STEPS = 1_000_000
 
 
 @dataclasses.dataclass(frozen=True)
-class Moment:
+class ReplayStep:
     """An episode at one step.
 
     Attributes:
@@ -100,7 +100,7 @@ class Replay:
         version = row.get("version")
         if version not in (1, _VERSION):
             raise MeasuredDataError(
-                f"{path}: version is {shown(version)}; this dwell reads 1 and {_VERSION}"
+                f"{path}: version is {quoted(version)}; this dwell reads 1 and {_VERSION}"
             )
         known = set(_FIELDS) - ({"sums"} if version == 1 else set())
         if wrong := sorted(known ^ set(row)):
@@ -138,7 +138,7 @@ class Replay:
         for k, action in enumerate(self.actions):
             if action not in names:
                 raise MeasuredDataError(
-                    f"{self._at()}: actions[{k}] is {shown(action)}; allowed are {', '.join(names)}"
+                    f"{self._at()}: actions[{k}] is {quoted(action)}; allowed are {', '.join(names)}"
                 )
         if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MOST_STEPS:
             raise MeasuredDataError(
@@ -165,7 +165,7 @@ class Replay:
         """
         row = self._stated()
         row["sums"] = {name: _sum(value) for name, value in row.items()}
-        with atomic(path, new=new) as draft:
+        with atomic_write(path, new=new) as draft:
             draft.write_text(json.dumps(row, indent=1) + "\n", "utf-8")
 
     def play(
@@ -175,7 +175,7 @@ class Replay:
         reward: RewardChoice = None,
         renderer: str | None = None,
         house: House | None = None,
-    ) -> Iterator[Moment]:
+    ) -> Iterator[ReplayStep]:
         """Plays the episode again, step by step, the start first.
 
         Args:
@@ -209,11 +209,11 @@ class Replay:
         reward: RewardChoice,
         renderer: str | None,
         house: House | None,
-    ) -> Runner:
-        from dwell.envs.custom import Custom, split
-        from dwell.envs.runner import Runner
+    ) -> NativeBatch:
+        from dwell.envs.python_tasks import PythonTask, split
+        from dwell.envs.native_batch import NativeBatch
 
-        given, custom = [], Custom()
+        given, custom = [], PythonTask()
         if task is not None or reward is not None:
             _, custom = split("Free" if task is None else task, None, reward, None)
             given = [
@@ -228,7 +228,7 @@ class Replay:
         if renderer is not None:
             config["world"] = {**config.get("world", {}), "renderer": renderer}
         opened = House.open(self.house) if house is None else house
-        return Runner([opened], to_json(config), None, custom=custom)
+        return NativeBatch([opened], to_json(config), None, custom=custom)
 
     @contextmanager
     def _named(self, place: str = "") -> Iterator[None]:
@@ -239,9 +239,9 @@ class Replay:
             raise type(error)(f"{self._at()}: {place}{error}") from error
 
     def _moment(
-        self, step: int, runner: Runner, world: World, answer: Mapping[str, Any] | None = None
-    ) -> Moment:
-        return Moment(
+        self, step: int, runner: NativeBatch, world: World, answer: Mapping[str, Any] | None = None
+    ) -> ReplayStep:
+        return ReplayStep(
             step=step,
             action=self.actions[step - 1] if step else None,
             reward=0.0 if answer is None else float(answer["reward"][0]),
@@ -295,8 +295,8 @@ class Replay:
         for moment in self.play(**parts):
             if moment.step == 0 and moment.instruction != self.instruction:
                 yield (
-                    f"instruction: the file states {shown(self.instruction)}, "
-                    f"played it is {shown(moment.instruction)}"
+                    f"instruction: the file states {quoted(self.instruction)}, "
+                    f"played it is {quoted(moment.instruction)}"
                 )
             if not moment.is_same and not differs:
                 differs = True

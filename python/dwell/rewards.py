@@ -5,14 +5,14 @@ from __future__ import annotations
 import abc
 from typing import TYPE_CHECKING
 
-from dwell.parts import Part
+from dwell.plugin_parts import PluginPart
 
 if TYPE_CHECKING:
     from dwell.tasks import Verdict
     from dwell.world import World
 
 
-class Reward(Part, abc.ABC):
+class Reward(PluginPart, abc.ABC):
     """A reward in Python: ``DwellEnv(reward=MyReward)`` gives it in place of the task's own.
 
     Examples:

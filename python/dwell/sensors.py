@@ -5,7 +5,7 @@ from __future__ import annotations
 import abc
 from typing import TYPE_CHECKING, Any
 
-from dwell.parts import Part
+from dwell.plugin_parts import PluginPart
 
 if TYPE_CHECKING:
     import gymnasium
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from dwell.world import World
 
 
-class Sensor(Part, abc.ABC):
+class Sensor(PluginPart, abc.ABC):
     """A sensor in Python: ``DwellEnv(sensors=["rgb", MySensor])`` observes with it.
 
     Attributes:

@@ -15,7 +15,7 @@ from dwell.acoustics import AcousticScene
 from dwell.arguments import choice
 from dwell.charts import INK, PAPER, font
 from dwell.listening import Source, source_of
-from dwell.pictures import scale_colors
+from dwell.false_color import scale_colors
 from dwell.places import receiver_grid
 from dwell.plans import floor_plan
 from dwell.world import World

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
-from dwell.files import atomic, read
+from dwell.files import atomic_write, read
 
 #: A sound file that is read has at most so many bytes.
 _MOST_READ_BYTES = 512 * 2**20
@@ -67,7 +67,7 @@ def write_wav(
     body = b"WAVE" + b"".join(
         name + struct.pack("<I", len(content)) + content for name, content in chunks
     )
-    with atomic(path) as draft:
+    with atomic_write(path) as draft:
         draft.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
 
 

@@ -7,7 +7,7 @@ import types
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from dwell.parts import Part
+from dwell.plugin_parts import PluginPart
 
 if TYPE_CHECKING:
     import gymnasium
@@ -52,7 +52,7 @@ class Verdict:
     info: Mapping[str, Any] = dataclasses.field(default_factory=dict)
 
 
-class Task(Part):
+class Task(PluginPart):
     """A task in Python: a subclass says how an episode starts and how each step is judged.
 
     ``DwellEnv(task=MyTask)`` plays it; ``task_settings`` are the arguments of ``MyTask()``. It is

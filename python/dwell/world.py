@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.acting import Acting
+from dwell.action_api import ActionApi
 from dwell.arguments import (
     finite,
     mapping,
     pair,
     point,
-    shown,
+    quoted,
     text,
     texts,
     to_json,
@@ -26,14 +26,14 @@ from dwell.arguments import (
 )
 from dwell.camera import Camera, Channel, camera_settings
 from dwell.configs import bodies
-from dwell.controls import controls_of
-from dwell.guiding import Guiding
+from dwell.agent_controls import controls_of
+from dwell.guide_api import GuideApi
 from dwell.heads import Head
 from dwell.house import House
 from dwell.navigation import Navigation, Walker, walker_json
-from dwell.outside import tell_outside
-from dwell.playing import Sounds
-from dwell.settings import Laws, with_head, world_settings
+from dwell.outside_rooms import warn_outside_rooms
+from dwell.sound_api import SoundApi
+from dwell.world_settings import Laws, with_head, world_settings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -46,7 +46,7 @@ _MOST_IDS = 2**32 - 1
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
 
-class World(Acting, Guiding, Sounds):
+class World(ActionApi, GuideApi, SoundApi):
     """A running world with its own state over a shared house.
 
     A copy, or what comes out of a pickle, goes on from the moment it was made.
@@ -243,7 +243,7 @@ class World(Acting, Guiding, Sounds):
             "wheel_rad_s": None if wheel_rad_s is None else pair("wheel_rad_s", wheel_rad_s),
         }
         self._native.place_agent(whole("agent", agent), to_json(row))
-        tell_outside(self.house, "an agent", position)
+        warn_outside_rooms(self.house, "an agent", position)
 
     def events(self) -> list[dict[str, Any]]:
         """What touched in the last step: impacts, scrapes and rolling.
@@ -307,7 +307,7 @@ class World(Acting, Guiding, Sounds):
             view["agent"] = 0 if agent is None else whole("agent", agent)
         else:
             view["position"] = list(point("position", position))
-            tell_outside(self.house, "a camera", view["position"])
+            warn_outside_rooms(self.house, "a camera", view["position"])
             view["yaw_deg"] = finite("yaw_deg", yaw_deg)
             view["pitch_deg"] = finite("pitch_deg", pitch_deg)
         return self._native.render(to_json(view), texts("channels", channels))
@@ -387,10 +387,10 @@ class World(Acting, Guiding, Sounds):
                 m/s. Nothing has changed then.
         """
         if not isinstance(joints, Mapping):
-            raise ConfigError(f"joints is {shown(joints)}; expected (position, velocity) by id")
+            raise ConfigError(f"joints is {quoted(joints)}; expected (position, velocity) by id")
         rows = []
         for joint, stand in joints.items():
-            position, velocity = pair(f"joint {shown(joint)}: (position, velocity)", stand)
+            position, velocity = pair(f"joint {quoted(joint)}: (position, velocity)", stand)
             rows.append((whole("joint", joint, high=_MOST_IDS), position, velocity))
         self._native.set_joints(rows)
 
@@ -520,7 +520,7 @@ class World(Acting, Guiding, Sounds):
     def restore(self, snapshot: bytes) -> None:
         """Goes to where the snapshot was taken; the next steps give the same bits as then."""
         if not isinstance(snapshot, bytes):
-            raise ConfigError(f"snapshot is {shown(snapshot)}; expected the bytes of snapshot()")
+            raise ConfigError(f"snapshot is {quoted(snapshot)}; expected the bytes of snapshot()")
         self._native.restore(snapshot)
 
     def state_hash(self) -> int:

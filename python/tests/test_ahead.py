@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from dwell.envs.ahead import Ahead
+from dwell.envs.prefetch import Prefetcher
 
 
 class Workshop:
@@ -30,7 +30,7 @@ class Workshop:
 
 def test_what_is_wanted_first_is_made_first_and_no_more_than_allowed() -> None:
     workshop = Workshop()
-    ahead = Ahead(workshop.make, 2)
+    ahead = Prefetcher(workshop.make, 2)
     ahead.want([5, 7, 5, 9])
     for _ in range(2):
         workshop.let.release()
@@ -45,7 +45,7 @@ def test_what_is_wanted_first_is_made_first_and_no_more_than_allowed() -> None:
 
 def test_who_takes_what_is_in_the_making_waits_for_it() -> None:
     workshop = Workshop()
-    ahead = Ahead(workshop.make, 4)
+    ahead = Prefetcher(workshop.make, 4)
     ahead.want([1, 2])
     workshop.begun.acquire()
     threading.Timer(0.05, lambda: workshop.let.release(2)).start()
@@ -55,7 +55,7 @@ def test_who_takes_what_is_in_the_making_waits_for_it() -> None:
 
 def test_what_went_wrong_is_told_to_who_takes_it_and_to_nobody_else() -> None:
     workshop = Workshop()
-    ahead = Ahead(workshop.make, 4)
+    ahead = Prefetcher(workshop.make, 4)
     workshop.let.release(4)
     ahead.want([-1, 2])
     workshop.begun.acquire()
@@ -71,7 +71,7 @@ def test_what_went_wrong_is_told_to_who_takes_it_and_to_nobody_else() -> None:
 
 def test_what_is_not_wanted_any_more_is_dropped() -> None:
     workshop = Workshop()
-    ahead = Ahead(workshop.make, 4)
+    ahead = Prefetcher(workshop.make, 4)
     ahead.want([1, 2])
     workshop.begun.acquire()
     ahead.want([3])
@@ -84,7 +84,7 @@ def test_what_is_not_wanted_any_more_is_dropped() -> None:
 
 
 def test_none_is_made_where_none_may_wait() -> None:
-    ahead = Ahead(Workshop().make, 0)
+    ahead = Prefetcher(Workshop().make, 0)
     ahead.want([1])
     assert ahead.take(1) is None
     ahead.close()
@@ -94,7 +94,7 @@ def test_none_is_made_where_none_may_wait() -> None:
 @pytest.mark.filterwarnings("ignore:.*multi-threaded.*:DeprecationWarning")
 def test_a_forked_child_begins_anew() -> None:
     workshop = Workshop()
-    ahead = Ahead(workshop.make, 2)
+    ahead = Prefetcher(workshop.make, 2)
     ahead.want([1])
     workshop.begun.acquire()
     child = os.fork()

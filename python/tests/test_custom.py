@@ -17,7 +17,7 @@ from gymnasium.vector import AutoresetMode
 import dwell
 from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv
-from dwell.envs.saved import sealed, unsealed
+from dwell.envs.snapshots import with_checksum, check_and_strip
 
 STEPS = 40
 
@@ -211,15 +211,15 @@ def test_snapshots_of_other_parts_are_refused(cut: str) -> None:
     env.reset(seed=1)
     env.step(1)
     hash_before = env.state_hash()
-    episode, parts, rest = unsealed("", env.snapshot()).split(b"\0", 2)
+    episode, parts, rest = check_and_strip("", env.snapshot()).split(b"\0", 2)
     wrong = {"none": b"", "parts": parts[: len(parts) // 2], "other": b'{"task":{}}'}[cut]
     with pytest.raises(dwell.ConfigError, match="snapshot refused: its parts"):
-        env.restore(sealed(b"\0".join((episode, wrong, rest))))
+        env.restore(with_checksum(b"\0".join((episode, wrong, rest))))
     assert env.state_hash() == hash_before
     plain = DwellEnv("Free", sensors=["gps"])
     plain.reset(seed=1)
     with pytest.raises(dwell.ConfigError, match="parts in Python"):
-        plain.restore(sealed(b"\0".join((episode, parts, rest))))
+        plain.restore(with_checksum(b"\0".join((episode, parts, rest))))
 
 
 @pytest.mark.parametrize("mode", list(AutoresetMode))
@@ -500,9 +500,9 @@ def test_what_parts_remember_is_no_deeper_than_json_is_read() -> None:
         env.snapshot()
     plain = DwellEnv("Free", sensors=["gps", Noisy])
     plain.reset(seed=1)
-    episode, _, rest = unsealed("", plain.snapshot()).split(b"\0", 2)
+    episode, _, rest = check_and_strip("", plain.snapshot()).split(b"\0", 2)
     with pytest.raises(dwell.ConfigError, match="its parts: nested 100000 deep"):
-        plain.restore(sealed(b"\0".join((episode, b"[" * 100_000, rest))))
+        plain.restore(with_checksum(b"\0".join((episode, b"[" * 100_000, rest))))
 
 
 def play_a_step(env: DwellEnv) -> None:

@@ -20,8 +20,8 @@ import dwell
 import dwell.envs
 import dwell.world
 from dwell import _native
-from dwell.controls import CONTROL
-from dwell.envs.runner import INFO_KEYS
+from dwell.agent_controls import CONTROL
+from dwell.envs.native_batch import INFO_KEYS
 
 ROOT = Path(__file__).resolve().parents[2]
 MARKDOWN = sorted(

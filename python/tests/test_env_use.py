@@ -12,7 +12,7 @@ import pytest
 
 import dwell
 from dwell.envs import DwellEnv, DwellVectorEnv
-from dwell.envs.config import HouseShelf
+from dwell.envs.config import HouseCache
 
 SMALL = {"rgb": {"width": 16, "height": 16}, "instruction": {}}
 
@@ -303,7 +303,7 @@ def test_buffers_in_use_say_so() -> None:
 
 
 def test_a_range_of_seeds_of_any_length_is_a_set_of_houses() -> None:
-    shelf = HouseShelf(["builtin:studio", "seed:0..1000000000000?home=studio"])
+    shelf = HouseCache(["builtin:studio", "seed:0..1000000000000?home=studio"])
     assert len(shelf.names) == 10**12 + 1
     assert shelf.episode("seed:999999999999?home=studio#5") == (10**12, 5)
     assert shelf.episode_id(8, 5) == "seed:7?home=studio#5"
@@ -313,7 +313,7 @@ def test_a_range_of_seeds_of_any_length_is_a_set_of_houses() -> None:
 
 def test_a_house_that_is_handed_over_twice_has_two_names() -> None:
     house = dwell.House.open("builtin:studio")
-    shelf = HouseShelf(["seed:3..5", house, house])
+    shelf = HouseCache(["seed:3..5", house, house])
     assert [*shelf.names] == ["seed:3", "seed:4", "studio", "studio~3"]
     assert shelf[3] is house
 

@@ -20,7 +20,7 @@ import pytest
 import dwell
 from dwell import cli, files
 from dwell.envs import DwellEnv, ReplayRecorder
-from dwell.house_names import HouseNames
+from dwell.house_list import HouseList
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="named pipes, devices, links")
 
@@ -80,7 +80,7 @@ def test_devices_folders_and_sockets_are_refused(tmp_path: Path) -> None:
         path = tmp_path / name
         with pytest.raises(OSError, match=f"is {kind}, not a regular file"):
             files.read(path)
-        with pytest.raises(OSError, match=f"is {kind}, not a regular file"), files.atomic(path):
+        with pytest.raises(OSError, match=f"is {kind}, not a regular file"), files.atomic_write(path):
             pass
 
 
@@ -135,13 +135,13 @@ def test_links_are_followed_to_files_and_stay(tmp_path: Path) -> None:
     path.write_text("old")
     link.symlink_to(path)
     nowhere.symlink_to(tmp_path / "missing")
-    with files.atomic(link) as draft:
+    with files.atomic_write(link) as draft:
         draft.write_text("new")
     assert link.is_symlink()
     assert path.read_text() == "new"
-    with pytest.raises(FileNotFoundError, match="leads to no file"), files.atomic(nowhere):
+    with pytest.raises(FileNotFoundError, match="leads to no file"), files.atomic_write(nowhere):
         pass
-    with pytest.raises(FileExistsError, match="is there already"), files.atomic(link, new=True):
+    with pytest.raises(FileExistsError, match="is there already"), files.atomic_write(link, new=True):
         pass
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a", "link", "nowhere"]
 
@@ -259,7 +259,7 @@ def test_houses_that_had_no_room_are_made_by_the_next_run(tmp_path: Path, form: 
 def test_shards_that_begin_together_agree_on_their_folder(tmp_path: Path) -> None:
     from concurrent.futures import ThreadPoolExecutor
 
-    from dwell.cli.journal import claim
+    from dwell.cli.job_journal import claim
 
     dataset = {"command": "generate", "seed": 0}
     with ThreadPoolExecutor(8) as pool:
@@ -282,7 +282,7 @@ def test_rows_of_another_job_are_not_discarded(
 
 
 def test_two_processes_do_not_write_one_journal(tmp_path: Path) -> None:
-    from dwell.cli.journal import Journal
+    from dwell.cli.job_journal import Journal
 
     job = {"command": "x"}
     first = Journal(tmp_path / "rows", job)
@@ -326,14 +326,14 @@ def test_drafts_of_the_living_stay_and_those_of_the_dead_go(tmp_path: Path) -> N
     # As the engine's writer leaves them.
     (tmp_path / ".a.csv.partial-1").write_text("half")
     (tmp_path / ".b.csv.partial-0").write_text("of another file")
-    with files.atomic(place) as draft:
+    with files.atomic_write(place) as draft:
         draft.write_text("whole")
     assert place.read_text() == "whole"
     kept = [".a.csv.partial-0", ".b.csv.partial-0", "a.csv"]
     assert sorted(path.name for path in tmp_path.iterdir()) == kept
     other.kill()
     other.communicate()
-    with files.atomic(place) as draft:
+    with files.atomic_write(place) as draft:
         draft.write_text("again")
     assert place.read_text() == "again"
     assert sorted(path.name for path in tmp_path.iterdir()) == kept[1:]
@@ -343,7 +343,7 @@ def test_a_draft_that_has_no_room_is_told_by_the_name_that_was_given(tmp_path: P
     place = tmp_path / "a"
 
     def write() -> None:
-        with files.atomic(place):
+        with files.atomic_write(place):
             raise OSError(errno.ENOSPC, "No space left on device")
 
     with pytest.raises(OSError, match="No space left") as refused:
@@ -353,7 +353,7 @@ def test_a_draft_that_has_no_room_is_told_by_the_name_that_was_given(tmp_path: P
 
 
 def test_a_journal_without_room_is_named(tmp_path: Path) -> None:
-    from dwell.cli.journal import Journal
+    from dwell.cli.job_journal import Journal
 
     journal = Journal(tmp_path / "rows", {"command": "x"})
     journal._file.close()
@@ -376,7 +376,7 @@ def test_a_folder_is_no_file_for_rows(
 
 
 def test_ranges_of_seeds_take_no_memory() -> None:
-    names = HouseNames(["builtin:studio", "seed:0..1000000000?home=studio", "seed:5..7"])
+    names = HouseList(["builtin:studio", "seed:0..1000000000?home=studio", "seed:5..7"])
     assert len(names) == 1_000_000_003
     assert names[1] == "seed:0?home=studio"
     assert names[-1] == "seed:6"
@@ -386,7 +386,7 @@ def test_ranges_of_seeds_take_no_memory() -> None:
     assert "builtin:studio" in names
     for absent in ("seed:7", "seed:05", "seed:6?", "builtin:house", 5):
         assert absent not in names
-    assert list(HouseNames(["seed:3..5", "x"])) == ["seed:3", "seed:4", "x"]
+    assert list(HouseList(["seed:3..5", "x"])) == ["seed:3", "seed:4", "x"]
     with pytest.raises(IndexError):
         names[len(names)]
     with pytest.raises(dwell.ConfigError, match="at most 1000000 are listed"):
@@ -476,7 +476,7 @@ def test_odd_names_are_refused_by_one_sentence(
 def test_odd_tables_are_refused_by_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from dwell.measured import FLIGHT
+    from dwell.measured_import import FLIGHT
 
     meaning, table = tmp_path / "map.json", tmp_path / "index.csv"
     meaning.write_text(json.dumps({**FLIGHT, "g_m_s2": 9.81}))

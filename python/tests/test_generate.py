@@ -16,7 +16,7 @@ import gymnasium
 import pytest
 
 import dwell
-from dwell.envs.config import KEPT, HouseShelf
+from dwell.envs.config import KEPT, HouseCache
 
 
 def test_a_seed_is_a_furnished_house_and_always_the_same() -> None:
@@ -39,12 +39,12 @@ def test_a_range_of_seeds_is_several_houses() -> None:
     assert dwell.House.expand("builtin:studio") == ["builtin:studio"]
     with pytest.raises(dwell.HouseError, match="A < B"):
         dwell.House.expand("seed:5..3")
-    shelf = HouseShelf(["builtin:studio", "seed:0..3"])
+    shelf = HouseCache(["builtin:studio", "seed:0..3"])
     assert [*shelf.names] == ["builtin:studio", "seed:0", "seed:1", "seed:2"]
 
 
 def test_houses_of_thousands_of_seeds_are_not_all_kept() -> None:
-    shelf = HouseShelf(f"seed:0..{2 * KEPT}?home=studio")
+    shelf = HouseCache(f"seed:0..{2 * KEPT}?home=studio")
     first = shelf[0]
     assert shelf[0] is first
     held = [weakref.ref(shelf[k]) for k in range(2 * KEPT)]

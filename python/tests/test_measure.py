@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from dwell import _native
-from dwell.measured import import_files, open_table
+from dwell.measured_import import import_files, open_table
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = ROOT / "examples" / "measured"

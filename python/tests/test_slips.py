@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from dwell.measured import import_files
+from dwell.measured_import import import_files
 
 Rows = list[list[Any]]
 FLIGHT: dict[str, Any] = {

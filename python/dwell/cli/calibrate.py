@@ -7,8 +7,8 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
-from dwell.cli.common import Bar, path, print_json
-from dwell.files import atomic
+from dwell.cli.common import ProgressBar, path, print_json
+from dwell.files import atomic_write
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -63,7 +63,7 @@ def run(args: argparse.Namespace) -> int:
     """Calibrates, writes the report, and prints the verdict."""
     from dwell.calibration import calibrate
 
-    report = calibrate(args.measured, house=args.house, progress=Bar(), peers=args.peer)
+    report = calibrate(args.measured, house=args.house, progress=ProgressBar(), peers=args.peer)
     page = report.pop("html", "")
     if args.out:
         files = {
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
             "found.json": json.dumps(report["found"], indent=1),
         }
         for name, text in files.items():
-            with atomic(args.out / name) as path:
+            with atomic_write(args.out / name) as path:
                 path.write_text(text, "utf-8")
     if args.json:
         print_json(report)

@@ -141,7 +141,7 @@ def sentence(error: BaseException) -> str:
     return _LONG_WORD.sub(lambda word: f"{word[1]}...({len(word[0])} characters)", said)
 
 
-class Bar:
+class ProgressBar:
     """A progress bar on standard error; silent where that is no terminal."""
 
     def __init__(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from dwell.cli.common import Bar, path, print_json
+from dwell.cli.common import ProgressBar, path, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +19,7 @@ def run(args: argparse.Namespace) -> int:
     """Walks an agent through the house and writes a page about it."""
     from dwell import demo
 
-    summary = demo.run(args.house, args.out, Bar())
+    summary = demo.run(args.house, args.out, ProgressBar())
     if args.json:
         print_json(summary)
     else:

@@ -7,8 +7,8 @@ import json
 import sys
 from typing import Any
 
-from dwell.cli.common import Bar, count, path
-from dwell.cli.journal import Journal
+from dwell.cli.common import ProgressBar, count, path
+from dwell.cli.job_journal import Journal
 from dwell.files import open_file
 
 _LEVELS = ("object", "room", "house", "graph", "instructions")
@@ -30,14 +30,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Describes every house; one that cannot be opened is reported and skipped (status 1)."""
-    from dwell.house_names import HouseNames
+    from dwell.house_list import HouseList
 
-    houses = HouseNames(args.houses)
+    houses = HouseList(args.houses)
     job = {"command": "describe", "level": args.level, "seed": args.seed, "houses": args.houses}
     journal = Journal(args.out, job) if args.out else None
     printer = _Printer(args.level) if args.json else None
     told, failed = set() if journal is None else set(journal.done), 0
-    bar = Bar()
+    bar = ProgressBar()
     try:
         for k, name in enumerate(houses):
             if name not in told:

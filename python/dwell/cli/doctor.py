@@ -27,7 +27,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Prints what is there, what is missing, and how to get it."""
-    from dwell.machine import facts_of_machine
+    from dwell.machine_info import facts_of_machine
 
     facts = facts_of_machine()
     facts["python"] = platform.python_version()

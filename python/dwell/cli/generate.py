@@ -16,8 +16,8 @@ from typing import Any
 
 from dwell import _native
 from dwell.arguments import whole
-from dwell.cli.common import Bar, count, count_from_1, path, print_json
-from dwell.cli.journal import Journal, claim
+from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json
+from dwell.cli.job_journal import Journal, claim
 from dwell.files import lines, open_file, parse_json
 
 _FORMS = ("dwell", "suncg", "glb")
@@ -115,7 +115,7 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     left = (seed for seed in seeds if str(seed) not in journal.done)
     made = 0
     workers = args.workers or os.cpu_count() or 1
-    bar = Bar()
+    bar = ProgressBar()
     pool = ThreadPoolExecutor(workers)
     # A few houses ahead, in order: the manifest is the same for any number of workers.
     ahead: deque[tuple[int, Future[dict[str, Any]]]] = deque()

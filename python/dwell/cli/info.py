@@ -8,7 +8,7 @@ from typing import Any
 
 from dwell import ConfigError
 from dwell.cli.common import print_json
-from dwell.files import atomic
+from dwell.files import atomic_write
 
 _MOST_WARNINGS = 20
 
@@ -62,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
 def _write_new(path: Path, text: str) -> None:
     """Writes a file that is not there yet: a map that somebody filled in stays."""
     try:
-        with atomic(path, new=True) as draft:
+        with atomic_write(path, new=True) as draft:
             draft.write_text(text, "utf-8")
     except FileExistsError:
         raise ConfigError(f"--init-map: {path} is there already; name a new file") from None

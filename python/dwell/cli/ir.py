@@ -8,7 +8,7 @@ import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
 from dwell.cli.common import count, number, path, point, print_json
-from dwell.cli.saving import add_bits, save_sound
+from dwell.cli.write_files import add_bits, save_sound
 
 
 def configure(parser: argparse.ArgumentParser) -> None:

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell.cli.common import Bar, number, print_json
-from dwell.cli.journal import claim, refuse_other
-from dwell.files import atomic, read, read_json
+from dwell.cli.common import ProgressBar, number, print_json
+from dwell.cli.job_journal import claim, refuse_other
+from dwell.files import atomic_write, read, read_json
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -131,7 +131,7 @@ def _house(
     # What cannot be was refused by now.
     claim(args.out, dataset)
     _begin(parts, {**job, "house": name, "fingerprint": fingerprint, "dwell": __version__})
-    made, bar = 0, Bar()
+    made, bar = 0, ProgressBar()
     for k, source in enumerate(sources):
         part = parts / f"{k}.npy"
         if part.exists():
@@ -142,7 +142,7 @@ def _house(
 
         found = _source(scene, source, receivers, args, told)
         # What is there is whole: a file gets its name when it is written.
-        with atomic(part) as path, path.open("wb") as file:
+        with atomic_write(part) as path, path.open("wb") as file:
             np.save(file, found)
         made += len(receivers)
     radius = None if args.head is None else args.head.about
@@ -162,7 +162,7 @@ def _house(
         created=time.strftime("%Y-%m-%d %H:%M:%S", time.gmtime()),
     )
     write = write_sofa if args.format == "sofa" else write_hdf5
-    with atomic(out) as path:
+    with atomic_write(out) as path:
         write(path, data)
     shutil.rmtree(parts)
     return made
@@ -175,7 +175,7 @@ def _begin(parts: Path, job: dict[str, Any]) -> None:
     if path.exists() and read(path) == text.encode():
         return
     shutil.rmtree(parts, ignore_errors=True)
-    with atomic(path) as draft:
+    with atomic_write(path) as draft:
         draft.write_text(text, "utf-8")
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dwell.cli.common import Bar, count, number, print_json
-from dwell.files import atomic
+from dwell.cli.common import ProgressBar, count, number, print_json
+from dwell.files import atomic_write
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     )
     facts: dict[str, object]
     picture, facts = _map(scene, args) if args.map else _plot(scene, args)
-    with atomic(args.out) as path:
+    with atomic_write(args.out) as path:
         form = "PNG" if args.out.suffix.lower() == ".png" else "JPEG"
         picture.save(path, form, **({"quality": 88} if form == "JPEG" else {}))
     told = {**facts, "width": picture.width, "height": picture.height, "out": str(args.out)}
@@ -79,7 +79,7 @@ def _map(scene: AcousticScene, args: argparse.Namespace) -> tuple[Image.Image, d
         height_m=args.height,
         seed=args.seed,
         threads=args.threads,
-        progress=Bar(),
+        progress=ProgressBar(),
     )
     world = World(scene.house, agents=0)
     picture = draw_map(found, world, args.level, longest_edge=args.width)

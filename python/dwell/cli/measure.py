@@ -6,7 +6,7 @@ import argparse
 import json
 import sys
 
-from dwell.cli.common import Bar, path, print_json
+from dwell.cli.common import ProgressBar, path, print_json
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -29,7 +29,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
-    from dwell.measured import TEMPLATES, import_files
+    from dwell.measured_import import TEMPLATES, import_files
 
     if args.init:
         sys.stdout.write(json.dumps(TEMPLATES[args.init], indent=2) + "\n")
@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
             "dwell measure import: FILES, --map and --out are needed (or --init)", file=sys.stderr
         )
         return 2
-    counts = import_files(args.files, args.map, args.out, Bar())
+    counts = import_files(args.files, args.map, args.out, ProgressBar())
     if args.json:
         print_json({"out": str(args.out), **counts})
     else:

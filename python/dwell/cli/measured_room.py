@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from dwell.arguments import finite, whole
-from dwell.cli.common import Bar, print_json
-from dwell.files import MOST_TEXT_BYTES, atomic, read, read_json
+from dwell.cli.common import ProgressBar, print_json
+from dwell.files import MOST_TEXT_BYTES, atomic_write, read, read_json
 from dwell.listening import Receiver
 
 # Receivers this near are one array, of at most so many microphones.
@@ -99,7 +99,7 @@ def run(args: argparse.Namespace) -> int:
     length = round(room.duration_s * room.rate_hz)
     responses = np.zeros((len(sources), len(receivers), length), np.float32)
     groups = together(list(receivers.values()))
-    bar, pairs = Bar(), len(sources) * len(receivers)
+    bar, pairs = ProgressBar(), len(sources) * len(receivers)
     for i, source in enumerate(sources.values()):
         heard = scene.impulse_responses(
             source, [group.receiver for group in groups], seed=args.seed, threads=args.threads
@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
         bar((i + 1) / len(sources), f"{i + 1} of {len(sources)} sources")
     took = time.perf_counter() - built
     if args.out:
-        with atomic(args.out) as path, path.open("wb") as out:
+        with atomic_write(args.out) as path, path.open("wb") as out:
             np.savez_compressed(out, ir=responses, fs=np.int64(room.rate_hz))
     print_json(
         {
@@ -134,14 +134,14 @@ def run(args: argparse.Namespace) -> int:
 
 
 @dataclass(frozen=True)
-class Group:
+class MicrophoneGroup:
     """Receivers that are heard as one array, and which they are among all."""
 
     members: list[int]
     receiver: Receiver
 
 
-def together(places: list[tuple[float, float, float]]) -> list[Group]:
+def together(places: list[tuple[float, float, float]]) -> list[MicrophoneGroup]:
     """Receivers near each other as arrays, whose tails then differ as a real array's do.
 
     Each joins the first group whose first member is within 0.5 m and that has less than 128.
@@ -163,7 +163,7 @@ def together(places: list[tuple[float, float, float]]) -> list[Group]:
         centre = [sum(places[k][axis] for k in group) / len(group) for axis in range(3)]
         around = [[places[k][axis] - centre[axis] for axis in range(3)] for k in group]
         alone = Receiver.omni(places[group[0]])
-        groups.append(Group(group, Receiver.array(centre, around) if len(group) > 1 else alone))
+        groups.append(MicrophoneGroup(group, Receiver.array(centre, around) if len(group) > 1 else alone))
     return groups
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
 from dwell.cli.common import (
-    Bar,
+    ProgressBar,
     add_back_end,
     back_end,
     count,
@@ -18,7 +18,7 @@ from dwell.cli.common import (
     point,
     print_json,
 )
-from dwell.cli.saving import save_picture, write_image
+from dwell.cli.write_files import save_picture, write_image
 
 if TYPE_CHECKING:
     from dwell.world import World
@@ -93,14 +93,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Renders, writes PNG (pictures) and NPY (exact depth and ids), and names the files."""
     from dwell.house import House
-    from dwell.house_names import HouseNames
+    from dwell.house_list import HouseList
     from dwell.world import World
 
     pictured, refused = args.map or args.dollhouse or args.sheet, 0
     if args.sensors is None and not (pictured and args.at is None):
         args.sensors = "rgb"
     channels = [] if args.sensors is None else [_sensor(name) for name in args.sensors.split(",")]
-    houses = HouseNames(args.house)
+    houses = HouseList(args.house)
     files: list[str] = []
     if args.sheet and len(houses) > 1:
         if channels or args.map or args.dollhouse:
@@ -134,7 +134,7 @@ def _sheet(args: argparse.Namespace, houses: Sequence[str]) -> tuple[list[str], 
     """The doll's houses of many; one that cannot be opened is told of and left out."""
     from dwell import DwellError, plans
 
-    tiles, bar, refused = [], Bar(), 0
+    tiles, bar, refused = [], ProgressBar(), 0
     for k, name in enumerate(houses):
         bar(k / len(houses), name)
         try:

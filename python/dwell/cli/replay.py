@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import PRESETS, Camera, Channel
-from dwell.cli.common import Bar, add_back_end, back_end, count, number, path, print_json
-from dwell.cli.saving import add_bits, save_sound, write_image
+from dwell.cli.common import ProgressBar, add_back_end, back_end, count, number, path, print_json
+from dwell.cli.write_files import add_bits, save_sound, write_image
 
 if TYPE_CHECKING:
-    from dwell.replays import Moment, Replay
+    from dwell.replays import ReplayStep, Replay
 
 #: Beside the pictures, what ``--sensors`` takes.
 _AUDIO = "audio"
@@ -75,7 +75,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _take(replay: Replay, args: argparse.Namespace, taker: _Taker) -> None:
-    bar = Bar()
+    bar = ProgressBar()
     for moment in replay.play(renderer=back_end(args)):
         bar(moment.step / max(len(replay.actions), 1), replay.house)
         taker.take(moment)
@@ -104,7 +104,7 @@ class _Taker:
         #: How samples of the written sound stand for pressure.
         self.sound: dict[str, Any] = {}
 
-    def take(self, moment: Moment) -> None:
+    def take(self, moment: ReplayStep) -> None:
         """Looks and listens at one step."""
         if self._channels and moment.step % self._every == 0:
             images = moment.world.render(agent=0, camera=self._camera, channels=self._channels)

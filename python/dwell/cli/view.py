@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from dwell.cli.common import count, path, print_json
-from dwell.files import atomic
+from dwell.files import atomic_write
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     if args.out is None:
         fill(None)
         return 0
-    with atomic(args.out) as path:
+    with atomic_write(args.out) as path:
         fill(path)
     if args.json:
         print_json({"file": str(args.out)})

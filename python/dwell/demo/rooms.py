@@ -7,7 +7,7 @@ from typing import Any
 
 from dwell.camera import Camera, Channel
 from dwell.house import House
-from dwell.pictures import picture
+from dwell.false_color import picture
 from dwell.world import World
 
 _CHANNELS: tuple[Channel, ...] = ("rgb", "depth", "instance")

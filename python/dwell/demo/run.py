@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError, plans
-from dwell.demo import calibrated, errand, figures, instructed, page, recording, rooms
+from dwell.demo import calibration, episode, throughput, instruction, page, recording, rooms
 from dwell.house import House
 
 Progress = Callable[[float, str], None]
@@ -59,21 +59,21 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
     progress(0.05, "looking into every room")
     story["rooms"] = rooms.pictures(house, folder)
     progress(0.15, "following an instruction")
-    story["instruction"] = instructed.follow(name, folder)
+    story["instruction"] = instruction.follow(name, folder)
     progress(0.3, "opening, taking, listening")
-    story["errand"] = errand.walk(house, folder, lambda part: progress(0.3 + 0.3 * part, "walking"))
+    story["errand"] = episode.run_episode(house, folder, lambda part: progress(0.3 + 0.3 * part, "walking"))
     ways = [("#1f7a6d", story["instruction"].get("way", [])), ("#c4532f", story["errand"]["way"])]
     world = story["errand"]["world"]
     plans.floor_plan(world, longest_edge=1000, ways=ways).save(folder / "map.png")
     plans.dollhouse(world, width=1000).save(folder / "dollhouse.png")
     progress(0.6, "finding a hidden error in measured data")
-    story["calibration"] = calibrated.example(
+    story["calibration"] = calibration.example(
         folder, lambda part: progress(0.6 + 0.15 * part, "fitting")
     )
     progress(0.75, "timing every stage")
-    story["figures"] = figures.measure(name, lambda part: progress(0.75 + 0.2 * part, "timing"))
+    story["figures"] = throughput.measure(name, lambda part: progress(0.75 + 0.2 * part, "timing"))
     progress(0.95, "recording for the Rerun viewer")
-    story["recording"] = recording.write(story["errand"], errand.CAMERA, folder)
+    story["recording"] = recording.write(story["errand"], episode.CAMERA, folder)
     (folder / "index.html").write_text(page.html(story), "utf-8")
     return {
         "house": name,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from dwell.pictures import scale_colors
+from dwell.false_color import scale_colors
 
 _WINDOW = 512
 _HOP = 160

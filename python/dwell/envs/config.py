@@ -12,11 +12,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, finite, mapping, shown, text, texts, to_json, whole
-from dwell.envs.custom import Native, RewardChoice, Sensors
+from dwell.arguments import fields, finite, mapping, quoted, text, texts, to_json, whole
+from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
-from dwell.house_names import HouseNames
-from dwell.settings import Laws, world_settings
+from dwell.house_list import HouseList
+from dwell.world_settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
 
@@ -67,13 +67,13 @@ def step_limit(value: object) -> int | None:
         return None
     if isinstance(value, bool) or number < 1:
         raise ConfigError(
-            f"max_episode_steps is {shown(value)}; allowed are whole numbers from 1, or None or -1 "
+            f"max_episode_steps is {quoted(value)}; allowed are whole numbers from 1, or None or -1 "
             "for episodes without a limit"
         )
     return min(number, 2**63 - 1)
 
 
-class HouseShelf:
+class HouseCache:
     """Houses by number.
 
     Those given by HOUSE string are opened at first use. The last :data:`KEPT` stay open, and those
@@ -87,7 +87,7 @@ class HouseShelf:
             given = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
         except TypeError:
             raise ConfigError(
-                f"houses is {shown(houses)}; expected HOUSE strings or Houses"
+                f"houses is {quoted(houses)}; expected HOUSE strings or Houses"
             ) from None
         if not given:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
@@ -97,7 +97,7 @@ class HouseShelf:
         #: All that are open, whoever keeps them.
         self._alive: weakref.WeakValueDictionary[str, House] = weakref.WeakValueDictionary()
         #: HOUSE strings; for a house that was handed over, its name, numbered where that is taken.
-        self.names = HouseNames()
+        self.names = HouseList()
         for k, row in enumerate(given):
             if isinstance(row, House):
                 is_taken = row.name in self.names
@@ -109,7 +109,7 @@ class HouseShelf:
                 self.names.append_name(os.fspath(row))
             else:
                 raise ConfigError(
-                    f"houses[{k}] is {shown(row)}; expected a HOUSE string or a House"
+                    f"houses[{k}] is {quoted(row)}; expected a HOUSE string or a House"
                 )
 
     @property
@@ -147,14 +147,14 @@ class HouseShelf:
         name, _, seed = (episode_id if isinstance(episode_id, str) else "").rpartition("#")
         if not re.fullmatch("[0-9]{1,20}", seed) or name not in self.names:
             raise ConfigError(
-                f"episode_id is {shown(episode_id)}; expected HOUSE#NUMBER, as info has it, of a "
-                f"house of this environment: {shown(self.names[:12])}"
+                f"episode_id is {quoted(episode_id)}; expected HOUSE#NUMBER, as info has it, of a "
+                f"house of this environment: {quoted(self.names[:12])}"
             )
         return self.names.index(name), whole("episode_id", int(seed))
 
 
 def env_json(
-    native: Native,
+    native: NativeSettings,
     *,
     laws: Laws = None,
     parameters: Mapping[str, float] | None = None,

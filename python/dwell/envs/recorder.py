@@ -24,7 +24,7 @@ from dwell.replays import MOST_STEPS, Replay
 _FULL = f"{MOST_STEPS} steps are written, all that a file holds; reset begins another"
 
 
-class _Running:
+class _EpisodeInProgress:
     """An episode that is being recorded."""
 
     def __init__(
@@ -152,7 +152,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         _refuse_what_files_cannot_name(self._env)
         self._folder = Path(path("folder", folder))
         make_folder(self._folder)
-        self._running: _Running | None = None
+        self._running: _EpisodeInProgress | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -161,7 +161,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], np.int64, dict[str, Any],
         self._write()
         observation, info = self.env.reset(seed=seed, options=options)
         instruction, state_hash = self._env.instruction(), self._env.state_hash()
-        self._running = _Running(self._env, info, instruction, state_hash)
+        self._running = _EpisodeInProgress(self._env, info, instruction, state_hash)
         return observation, info
 
     def step(self, action: np.int64) -> tuple[dict[str, Any], Any, bool, bool, dict[str, Any]]:
@@ -242,7 +242,7 @@ class VectorReplayRecorder(
         _refuse_what_files_cannot_name(self._envs)
         self._folder = Path(path("folder", folder))
         make_folder(self._folder)
-        self._running: dict[int, _Running] = {}
+        self._running: dict[int, _EpisodeInProgress] = {}
         self._envs._recorders.append(self)
 
     def began(self, envs: Sequence[int]) -> None:
@@ -252,7 +252,7 @@ class VectorReplayRecorder(
             self._write(k)
             info = {name: infos[name][k] for name in ("scene_id", "episode_id")}
             batch = self._envs._runner.batch
-            self._running[k] = _Running(self._envs, info, batch.instruction(k), batch.state_hash(k))
+            self._running[k] = _EpisodeInProgress(self._envs, info, batch.instruction(k), batch.state_hash(k))
 
     def check(self) -> None:
         """A step is about to be made.

@@ -10,8 +10,8 @@ import gymnasium
 from dwell import ConfigError, _native
 from dwell.arguments import refuse_unknown, text
 from dwell.envs.config import EnvSettings
-from dwell.envs.custom import TaskChoice
-from dwell.parts import factory
+from dwell.envs.python_tasks import TaskChoice
+from dwell.plugin_parts import factory
 from dwell.tasks import Task
 
 if TYPE_CHECKING:

@@ -17,16 +17,16 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, shown, to_json, whole
+from dwell.arguments import mapping, refuse_unknown, quoted, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
-from dwell.envs.custom import Custom, RewardChoice, Sensors, TaskChoice, split
-from dwell.envs.runner import GOAL_KEYS, INFO_KEYS, Runner
-from dwell.envs.saved import sealed, unsealed
+from dwell.envs.config import KEPT, Houses, HouseCache, arguments_of, env_json, step_limit
+from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
+from dwell.envs.snapshots import with_checksum, check_and_strip
 from dwell.envs.spaces import action_space
 from dwell.heads import Head
-from dwell.settings import Laws, with_head
-from dwell.telling import told_agents
+from dwell.world_settings import Laws, with_head
+from dwell.object_state_api import agent_states
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
@@ -109,7 +109,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._config = env_json(
             native, laws=laws, parameters=parameters, stride=stride, world=world
         )
-        self._shelf = HouseShelf(houses)
+        self._shelf = HouseCache(houses)
         threads = None if threads is None else whole("threads", threads, low=1)
         self._closed = False
         # Not of this environment: one that nobody holds any more goes at once, with its worlds.
@@ -129,7 +129,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             raise UsageError("this environment is closed; make a new one")
 
     @property
-    def _runner(self) -> Runner:
+    def _runner(self) -> NativeBatch:
         self._refuse_closed()
         return self._runner_of(self._house)
 
@@ -239,7 +239,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """
         episode_id = str(self._info()["episode_id"])
         parts = self._runner.saved_parts(0)
-        return sealed(b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0))))
+        return with_checksum(b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0))))
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
@@ -253,9 +253,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._refuse_closed()
         given: object = snapshot
         if not isinstance(given, bytes):
-            found = shown(given)
+            found = quoted(given)
             raise ConfigError(f"snapshot is {found}; expected the bytes of an environment's")
-        content = unsealed("snapshot refused", snapshot)
+        content = check_and_strip("snapshot refused", snapshot)
         episode_id, _, rest = content.partition(b"\0")
         parts, _, rest = rest.partition(b"\0")
         try:
@@ -277,7 +277,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
     def agents(self) -> list[dict[str, Any]]:
         """The agents' states, as :meth:`dwell.World.agents` tells them."""
-        return told_agents(self._runner.batch.agents_json(0))
+        return agent_states(self._runner.batch.agents_json(0))
 
     def describe(self, level: str = "house") -> list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
@@ -291,16 +291,16 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
 
 
 def _run(
-    shelf: HouseShelf,
+    shelf: HouseCache,
     config: str,
     threads: int | None,
     house: int,
     *,
-    custom: Custom,
+    custom: PythonTask,
     heads: Sequence[Head],
-) -> Runner:
+) -> NativeBatch:
     """What runs in a house of a shelf."""
-    return Runner([shelf[house]], config, threads, custom=custom, heads=heads)
+    return NativeBatch([shelf[house]], config, threads, custom=custom, heads=heads)
 
 
 def checked_render_mode(mode: object) -> str | None:
@@ -312,7 +312,7 @@ def checked_render_mode(mode: object) -> str | None:
     modes = DwellEnv.metadata["render_modes"]
     if mode is None or (isinstance(mode, str) and mode in modes):
         return mode
-    raise ConfigError(f"render_mode: found {shown(mode)}, allowed are None and {modes}")
+    raise ConfigError(f"render_mode: found {quoted(mode)}, allowed are None and {modes}")
 
 
 def _counters_around(env: DwellEnv) -> list[weakref.ref[TimeLimit[Any, Any]]]:

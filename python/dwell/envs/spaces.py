@@ -88,7 +88,7 @@ def shareable(space: spaces.Space[Any]) -> spaces.Space[Any]:
 
 
 @dataclasses.dataclass(frozen=True)
-class Spec:
+class SensorSpace:
     """What a sensor's observation looks like; the table of docs and spaces."""
 
     name: str
@@ -124,10 +124,10 @@ class Spec:
         return None if self.is_text else np.zeros((count, *self.shape), _DTYPES[self.dtype])
 
 
-def specs(batch: _native.Batch) -> list[Spec]:
+def specs(batch: _native.Batch) -> list[SensorSpace]:
     """The specifications of a batch's sensors, in order."""
     rows = json.loads(batch.specs_json())
-    return [Spec(**{**row, "shape": tuple(row["shape"])}) for row in rows]
+    return [SensorSpace(**{**row, "shape": tuple(row["shape"])}) for row in rows]
 
 
 def action_space() -> spaces.Discrete:

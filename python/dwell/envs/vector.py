@@ -13,17 +13,17 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, shown, some, to_json, whole
+from dwell.arguments import mapping, refuse_unknown, quoted, some, to_json, whole
 from dwell.camera import camera_settings
-from dwell.envs.config import KEPT, Houses, HouseShelf, arguments_of, env_json, step_limit
-from dwell.envs.custom import RewardChoice, Sensors, TaskChoice, split
-from dwell.envs.places import Places
-from dwell.envs.runner import INFO_KEYS, Runner
-from dwell.envs.saved import Saved
+from dwell.envs.config import KEPT, Houses, HouseCache, arguments_of, env_json, step_limit
+from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.house_assignment import HouseAssignment
+from dwell.envs.native_batch import INFO_KEYS, NativeBatch
+from dwell.envs.snapshots import BatchSnapshot
 from dwell.envs.single import RENDER_CAMERA, DwellEnv, checked_render_mode
 from dwell.envs.spaces import action_space
-from dwell.envs.stock import Stock
-from dwell.settings import Laws, with_head
+from dwell.envs.env_pool import EnvPool
+from dwell.world_settings import Laws, with_head
 
 
 class Recorder(Protocol):
@@ -49,7 +49,7 @@ def _autoreset_mode(mode: object) -> AutoresetMode:
         return AutoresetMode(mode)
     except ValueError:
         allowed = ", ".join(repr(one.value) for one in AutoresetMode)
-        raise ConfigError(f"autoreset_mode is {shown(mode)}; allowed are {allowed}") from None
+        raise ConfigError(f"autoreset_mode is {quoted(mode)}; allowed are {allowed}") from None
 
 
 class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]], EzPickle):
@@ -151,16 +151,16 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         world, heads = with_head(world)
         native, custom = split(task, task_settings, reward, sensors)
         config = env_json(native, laws=laws, parameters=parameters, stride=stride, world=world)
-        shelf = HouseShelf(houses)
+        shelf = HouseCache(houses)
         threads = None if threads is None else whole("threads", threads, low=1)
         if not isinstance(overlap, bool):
             raise ConfigError(f"overlap: found {overlap!r}, allowed are True and False")
         self._shelf = shelf
         self._config, self._custom, self._heads = config, custom, heads
-        self._playing = Runner(
+        self._playing = NativeBatch(
             [shelf[0]] * num_envs, config, threads, custom=custom, overlap=overlap, heads=heads
         )
-        self._places = Places(self._playing, Stock(shelf, config, heads, threads), load_ahead)
+        self._places = HouseAssignment(self._playing, EnvPool(shelf, config, heads, threads), load_ahead)
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.
@@ -176,7 +176,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self.action_space = batch_space(self.single_action_space, num_envs)
 
     @property
-    def _runner(self) -> Runner:
+    def _runner(self) -> NativeBatch:
         self._refuse_closed()
         return self._playing
 
@@ -264,7 +264,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 given = list(seed)
             except TypeError:
                 expected = "expected a whole number, or one for each environment"
-                raise ConfigError(f"seed is {shown(seed)}; {expected}") from None
+                raise ConfigError(f"seed is {quoted(seed)}; {expected}") from None
             seeds = [None if one is None else whole("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
@@ -284,7 +284,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if episodes is None:
             return None
         if isinstance(episodes, str) or not isinstance(episodes, Sequence | np.ndarray):
-            raise ConfigError(f"episode_id is {shown(episodes)}; {expected}")
+            raise ConfigError(f"episode_id is {quoted(episodes)}; {expected}")
         if len(episodes) != self.num_envs:
             raise ConfigError(f"episode_id: found {len(episodes)}; {expected}")
         return {
@@ -327,7 +327,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             numbers = np.asarray(actions)
         except ValueError:
             raise ConfigError(
-                f"actions are {shown(actions)}; expected whole numbers of shape ({self.num_envs},)"
+                f"actions are {quoted(actions)}; expected whole numbers of shape ({self.num_envs},)"
             ) from None
         if numbers.shape != (self.num_envs,) or numbers.dtype.kind not in "iu":
             raise ConfigError(
@@ -372,7 +372,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 infos = self._add_info(infos, dict(row), k)
             except (OverflowError, TypeError, ValueError) as error:
                 raise ConfigError(
-                    f"info of environment {k} is {shown(dict(row))}; expected values that one "
+                    f"info of environment {k} is {quoted(dict(row))}; expected values that one "
                     f"array for each name holds, of one kind in all environments: {error}"
                 ) from None
         self._done = terminated | truncated
@@ -417,7 +417,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         for k, (seed, stream) in enumerate(zip(self._seeds, self._streams, strict=True)):
             if seed is None or stream is None or self._stopped[k]:
                 raise UsageError(f"snapshot: no episode of environment {k} has begun; reset it")
-            saved = Saved(
+            saved = BatchSnapshot(
                 episode_id=self._places.episode_id(k, seed),
                 done=bool(self._done[k]),
                 stream=stream,
@@ -447,14 +447,14 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         given: object = snapshots
         if not isinstance(given, list | tuple) or len(given) != self.num_envs:
             raise ConfigError(
-                f"snapshots is {shown(given, 60)}; expected a list of {self.num_envs}: bytes, or "
+                f"snapshots is {quoted(given, 60)}; expected a list of {self.num_envs}: bytes, or "
                 "None, for each environment"
             )
-        rows: dict[int, tuple[Saved, int, int]] = {}
+        rows: dict[int, tuple[BatchSnapshot, int, int]] = {}
         for k, snapshot in enumerate(given):
             if snapshot is None:
                 continue
-            saved = Saved.of_bytes(f"snapshots[{k}]", snapshot)
+            saved = BatchSnapshot.of_bytes(f"snapshots[{k}]", snapshot)
             try:
                 rows[k] = saved, *self._shelf.episode(saved.episode_id)
             except ConfigError as error:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.files import atomic, is_draft, lines, lock, open_file, parse_json, read_json
+from dwell.files import atomic_write, is_draft, lines, lock, open_file, parse_json, read_json
 
 _JOB, _DONE = "job", "done"
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -26,7 +26,7 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
     refuse_other(out, dataset)
     path = out / _DATASET
     if not path.exists():
-        with contextlib.suppress(FileExistsError), atomic(path, new=True) as draft:
+        with contextlib.suppress(FileExistsError), atomic_write(path, new=True) as draft:
             draft.write_text(json.dumps(dataset, indent=2) + "\n", "utf-8")
         refuse_other(out, dataset)
 
@@ -145,7 +145,7 @@ class Journal:
         # Locked to the end: another process of this job finds the result, or this journal.
         with self._file:
             self._file.flush()
-            with atomic(self._out) as path, path.open("wb") as result:
+            with atomic_write(self._out) as path, path.open("wb") as result:
                 for line in self._rows():
                     result.write(line)
             os.unlink(self._path)

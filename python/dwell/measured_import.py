@@ -15,11 +15,11 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from dwell import cells
+from dwell import csv_values
 from dwell.arguments import finite
 from dwell.files import open_file, read_json
 
-Row = dict[str, Any]
+CsvRow = dict[str, Any]
 
 #: A table has at most so many bytes, as for the reader of bundles.
 _MOST_BYTES = 256 * 2**20
@@ -27,7 +27,7 @@ _MOST_BYTES = 256 * 2**20
 #: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known". Times in
 #: milliseconds have ``seconds_per_unit`` 0.001, lengths in millimetres ``metres_per_unit`` 0.001,
 #: angles in degrees ``radians_per_unit`` 0.017453292519943295.
-TEMPLATE: Row = {
+TEMPLATE: CsvRow = {
     "kind": "pose_trajectory",
     "title": "what was measured, in a line",
     "licence": "of the data",
@@ -64,7 +64,7 @@ TEMPLATE: Row = {
     },
 }
 #: The same for flights of balls, one height or all three coordinates.
-FLIGHT: Row = {
+FLIGHT: CsvRow = {
     "kind": "trajectory",
     "title": "what was measured, in a line",
     "licence": "of the data",
@@ -89,7 +89,7 @@ FLIGHT: Row = {
 }
 
 #: The same for drives of a robot on two wheels; the ticks are counts since the sample before.
-DRIVE: Row = {
+DRIVE: CsvRow = {
     "kind": "drive",
     "title": "what was measured, in a line",
     "licence": "of the data",
@@ -154,14 +154,14 @@ def import_files(
     return counts
 
 
-def read_map(path: Path) -> Row:
+def read_map(path: Path) -> CsvRow:
     """The map, with every key known."""
     mapping = read_json(path)
     kind = mapping.get("kind") if isinstance(mapping, dict) else None
     if not isinstance(kind, str) or kind not in TEMPLATES:
         raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(TEMPLATES)}")
-    known(mapping, TEMPLATES[kind], str(path))
-    result: Row = mapping
+    known_columns(mapping, TEMPLATES[kind], str(path))
+    result: CsvRow = mapping
     return result
 
 
@@ -174,7 +174,7 @@ _KINDS: dict[type, tuple[tuple[type, ...], str]] = {
 }
 
 
-def known(found: Row, template: Row, at: str) -> None:
+def known_columns(found: CsvRow, template: CsvRow, at: str) -> None:
     """Refuses keys that the template lacks."""
     for key, value in found.items():
         if key not in template:
@@ -182,52 +182,52 @@ def known(found: Row, template: Row, at: str) -> None:
         if isinstance(template[key], dict) and key != "channels" and value is not None:
             if not isinstance(value, dict):
                 raise ValueError(f"{at}: {key} is {value!r:.60}; an object is needed")
-            known(value, template[key], f"{at}: {key}")
+            known_columns(value, template[key], f"{at}: {key}")
         kinds, expected = _KINDS.get(type(template[key]), ((object,), ""))
         if value is not None and (isinstance(value, bool) or not isinstance(value, kinds)):
             raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
 
 
-def need(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
+def require_columns(mapping: Mapping[str, Any], key: str, at: str) -> Any:  # noqa: ANN401 - any JSON value
     """A key that must be there."""
     if mapping.get(key) is None:
         raise ValueError(f"{at}: {key!r} is missing")
     return mapping[key]
 
 
-class Table:
+class MeasuredTable:
     """A table's rows, with their places."""
 
     def __init__(self, part: Mapping[str, Any], tables: Mapping[str, Path], at: str) -> None:
         """Finds the file that the map names among those that were given."""
-        name = need(part, "file", at)
+        name = require_columns(part, "file", at)
         if name not in tables:
             raise ValueError(f"{at}: file {name!r} was not given; given are {sorted(tables)}")
         self.path = tables[name]
         self.delimiter = ","
         if self.path.suffix == ".csv":
-            self.delimiter = cells.delimiter_of(head_of(self.path))
+            self.delimiter = csv_values.delimiter_of(head_of(self.path))
         self.columns, self._rows = open_table(self.path, self.delimiter)
 
-    def __iter__(self) -> Iterator[tuple[str, Row]]:
+    def __iter__(self) -> Iterator[tuple[str, CsvRow]]:
         """Places and rows."""
         for number, row in self._rows:
             yield f"{self.path} row {number}", row
 
     def has(self, names: list[str]) -> None:
         """Refuses columns that are not there."""
-        cells.has(self.path, self.columns, names)
+        csv_values.has(self.path, self.columns, names)
 
-    def number(self, at: str, row: Row, column: str) -> float:
+    def number(self, at: str, row: CsvRow, column: str) -> float:
         """A finite number in a column."""
-        return cells.number(at, row, column, self.delimiter)
+        return csv_values.number(at, row, column, self.delimiter)
 
-    def numbers(self, at: str, row: Row, columns: list[str]) -> list[float]:
+    def numbers(self, at: str, row: CsvRow, columns: list[str]) -> list[float]:
         """Several columns."""
         return [self.number(at, row, column) for column in columns]
 
 
-def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[int, Row]]]:
+def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[int, CsvRow]]]:
     """Columns and rows, counted from 1, of a CSV or Parquet file."""
     if path.suffix == ".parquet":
         try:
@@ -248,7 +248,7 @@ def open_table(path: Path, delimiter: str) -> tuple[list[str], Iterator[tuple[in
     return columns, csv_rows(path, columns, delimiter)
 
 
-def parquet_rows(path: Path) -> Iterator[tuple[int, Row]]:
+def parquet_rows(path: Path) -> Iterator[tuple[int, CsvRow]]:
     """The rows of a Parquet file, counted from 1."""
     import pyarrow.parquet as parquet
 
@@ -268,10 +268,10 @@ def head_of(path: Path) -> str:
         with opened(path) as file:
             return file.readline()
     except UnicodeDecodeError as error:
-        raise cells.not_text(path, error) from None
+        raise csv_values.not_text(path, error) from None
 
 
-def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[int, Row]]:
+def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[int, CsvRow]]:
     """The rows of a CSV file below its head, counted from 1."""
     try:
         with opened(path) as file:
@@ -288,10 +288,10 @@ def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[i
     except csv.Error as error:
         raise ValueError(f"{path} line {reader.line_num}: {error}") from None
     except UnicodeDecodeError as error:
-        raise cells.not_text(path, error) from None
+        raise csv_values.not_text(path, error) from None
 
 
-def scale(part: Row, key: str, at: str) -> float:
+def scale(part: CsvRow, key: str, at: str) -> float:
     """How many SI units one unit of a column has; 1 where the map does not say."""
     value = part.get(key)
     found = 1.0 if value is None else finite(f"{at}: {key}", value)
@@ -315,9 +315,9 @@ def turned_rotation(q: list[float], up: str) -> list[float]:
     return [half * (x - w), half * (y + z), half * (z - y), half * (w + x)]
 
 
-def columns_of(part: Row, key: str, count: int, at: str) -> list[str]:
+def columns_of(part: CsvRow, key: str, count: int, at: str) -> list[str]:
     """The names of several columns."""
-    found = need(part, key, at)
+    found = require_columns(part, key, at)
     if not isinstance(found, list) or len(found) != count:
         raise ValueError(f"{at}: {key} is {found!r}; {count} names of columns are needed")
     return [str(name) for name in found]
@@ -343,10 +343,10 @@ def table_file(folder: Path, name: str, head: str) -> Iterator[Callable[[list[st
 
 
 def write_common(
-    mapping: Row,
+    mapping: CsvRow,
     folder: Path,
-    scene: Row,
-    more: Row,
+    scene: CsvRow,
+    more: CsvRow,
     groups: dict[str, str],
     conditions: Mapping[str, str] | None = None,
 ) -> None:
@@ -367,7 +367,7 @@ def write_common(
 
 
 def pose_bundle(
-    mapping: Row,
+    mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
     folder: Path,
@@ -377,19 +377,19 @@ def pose_bundle(
     up = mapping.get("up", "y")
     if up not in ("y", "z"):
         raise ValueError(f"{at}: up is {up!r}; allowed is 'y' or 'z'")
-    part, here = need(mapping, "table", at), f"{at}: table"
-    body, form = need(mapping, "body", at), need(mapping, "poses", at)
-    table = Table(part, tables, here)
+    part, here = require_columns(mapping, "table", at), f"{at}: table"
+    body, form = require_columns(mapping, "body", at), require_columns(mapping, "poses", at)
+    table = MeasuredTable(part, tables, here)
     place = columns_of(part, "position", 3, here)
     quaternion = columns_of(part, "quaternion_xyzw", 4, here)
     rates = [
         columns_of(part, key, 3, here) if part.get(key) else []
         for key in ("velocity", "angular_velocity")
     ]
-    episode, clock = need(part, "episode", here), need(part, "t_s", here)
+    episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *place, *quaternion, *rates[0], *rates[1]])
-    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
     metres = scale(part, "metres_per_unit", here)
     radians = scale(part, "radians_per_unit", here)
     in_body = form.get("angular_velocity") == "body"
@@ -418,13 +418,13 @@ def pose_bundle(
         progress(0.7, "starts")
         units = (metres, radians)
         write_starts(mapping["starts"], f"{at}: starts", tables, folder, (up, in_body), units)
-    scene = {"bodies": [body], "board": need(mapping, "board", at)}
+    scene = {"bodies": [body], "board": require_columns(mapping, "board", at)}
     write_common(mapping, folder, scene, {"poses": form}, groups)
     return {"rows": rows, "episodes": len(groups), "left_out": 0}
 
 
 def write_starts(
-    part: Row,
+    part: CsvRow,
     at: str,
     tables: Mapping[str, Path],
     folder: Path,
@@ -433,10 +433,10 @@ def write_starts(
 ) -> None:
     """Where episodes are rolled out from; units are those of the table."""
     (up, in_body), (metres, radians) = frames, units
-    table = Table(part, tables, at)
+    table = MeasuredTable(part, tables, at)
     linear = columns_of(part, "velocity", 3, at)
     angular = columns_of(part, "angular_velocity", 3, at)
-    episode, sample = need(part, "episode", at), need(part, "sample", at)
+    episode, sample = require_columns(part, "episode", at), require_columns(part, "sample", at)
     table.has([episode, sample, *linear, *angular])
     with table_file(folder, "starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz") as write:
         for where, row in table:
@@ -448,19 +448,19 @@ def write_starts(
 
 
 def flight_bundle(
-    mapping: Row,
+    mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
     folder: Path,
     progress: Callable[[float, str], None],
 ) -> dict[str, int]:
     """Flights of balls; episodes whose ball has no mass or diameter are left out."""
-    part, here = need(mapping, "table", at), f"{at}: table"
-    about, there = need(mapping, "bodies", at), f"{at}: bodies"
-    names = [need(about, key, there) for key in ("episode", "name", "mass_kg", "diameter_m")]
-    listed = Table(about, tables, there)
+    part, here = require_columns(mapping, "table", at), f"{at}: table"
+    about, there = require_columns(mapping, "bodies", at), f"{at}: bodies"
+    names = [require_columns(about, key, there) for key in ("episode", "name", "mass_kg", "diameter_m")]
+    listed = MeasuredTable(about, tables, there)
     listed.has(names)
-    bodies: dict[str, Row] = {}
+    bodies: dict[str, CsvRow] = {}
     body_of: dict[str, str] = {}
     for where, row in listed:
         if not row[names[2]] or not row[names[3]] or row[names[2]] in ("nan", "NaN"):
@@ -474,12 +474,12 @@ def flight_bundle(
             f"{listed.path}: no row has both {names[2]!r} (kg) and {names[3]!r} (m); flights of "
             "bodies without them are left out: fill them in"
         )
-    table = Table(part, tables, here)
-    channels = need(part, "channels", here)
-    episode, clock = need(part, "episode", here), need(part, "t_s", here)
+    table = MeasuredTable(part, tables, here)
+    channels = require_columns(part, "channels", here)
+    episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])
-    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
     metres = scale(part, "metres_per_unit", here)
     groups: dict[str, str] = {}
     left_out: set[str] = set()
@@ -511,32 +511,32 @@ def flight_bundle(
 
 
 def drive_bundle(
-    mapping: Row,
+    mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
     folder: Path,
     progress: Callable[[float, str], None],
 ) -> dict[str, int]:
     """Drives of a robot on two wheels, with the sessions and paths that a second table lists."""
-    part, here = need(mapping, "table", at), f"{at}: table"
-    base, listing = dict(need(mapping, "base", at)), need(mapping, "episodes", at)
-    ticks = need(base, "ticks_per_turn", f"{at}: base")
+    part, here = require_columns(mapping, "table", at), f"{at}: table"
+    base, listing = dict(require_columns(mapping, "base", at)), require_columns(mapping, "episodes", at)
+    ticks = require_columns(base, "ticks_per_turn", f"{at}: base")
     if not isinstance(ticks, int | float) or not ticks > 0:
         raise ValueError(f"{at}: base: ticks_per_turn is {ticks!r}; a number above 0 is needed")
     rad_per_tick = 2.0 * math.pi / base.pop("ticks_per_turn")
     names = [
-        need(listing, key, f"{at}: episodes") for key in ("episode", "split_group", "conditions")
+        require_columns(listing, key, f"{at}: episodes") for key in ("episode", "split_group", "conditions")
     ]
-    listed = Table(listing, tables, f"{at}: episodes")
+    listed = MeasuredTable(listing, tables, f"{at}: episodes")
     listed.has(names)
     rows_of = {text(row[names[0]]): row for _, row in listed}
-    table = Table(part, tables, here)
+    table = MeasuredTable(part, tables, here)
     place = columns_of(part, "position", 2, here)
-    heading, clock = need(part, "heading_rad", here), need(part, "t_s", here)
-    wheels = [need(part, key, here) for key in ("ticks_left", "ticks_right")]
-    episode = need(part, "episode", here)
+    heading, clock = require_columns(part, "heading_rad", here), require_columns(part, "t_s", here)
+    wheels = [require_columns(part, key, here) for key in ("ticks_left", "ticks_right")]
+    episode = require_columns(part, "episode", here)
     table.has([episode, clock, *place, heading, *wheels])
-    times = cells.Clock(clock, scale(part, "seconds_per_unit", here))
+    times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
     metres = scale(part, "metres_per_unit", here)
     radians = scale(part, "radians_per_unit", here)
     groups: dict[str, str] = {}
@@ -565,5 +565,5 @@ def drive_bundle(
 
 
 #: What each kind of map looks like, and what writes its bundle.
-TEMPLATES: dict[str, Row] = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT, "drive": DRIVE}
+TEMPLATES: dict[str, CsvRow] = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT, "drive": DRIVE}
 WRITERS = {"pose_trajectory": pose_bundle, "trajectory": flight_bundle, "drive": drive_bundle}

@@ -10,9 +10,9 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.envs.custom import Custom, Play
+from dwell.envs.python_tasks import PythonTask, PythonEpisode
 from dwell.envs.spaces import shareable, specs
-from dwell.envs.stock import Spare, add_heads
+from dwell.envs.env_pool import PreparedEnv, add_heads
 from dwell.heads import Head
 from dwell.house import House
 
@@ -32,7 +32,7 @@ INFO_KEYS = (
 GOAL_KEYS = ("distance_to_goal", "spl", "soft_spl")
 
 
-class Runner:
+class NativeBatch:
     """Native environments with their Python parts, and the arrays they write into."""
 
     def __init__(
@@ -41,7 +41,7 @@ class Runner:
         config: str,
         threads: int | None,
         *,
-        custom: Custom | None = None,
+        custom: PythonTask | None = None,
         overlap: bool = False,
         heads: Sequence[Head] = (),
     ) -> None:
@@ -54,8 +54,8 @@ class Runner:
         self.specs = specs(self.batch)
         self.buffers: list[NDArray[Any] | None] = [spec.buffer(self.count) for spec in self.specs]
         self.plays = (
-            [Play(self.batch, k, house, custom) for k, house in enumerate(houses)]
-            if custom is not None and custom != Custom()
+            [PythonEpisode(self.batch, k, house, custom) for k, house in enumerate(houses)]
+            if custom is not None and custom != PythonTask()
             else []
         )
         native = {spec.name: spec.space() for spec in self.specs}
@@ -70,7 +70,7 @@ class Runner:
             for name, space in own.items()
         }
 
-    def move(self, env: int, spare: Spare) -> None:
+    def move(self, env: int, spare: PreparedEnv) -> None:
         """Puts ``spare`` in the place of an environment, which is in another house from then on."""
         self.batch.put(env, spare.native)
         self.houses[env] = spare.house

@@ -11,7 +11,7 @@ from typing import overload
 from dwell import ConfigError, _native
 
 
-class HouseNames(Sequence[str]):
+class HouseList(Sequence[str]):
     """HOUSE strings in order; ``seed:A..B`` stands for its houses and takes no memory for them.
 
     >>> from dwell.house_names import HouseNames

@@ -8,7 +8,7 @@ from dwell import _native
 from dwell.arguments import point, text, whole
 
 
-class Guiding:
+class GuideApi:
     """The part of a world that leads agents."""
 
     _native: _native.World

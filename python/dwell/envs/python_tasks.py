@@ -13,9 +13,9 @@ import numpy as np
 from gymnasium import spaces
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import finite, flag, from_json, mapping, shown, text, to_json
+from dwell.arguments import finite, flag, from_json, mapping, quoted, text, to_json
 from dwell.house import House
-from dwell.parts import factory
+from dwell.plugin_parts import factory
 from dwell.rewards import Reward
 from dwell.sensors import Sensor
 from dwell.tasks import Ask, Task, Verdict
@@ -42,7 +42,7 @@ _SPACES = (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary
 
 
 @dataclasses.dataclass(frozen=True)
-class Custom:
+class PythonTask:
     """What makes the Python parts of an environment; empty for most."""
 
     task: Callable[[], Task] | None = None
@@ -55,7 +55,7 @@ class Custom:
 
 
 @dataclasses.dataclass(frozen=True)
-class Native:
+class NativeSettings:
     """What the engine is told of task and sensors."""
 
     task: str
@@ -68,7 +68,7 @@ def split(
     settings: Mapping[str, Any] | None,
     reward: RewardChoice,
     sensors: Sensors,
-) -> tuple[Native, Custom]:
+) -> tuple[NativeSettings, PythonTask]:
     """Parts what the engine does from what is played in Python."""
     make_task = None
     if not isinstance(task, str) or ":" in task:
@@ -78,7 +78,7 @@ def split(
         sensors = one.sensors if sensors is None else sensors
     names, own = _sensors(sensors)
     make_reward = None if reward is None else factory("reward", reward, Reward)  # type: ignore[type-abstract] # its kind
-    return Native(task, settings, names), Custom(make_task, make_reward, own)
+    return NativeSettings(task, settings, names), PythonTask(make_task, make_reward, own)
 
 
 def _sensors(
@@ -100,7 +100,7 @@ def _sensors(
     try:
         rows = list(sensors)
     except TypeError:
-        raise ConfigError(f"sensors is {shown(sensors)}; expected names or classes") from None
+        raise ConfigError(f"sensors is {quoted(sensors)}; expected names or classes") from None
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) or ":" in row:
@@ -119,10 +119,10 @@ def _named(name: str, make: Callable[[], Sensor]) -> Callable[[], Sensor]:
     return made
 
 
-class Play:
+class PythonEpisode:
     """The Python parts of one environment, and the world that they look at."""
 
-    def __init__(self, batch: _native.Batch, env: int, house: House, custom: Custom) -> None:
+    def __init__(self, batch: _native.Batch, env: int, house: House, custom: PythonTask) -> None:
         """Makes the parts of environment ``env``."""
         self._batch = batch
         self._env = env
@@ -164,7 +164,7 @@ class Play:
             return
         if not isinstance(asked, Ask):
             raise ConfigError(
-                f"{self._name()}.reset gave {shown(asked)}; expected a dwell.Ask or None"
+                f"{self._name()}.reset gave {quoted(asked)}; expected a dwell.Ask or None"
             )
         distance_m = asked.distance_m
         if distance_m is not None:
@@ -225,7 +225,7 @@ class Play:
         names = _native.actions()
         if name not in names:
             raise ConfigError(
-                f"the expert's action is {shown(name)}; allowed are {', '.join(names)}"
+                f"the expert's action is {quoted(name)}; allowed are {', '.join(names)}"
             )
         return names.index(name)
 
@@ -306,7 +306,7 @@ def _refuse_what_changes(at: str, value: object) -> None:
     if isinstance(value, dict):
         for key, part in value.items():
             if not isinstance(key, str):
-                raise ConfigError(f"{at} has the key {shown(key)}; a snapshot holds keys of text")
+                raise ConfigError(f"{at} has the key {quoted(key)}; a snapshot holds keys of text")
             _refuse_what_changes(f"{at}[{key!r:.60}]", part)
     elif isinstance(value, list):
         for k, part in enumerate(value):
@@ -315,14 +315,14 @@ def _refuse_what_changes(at: str, value: object) -> None:
         text(at, value)
     elif not (value is None or isinstance(value, int | float | np.number | np.bool_)):
         raise ConfigError(
-            f"{at} is {shown(value)}; a snapshot holds numbers, text, lists and dicts: of "
+            f"{at} is {quoted(value)}; a snapshot holds numbers, text, lists and dicts: of "
             "an array, keep its tolist(), of a tuple a list"
         )
 
 
 def _checked(task: str, verdict: object) -> Verdict:
     if not isinstance(verdict, Verdict):
-        raise ConfigError(f"{task}.judge gave {shown(verdict)}; expected a dwell.Verdict")
+        raise ConfigError(f"{task}.judge gave {quoted(verdict)}; expected a dwell.Verdict")
     distance_m = verdict.distance_m
     return dataclasses.replace(
         verdict,
@@ -354,7 +354,7 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
     # A Discrete space wants its elements as scalars.
     is_scalar = isinstance(space, spaces.Discrete) and element is not None and element.shape == ()
     if element is None or not space.contains(element[()] if is_scalar else element):
-        raise ConfigError(f"{at} observed {shown(value)}; its space is {space}")
+        raise ConfigError(f"{at} observed {quoted(value)}; its space is {space}")
     return element
 
 
@@ -370,5 +370,5 @@ def _add(
         raise ConfigError(f"observations: found {name!r} twice; allowed is each name once")
     if not isinstance(space, _SPACES):
         known = ", ".join(kind.__name__ for kind in _SPACES)
-        raise ConfigError(f"{at} is {shown(space)}; allowed are {known}")
+        raise ConfigError(f"{at} is {quoted(space)}; allowed are {known}")
     found[name] = space

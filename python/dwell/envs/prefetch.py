@@ -8,17 +8,17 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import Generic, TypeVar
 
 _Key = TypeVar("_Key", bound=Hashable)
-_Made = TypeVar("_Made")
+_Prepared = TypeVar("_Made")
 
 
-class Ahead(Generic[_Key, _Made]):
+class Prefetcher(Generic[_Key, _Prepared]):
     """Makes things in a thread before they are wanted, at most so many.
 
     The thread lives as long as there is something to make. A forked child has none of it: what was
     made is there, what was not begins anew.
     """
 
-    def __init__(self, make: Callable[[_Key], _Made], most: int) -> None:
+    def __init__(self, make: Callable[[_Key], _Prepared], most: int) -> None:
         """Makes nothing yet.
 
         Args:
@@ -27,7 +27,7 @@ class Ahead(Generic[_Key, _Made]):
         """
         self._make = make
         self._most = most
-        self._made: dict[_Key, tuple[_Made | None, BaseException | None]] = {}
+        self._made: dict[_Key, tuple[_Prepared | None, BaseException | None]] = {}
         self._wanted: list[_Key] = []
         self._begin()
 
@@ -66,7 +66,7 @@ class Ahead(Generic[_Key, _Made]):
                     return
                 key = self._making
             try:
-                one: tuple[_Made | None, BaseException | None] = self._make(key), None
+                one: tuple[_Prepared | None, BaseException | None] = self._make(key), None
             except BaseException as error:
                 one = None, error
             with self._changed:
@@ -76,7 +76,7 @@ class Ahead(Generic[_Key, _Made]):
                 self._changed.notify_all()
             del one
 
-    def take(self, key: _Key) -> _Made | None:
+    def take(self, key: _Key) -> _Prepared | None:
         """What was made of a key, once it is done; ``None`` where nobody has begun.
 
         Raises:

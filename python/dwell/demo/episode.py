@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from dwell import DwellError
 from dwell.actions import Outcome
 from dwell.camera import Camera
-from dwell.demo.film import save_film
+from dwell.demo.animation import save_film
 from dwell.demo.spectrogram import save_spectrogram
 from dwell.house import House
 from dwell.sounds import write_wav
@@ -29,7 +29,7 @@ _LONGEST = 520
 _SILENCE_DB = 0.0
 
 
-class Walker:
+class DemoAgent:
     """An agent that is led through a world, with what it saw, heard and did."""
 
     def __init__(self, house: House) -> None:
@@ -101,7 +101,7 @@ def _distance(a: list[float], b: list[float]) -> float:
     return float(np.hypot(a[0] - b[0], a[2] - b[2]))
 
 
-def _open_a_door(walker: Walker) -> None:
+def _open_a_door(walker: DemoAgent) -> None:
     here = walker.position()
     doors = [
         thing
@@ -140,7 +140,7 @@ def _nothing(what: str, sentence: str) -> dict[str, Any]:
     return {"what": what, "success": False, "code": "none", "sentence": sentence, "time_s": 0.0}
 
 
-def _take_and_drop(walker: Walker) -> None:
+def _take_and_drop(walker: DemoAgent) -> None:
     here = walker.position()
     things = [
         thing
@@ -187,7 +187,7 @@ def _level_db(sound: NDArray[Any]) -> float | None:
     return round(level, 1) if level > _SILENCE_DB else None
 
 
-def _visit_a_sound(walker: Walker) -> None:
+def _visit_a_sound(walker: DemoAgent) -> None:
     """Goes to the radio, or to whatever else sounds, and tells what is heard there."""
     here = walker.position()
     sources = [thing for thing in walker.world.objects() if thing["sounds"]]
@@ -227,9 +227,9 @@ def _visit_a_sound(walker: Walker) -> None:
     )
 
 
-def walk(house: House, folder: Path, progress: Callable[[float], None]) -> dict[str, Any]:
+def run_episode(house: House, folder: Path, progress: Callable[[float], None]) -> dict[str, Any]:
     """Runs the errand; writes its film, its sound and the sound's picture."""
-    walker = Walker(house)
+    walker = DemoAgent(house)
     for k, part in enumerate((_open_a_door, _take_and_drop, _visit_a_sound)):
         part(walker)
         progress((k + 1) / 3)

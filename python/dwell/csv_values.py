@@ -62,11 +62,11 @@ def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> f
         return found
     raise ValueError(
         f"{at}: column {column!r} {'is empty' if told in (None, '') else f'is {value!r}'}; "
-        f"a finite number is needed{way_out(told)}"
+        f"a finite number is needed{suggested_fix(told)}"
     )
 
 
-def way_out(told: object) -> str:
+def suggested_fix(told: object) -> str:
     """What to change about a cell that is no finite number."""
     if told in (None, "") or (isinstance(told, float) and math.isnan(told)):
         return MISSING
@@ -90,7 +90,7 @@ MISSING = (
 )
 
 
-class Clock:
+class TimeParser:
     """Times of samples, s: they rise from row to row of an episode."""
 
     def __init__(self, column: str, seconds_per_unit: float) -> None:

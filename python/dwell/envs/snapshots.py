@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import flag, mapping, shown, text, to_json
+from dwell.arguments import flag, mapping, quoted, text, to_json
 
 #: What the bytes begin with, and the number of their form.
 _HEAD = b"dwvec2"
 
 
 @dataclasses.dataclass(frozen=True)
-class Saved:
+class BatchSnapshot:
     """One environment of several as it was at a moment."""
 
     episode_id: str
@@ -38,25 +38,25 @@ class Saved:
             "stream": self.stream.bit_generator.state,
         }
         return b"\0".join(
-            (_HEAD, sealed(b"\0".join((to_json(told).encode(), self.parts, self.world))))
+            (_HEAD, with_checksum(b"\0".join((to_json(told).encode(), self.parts, self.world))))
         )
 
     @classmethod
-    def of_bytes(cls, name: str, snapshot: object) -> Saved:
+    def of_bytes(cls, name: str, snapshot: object) -> BatchSnapshot:
         """What :meth:`to_bytes` wrote; ``name``: what it is called, for errors.
 
         Raises:
             ConfigError: It is something else.
         """
         if not isinstance(snapshot, bytes):
-            raise ConfigError(f"{name} is {shown(snapshot, 60)}; expected bytes of snapshot()")
+            raise ConfigError(f"{name} is {quoted(snapshot, 60)}; expected bytes of snapshot()")
         head, _, rest = snapshot.partition(b"\0")
         at = f"{name}: snapshot refused"
         if not snapshot:
             raise ConfigError(f"{at}: it is empty")
         if head != _HEAD:
             raise ConfigError(f"{at}: it is none of a vector environment of this version")
-        about, _, rest = unsealed(at, rest).partition(b"\0")
+        about, _, rest = check_and_strip(at, rest).partition(b"\0")
         parts, _, world = rest.partition(b"\0")
         try:
             told = mapping(at, json.loads(about))
@@ -70,16 +70,16 @@ class Saved:
         except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
             if isinstance(error, ConfigError):
                 raise
-            raise ConfigError(f"{at}: {shown(error)}") from None
+            raise ConfigError(f"{at}: {quoted(error)}") from None
 
 
-def sealed(content: bytes) -> bytes:
+def with_checksum(content: bytes) -> bytes:
     """Content behind its check sum, which finds what was damaged, not what was forged."""
     return b"\0".join((_sum(content), content))
 
 
-def unsealed(at: str, sealed_content: bytes) -> bytes:
-    """The content of :func:`sealed`.
+def check_and_strip(at: str, sealed_content: bytes) -> bytes:
+    """The content of :func:`with_checksum`.
 
     Raises:
         ConfigError: It is something else, or was damaged.

@@ -10,7 +10,7 @@ from dwell import _native
 from dwell.arguments import text, whole
 
 
-class Telling:
+class StateApi:
     """The agents and objects of a world, as they are now."""
 
     _native: _native.World
@@ -29,7 +29,7 @@ class Telling:
             :meth:`set_parameters` set. ``base``: its wheels, as ``wheel_rad_s``,
             ``wheel_turned_rad`` (left, right), ``twist`` and ``odometry``.
         """
-        return told_agents(self._native.agents_json())
+        return agent_states(self._native.agents_json())
 
     def objects(self) -> list[dict[str, Any]]:
         """What there is, as it is now: a mapping for each object.
@@ -78,7 +78,7 @@ class Telling:
         return found
 
 
-def told_agents(agents_json: str) -> list[dict[str, Any]]:
+def agent_states(agents_json: str) -> list[dict[str, Any]]:
     """The engine's states of agents, with their angles in degrees, too."""
     agents: list[dict[str, Any]] = json.loads(agents_json)
     for agent in agents:

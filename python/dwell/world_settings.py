@@ -12,7 +12,7 @@ from typing import Any
 
 from dwell import _native
 from dwell._native import ConfigError
-from dwell.arguments import fields, finite, mapping, path, shown, text, whole
+from dwell.arguments import fields, finite, mapping, path, quoted, text, whole
 from dwell.configs import WorldSettings, bodies, checked
 from dwell.files import read_json
 from dwell.heads import Head, head_of
@@ -86,7 +86,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         or not isinstance(laws, Sequence)
         or not all(isinstance(law, str | Mapping) for law in laws)
     ):
-        raise ConfigError(f"{at}: found {shown(laws)}; {_EXPECTED}")
+        raise ConfigError(f"{at}: found {quoted(laws)}; {_EXPECTED}")
     if len(laws) > _MOST_LAWS:
         raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MOST_LAWS}")
     rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
@@ -189,7 +189,7 @@ def world_settings(
         further = {**further, "agents": bodies(further["agents"])}
     if (head := further.get("sound_head")) is not None:
         if not isinstance(head, Head):
-            raise ConfigError(f"sound_head is {shown(head)}; allowed is a dwell.Head")
+            raise ConfigError(f"sound_head is {quoted(head)}; allowed is a dwell.Head")
         further = {**further, "sound_head": head.id}
     if further.get("sound_root") is not None:
         further = {**further, "sound_root": path("sound_root", further["sound_root"])}

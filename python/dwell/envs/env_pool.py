@@ -6,31 +6,31 @@ import dataclasses
 from collections.abc import Sequence
 
 from dwell import _native
-from dwell.envs.config import HouseShelf
+from dwell.envs.config import HouseCache
 from dwell.heads import Head
 from dwell.house import House
 
 
 @dataclasses.dataclass(frozen=True)
-class Spare:
+class PreparedEnv:
     """A native environment that waits for its place in a batch, and its house."""
 
     house: House
-    native: _native.Spare
+    native: _native.PreparedEnv
 
 
 @dataclasses.dataclass(frozen=True)
-class Stock:
+class EnvPool:
     """Makes environments of one config over the houses of a shelf."""
 
-    shelf: HouseShelf
+    shelf: HouseCache
     config: str
     heads: Sequence[Head]
     threads: int | None
 
     def make(
         self, episodes: Sequence[tuple[int, int | None]], *, threads: int | None = None
-    ) -> list[Spare]:
+    ) -> list[PreparedEnv]:
         """An environment in each house, by its number, with the episode of its seed begun.
 
         Raises:
@@ -42,9 +42,9 @@ class Stock:
             add_heads(house, self.heads)
         seeds = [seed for _, seed in episodes]
         made = _native.spares([house.native for house in houses], self.config, seeds, threads)
-        return [Spare(house, native) for house, native in zip(houses, made, strict=True)]
+        return [PreparedEnv(house, native) for house, native in zip(houses, made, strict=True)]
 
-    def make_behind(self, wanted: tuple[int, int, int]) -> Spare:
+    def make_behind(self, wanted: tuple[int, int, int]) -> PreparedEnv:
         """One environment (its place, its house, its seed), by this thread alone.
 
         The engines' threads are left to those who step meanwhile.

@@ -11,7 +11,7 @@ from dwell.house import House
 _LOG = logging.getLogger("dwell.outside")
 
 
-def tell_outside(house: House, what: str, position: Sequence[float]) -> None:
+def warn_outside_rooms(house: House, what: str, position: Sequence[float]) -> None:
     """Logs a warning when a point lies in no room of a house that has rooms.
 
     Once for a house and a kind of thing: cameras that fly around a house would fill the log.

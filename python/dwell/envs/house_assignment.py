@@ -4,22 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from dwell.envs.ahead import Ahead
+from dwell.envs.prefetch import Prefetcher
 from dwell.envs.config import KEPT
-from dwell.envs.runner import Runner
-from dwell.envs.stock import Spare, Stock
+from dwell.envs.native_batch import NativeBatch
+from dwell.envs.env_pool import PreparedEnv, EnvPool
 
 
-class Places:
+class HouseAssignment:
     """Puts environments into the houses of their episodes, which wait there where they can."""
 
-    def __init__(self, runner: Runner, stock: Stock, load_ahead: int) -> None:
+    def __init__(self, runner: NativeBatch, stock: EnvPool, load_ahead: int) -> None:
         """All environments of ``runner`` are in the first house; ``load_ahead`` others may wait."""
         self._runner = runner
         self._stock = stock
         self._names = stock.shelf.names
         self._houses = [0] * runner.count
-        self._ahead = Ahead(stock.make_behind, load_ahead if len(self._names) > 1 else 0)
+        self._ahead = Prefetcher(stock.make_behind, load_ahead if len(self._names) > 1 else 0)
         #: What the next episodes want that are in another house (environment, house, seed), those
         #: first whose turn comes first where all episodes are equally long.
         self._next: dict[int, tuple[int, int, int]] = {}
@@ -52,7 +52,7 @@ class Places:
                 self._put(k, away[k][0], spare)
         return set(away)
 
-    def _put(self, env: int, house: int, spare: Spare) -> None:
+    def _put(self, env: int, house: int, spare: PreparedEnv) -> None:
         self._runner.move(env, spare)
         self._houses[env] = house
 

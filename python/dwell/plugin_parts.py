@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from dwell import ConfigError
-from dwell.arguments import mapping, refuse_unknown, shown, text
+from dwell.arguments import mapping, refuse_unknown, quoted, text
 
 _Part = TypeVar("_Part", bound="Part")
 
 
-class Part:
+class PluginPart:
     """What an environment plays with in an episode. Every environment makes its own.
 
     Attributes:
@@ -60,7 +60,7 @@ def factory(
     is_function = isinstance(called, types.FunctionType | types.MethodType)
     if not callable(make) or not (is_class or (is_function and not isinstance(given, str))):
         expected = f"a subclass of dwell.{kind.__name__}, a function that makes one, or "
-        raise ConfigError(f"{at} is {shown(given)}; expected {expected}'module:Name' of a subclass")
+        raise ConfigError(f"{at} is {quoted(given)}; expected {expected}'module:Name' of a subclass")
     if missing := sorted(getattr(called, "__abstractmethods__", ())):
         raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
@@ -71,7 +71,7 @@ def factory(
         part = make(**fields)
         if not isinstance(part, kind):
             raise ConfigError(
-                f"{at}: {make!r} made {shown(part)}; expected a dwell.{kind.__name__}"
+                f"{at}: {make!r} made {quoted(part)}; expected a dwell.{kind.__name__}"
             )
         part.state = {}
         return part

@@ -11,7 +11,7 @@ import numpy as np
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import choice, finite, flag, path, point, to_json, whole
-from dwell.telling import Telling
+from dwell.object_state_api import StateApi
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
@@ -82,7 +82,7 @@ def emitter_sound(
     return told
 
 
-class Sounds(Telling):
+class SoundApi(StateApi):
     """The sounds of a world."""
 
     def play(

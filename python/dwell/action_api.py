@@ -8,14 +8,14 @@ from typing import Any
 
 from dwell import ConfigError, _native
 from dwell.actions import Outcome, action_json
-from dwell.arguments import mapping, shown, to_json, whole
-from dwell.telling import Telling
+from dwell.arguments import mapping, quoted, to_json, whole
+from dwell.object_state_api import StateApi
 
 #: Actions about what is in the hand.
 _OF_THE_HELD = ("drop", "throw")
 
 
-class Acting(Telling):
+class ActionApi(StateApi):
     """The actions of a world's agents."""
 
     def act(
@@ -77,7 +77,7 @@ class Acting(Telling):
         if not any(named in (row["name"], row["id"]) for row in held):
             holds = ", ".join(repr(row["name"]) for row in held) or "nothing"
             raise ConfigError(
-                f"object is {shown(named)}, which agent {agent} does not hold: it holds {holds}; "
+                f"object is {quoted(named)}, which agent {agent} does not hold: it holds {holds}; "
                 f"{kind} needs no name"
             )
 
@@ -90,7 +90,7 @@ class Acting(Telling):
         """Makes one control step of a discrete action, by number or name (see :func:`actions`)."""
         names = _native.actions()
         if isinstance(action, str) and action not in names:
-            raise ConfigError(f"no action {shown(action)}; there are {', '.join(names)}")
+            raise ConfigError(f"no action {quoted(action)}; there are {', '.join(names)}")
         number = names.index(action) if isinstance(action, str) else action
         number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
         return Outcome._of(json.loads(self._native.act_discrete(agent, number)))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import DwellError
-from dwell.demo.film import save_film
+from dwell.demo.animation import save_film
 from dwell.envs.single import DwellEnv
 
 _SEED = 5
