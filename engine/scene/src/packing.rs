@@ -19,6 +19,9 @@ const BEST_QUALITY: i32 = 10;
 const WINDOW: i32 = 22;
 /// Nothing that is packed is larger, bytes.
 const MOST_UNPACKED: u64 = 1 << 30;
+/// So many bytes are packed within some 0.1 s at the usual quality.
+const QUICK: usize = 1 << 20;
+const NEVER: &str = "reading and writing memory cannot fail";
 /// What is unpacked at a time, bytes.
 const BUFFER: usize = 1 << 16;
 
@@ -26,21 +29,29 @@ const BUFFER: usize = 1 << 16;
 /// nothing.
 ///
 /// # Panics
-/// Never: reading and writing memory cannot fail.
+/// Where the system has no room for one more thread.
 pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
-    pack_with(QUALITY, bytes, bytes.len(), base).expect("reading and writing memory cannot fail")
+    if bytes.len() + base.len() > QUICK {
+        return pack_stoppably(QUALITY, bytes, base);
+    }
+    pack_with(QUALITY, bytes, bytes.len(), base).expect(NEVER)
 }
 
 /// As [`pack`], but harder where that alone would give more than `most` bytes; it may still be more. Two megabytes take seconds then,
-/// instead of a tenth of one, in a thread of their own, so that the caller can be stopped.
+/// instead of a tenth of one.
 ///
 /// # Panics
-/// Where the system has no room for one more thread.
+/// As [`pack`].
 pub fn pack_within(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     let packed = pack(bytes, base);
     if packed.len() <= most {
         return packed;
     }
+    pack_stoppably(BEST_QUALITY, bytes, base)
+}
+
+/// Packs what takes long in a thread of its own, so that the caller can be stopped meanwhile.
+fn pack_stoppably(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
     // Dropped when the caller stops waiting, which ends the thread at the next block of input.
     let wanted = Arc::new(());
     let source = WhileWanted {
@@ -51,14 +62,13 @@ pub fn pack_within(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
         // Sending fails where nobody waits any more.
-        let _ = sender.send(pack_with(BEST_QUALITY, source, length, &base));
+        let _ = sender.send(pack_with(quality, source, length, &base));
     });
     loop {
         interrupt::check();
         match receiver.recv_timeout(interrupt::INTERVAL) {
-            Ok(harder) => return harder.unwrap_or(packed),
             Err(mpsc::RecvTimeoutError::Timeout) => {}
-            Err(mpsc::RecvTimeoutError::Disconnected) => return packed,
+            packed => return packed.expect(NEVER).expect(NEVER),
         }
     }
 }
