@@ -1,7 +1,7 @@
 //! Impulse responses for Python.
 
 use crate::arrays;
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::{PyFault, to_python};
 use crate::house::PyHouse;
 use crate::hrtf::PyHead;

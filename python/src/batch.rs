@@ -1,7 +1,7 @@
 //! Environments stepped together.
 
 use crate::arrays;
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;

@@ -1,6 +1,6 @@
 //! Throughput of every stage, measured where nothing of Python is in the way.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use pyo3::prelude::*;
 

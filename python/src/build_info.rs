@@ -1,6 +1,6 @@
 //! What this build knows: actions, tasks, sensors, laws, words, and the machine it runs on.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell::DiscreteAction;
 use dwell_scene::parallel::{self, Threads};

@@ -1,6 +1,6 @@
 //! Calibration for Python.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_calibration::rollout::study::OtherSimulator;
 use dwell_scene::parallel::Threads;

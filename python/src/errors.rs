@@ -182,7 +182,7 @@ pub(crate) fn to_python(fault: PyFault) -> PyErr {
         PyFault::Config(message) => ("ConfigError", message),
         PyFault::Usage(message) => ("UsageError", message),
         PyFault::Measured(message) => ("MeasuredDataError", message),
-        // The doorway raises what the handler did.
+        // `engine_call` raises what the handler did.
         PyFault::Interrupted => ("UsageError", "the call was stopped".to_owned()),
     };
     Python::attach(|py| kind(py, name, message))

@@ -1,6 +1,6 @@
 //! HDF5 files for Python: as much of them as SOFA needs.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_acoustics::hdf5::{Hdf5, MOST_BYTES};
 use dwell_houses::DataRoot;

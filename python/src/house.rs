@@ -1,7 +1,7 @@
 //! Houses for Python.
 
 use crate::authoring;
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::hrtf::PyHead;
 use dwell::Engines;

@@ -1,6 +1,6 @@
 //! Heads for Python.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_acoustics::Head;
 use dwell_acoustics::head::HrirMeasurement;

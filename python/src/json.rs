@@ -1,6 +1,6 @@
 //! How large a JSON text becomes, before Python makes objects of it.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use pyo3::prelude::*;
 

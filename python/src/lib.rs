@@ -12,7 +12,7 @@ mod batch;
 mod bench;
 mod build_info;
 mod calibrate;
-mod doorway;
+mod engine_call;
 mod errors;
 mod fork_safety;
 mod hdf5;

@@ -1,7 +1,7 @@
 //! What the engines log, in Python's `logging`.
 //!
 //! An event of `tracing` in the module `dwell_houses::formats` is a record of the logger `dwell.houses.formats`. Engine
-//! threads never take the GIL for it: records wait in a queue until the doorway has it again, at the end of a call and,
+//! threads never take the GIL for it: records wait in a queue until the engine call has it again, at the end of a call and,
 //! in long calls on the main thread, every 25 ms. The level of the logger `dwell` (or of the root, where it has none) says
 //! what is recorded at all; it is looked at when a call begins. Loggers below can only say less.
 

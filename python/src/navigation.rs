@@ -1,6 +1,6 @@
 //! Where one can walk, for Python.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use dwell::Engines;

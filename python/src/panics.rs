@@ -3,7 +3,7 @@
 //! The hook prints nothing. The exception says what and where; printing would say it twice, and tear the output of whoever
 //! catches it. The backtrace goes to the log `dwell.python.bugs`, level debug, where `RUST_BACKTRACE=1` asks for one.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::{EngineBug, PyFault};
 use crate::world::PyWorld;
 use dwell_scene::parallel::Threads;
@@ -55,7 +55,7 @@ pub(crate) fn exception(py: Python<'_>, panic: &(dyn Any + Send)) -> PyErr {
 }
 
 /// Panics on purpose, as a bug would: in a pool's thread, or while `world` is being changed. The tests of the border and of
-/// the wheel call it, to see that the unwinding stops at the doorway.
+/// the wheel call it, to see that the unwinding stops at the engine call.
 #[pyfunction]
 #[pyo3(signature = (world=None))]
 pub(crate) fn panic_for_tests(py: Python<'_>, world: Option<&Bound<'_, PyWorld>>) -> PyResult<()> {

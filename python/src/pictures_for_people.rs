@@ -1,6 +1,6 @@
 //! Pictures and shapes of worlds for people: maps, doll's houses, meshes for viewers.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::world::PyWorld;

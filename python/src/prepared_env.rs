@@ -1,6 +1,6 @@
 //! Environments that wait for their place in a batch.
 
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use dwell::{Engines, Env, EnvConfig};

@@ -2,7 +2,7 @@
 
 use crate::arrays;
 use crate::batch::PyBatch;
-use crate::doorway::Doorway;
+use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::{PyHouse, describe_level};
 use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};

@@ -35,7 +35,7 @@ from dwell.envs import DwellVectorEnv
 Call = Callable[[], object]
 #: Calls after which one that is never stopped is given up.
 MOST_CALLS = 20
-#: What the doorway tells of a call that was stopped before it had done its work.
+#: What the engines log of a call that was stopped before it had done its work.
 STOPPED = "a call was stopped before its work was done"
 
 

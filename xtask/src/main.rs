@@ -3,13 +3,13 @@
 
 mod bits;
 mod check;
-mod doorway;
 mod features;
 mod findings;
 mod layers;
 mod licences;
 mod manifests;
 mod notices;
+mod py_engine;
 mod sizes;
 mod tree;
 
@@ -52,9 +52,9 @@ const COMMANDS: &[(&str, &str, Command)] = &[
         bits::run,
     ),
     (
-        "doorway",
+        "engine-calls",
         "every function for Python releases the GIL, maps errors, stops panics and hears signals",
-        doorway::run,
+        py_engine::run,
     ),
     (
         "check",

@@ -3,7 +3,7 @@
 mod stages;
 
 use crate::findings::CheckOutcome;
-use crate::{bits, doorway, features, layers, licences, sizes};
+use crate::{bits, features, layers, licences, py_engine, sizes};
 use stages::Stage;
 use std::path::Path;
 use std::process::Command;
@@ -22,7 +22,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
         ("licences", licences::run),
         ("features", features::run),
         ("bits", bits::run),
-        ("doorway", doorway::run),
+        ("engine-calls", py_engine::run),
     ];
     for (name, command) in own {
         println!("-- {name}");

@@ -1,4 +1,4 @@
-//! The one doorway between Python and the engines: the GIL is released, errors become exceptions, panics stop here, signals
+//! Calls from Python into the engines, all through here: the GIL is released, errors become exceptions, panics stop here, signals
 //! come through, and what the engines log arrives in Python's `logging`.
 
 use crate::errors::{PyFault, to_python};
@@ -17,7 +17,7 @@ thread_local! {
 }
 
 /// Runs engine code for Python.
-pub(crate) trait Doorway {
+pub(crate) trait EngineCall {
     /// Calls `work` without the GIL; its error becomes the exception it stands for, a panic `EngineBug`.
     ///
     /// On Python's main thread handlers of signals run meanwhile; what one raises stops `work` at its next
@@ -28,7 +28,7 @@ pub(crate) trait Doorway {
         E: Into<PyFault> + Send;
 }
 
-impl Doorway for Python<'_> {
+impl EngineCall for Python<'_> {
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,

@@ -1,4 +1,4 @@
-"""The doorway to the engines: bugs, logs, copies, threads."""
+"""Calls into the engines: bugs, logs, copies, threads."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-//! Every function that Python can call goes through the doorway, or is listed here with its reason.
+//! Every function that Python can call calls engines through `py.engine`, or is listed here with its reason.
 //!
-//! The doorway (`python/src/doorway.rs`) releases the GIL, maps errors, stops panics and lets signals through; a function
+//! `py.engine` (`python/src/engine_call.rs`) releases the GIL, maps errors, stops panics and lets signals through; a function
 //! that forgets it does none of that. The sources are read, because no lint knows what pyo3 makes of them.
 
 use crate::findings::CheckOutcome;
@@ -23,7 +23,7 @@ const EXEMPT: &[(&str, &str, &str)] = &[
     ("house.rs", "name", "reads a field"),
 ];
 
-/// What leads into the doorway: the method itself, and those of this crate that do nothing before it.
+/// What calls engines: the method itself, and those of this crate that do nothing before it.
 const WAYS: &[&str] = &[
     ".engine(",
     ".with(py",
@@ -56,7 +56,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
         let text = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         for function in called_by_python(&text) {
             count += 1;
-            if function.uses_doorway {
+            if function.uses_engine_call {
                 continue;
             }
             let reason =
@@ -66,18 +66,18 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
                 continue;
             }
             outcome.findings.push(format!(
-                "python/src/{name}:{}: {} does not go through the doorway (`py.engine`)",
+                "python/src/{name}:{}: {} does not call engines through `py.engine`",
                 function.line, function.name
             ));
         }
     }
     for (file, name, _) in EXEMPT.iter().filter(|known| !excused.contains(known)) {
         outcome.findings.push(format!(
-            "xtask/src/doorway.rs: {file}: {name} needs no exemption any more"
+            "xtask/src/py_engine.rs: {file}: {name} needs no exemption any more"
         ));
     }
     let share = format!(
-        "{count} functions for Python, {} without the doorway",
+        "{count} functions for Python, {} without `py.engine`",
         excused.len()
     );
     outcome.notes.push(share);
@@ -88,7 +88,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
 struct Function {
     name: String,
     line: usize,
-    uses_doorway: bool,
+    uses_engine_call: bool,
 }
 
 /// The functions under `#[pyfunction]` and in blocks under `#[pymethods]`, in sources as rustfmt leaves them.
@@ -118,7 +118,7 @@ fn called_by_python(text: &str) -> Vec<Function> {
             found.push(Function {
                 name: name.to_owned(),
                 line: k + 1,
-                uses_doorway: WAYS.iter().any(|way| body.iter().any(|l| l.contains(way))),
+                uses_engine_call: WAYS.iter().any(|way| body.iter().any(|l| l.contains(way))),
             });
             k += body.len();
             is_function = false;
@@ -178,7 +178,7 @@ fn helper() {
         let found = called_by_python(text);
         let shown: Vec<_> = found
             .iter()
-            .map(|f| (f.name.as_str(), f.line, f.uses_doorway))
+            .map(|f| (f.name.as_str(), f.line, f.uses_engine_call))
             .collect();
         assert_eq!(
             shown,
