@@ -7,7 +7,7 @@ import json
 import dwell
 from dwell import _native
 from dwell.envs.config import env_json
-from dwell.envs.python_tasks import NativeSettings, NativeSensors
+from dwell.envs.python_tasks import NativeSensors, NativeSettings
 from dwell.envs.spaces import SensorSpace, specs
 from pages import rust
 from pages.tables import code, number, table

@@ -26,8 +26,8 @@ __all__ = [
     "HouseNotFoundError",
     "MeasuredDataError",
     "Navigation",
+    "PreparedEnv",
     "SceneError",
-    "Spare",
     "UsageError",
     "World",
     "__version__",
@@ -267,7 +267,7 @@ class Batch:
     def specs_json(self) -> str:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
-    def put(self, env: int, spare: Spare) -> None:
+    def put(self, env: int, spare: PreparedEnv) -> None:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`world` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
         """How many steps each environment's episode has had."""
@@ -297,7 +297,7 @@ class Batch:
     def __len__(self) -> int: ...
 
 @final
-class Spare:
+class PreparedEnv:
     """An environment that waits for its place in a batch."""
 
 @final
@@ -352,7 +352,7 @@ def spares(
     config_json: str,
     seeds: Sequence[int | None],
     threads: int | None = ...,
-) -> list[Spare]:
+) -> list[PreparedEnv]:
     """An environment over each house, with the episode of its seed begun where it has one."""
 
 def actions() -> list[str]: ...

@@ -457,7 +457,9 @@ def flight_bundle(
     """Flights of balls; episodes whose ball has no mass or diameter are left out."""
     part, here = require_columns(mapping, "table", at), f"{at}: table"
     about, there = require_columns(mapping, "bodies", at), f"{at}: bodies"
-    names = [require_columns(about, key, there) for key in ("episode", "name", "mass_kg", "diameter_m")]
+    names = [
+        require_columns(about, key, there) for key in ("episode", "name", "mass_kg", "diameter_m")
+    ]
     listed = MeasuredTable(about, tables, there)
     listed.has(names)
     bodies: dict[str, CsvRow] = {}
@@ -519,13 +521,17 @@ def drive_bundle(
 ) -> dict[str, int]:
     """Drives of a robot on two wheels, with the sessions and paths that a second table lists."""
     part, here = require_columns(mapping, "table", at), f"{at}: table"
-    base, listing = dict(require_columns(mapping, "base", at)), require_columns(mapping, "episodes", at)
+    base, listing = (
+        dict(require_columns(mapping, "base", at)),
+        require_columns(mapping, "episodes", at),
+    )
     ticks = require_columns(base, "ticks_per_turn", f"{at}: base")
     if not isinstance(ticks, int | float) or not ticks > 0:
         raise ValueError(f"{at}: base: ticks_per_turn is {ticks!r}; a number above 0 is needed")
     rad_per_tick = 2.0 * math.pi / base.pop("ticks_per_turn")
     names = [
-        require_columns(listing, key, f"{at}: episodes") for key in ("episode", "split_group", "conditions")
+        require_columns(listing, key, f"{at}: episodes")
+        for key in ("episode", "split_group", "conditions")
     ]
     listed = MeasuredTable(listing, tables, f"{at}: episodes")
     listed.has(names)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, record, quoted, whole
+from dwell.arguments import point, quoted, record, whole
 
 if TYPE_CHECKING:
     from dwell.house import House

@@ -10,9 +10,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from dwell import ConfigError
-from dwell.arguments import mapping, refuse_unknown, quoted, text
+from dwell.arguments import mapping, quoted, refuse_unknown, text
 
-_Part = TypeVar("_Part", bound="Part")
+_Part = TypeVar("_Part", bound="PluginPart")
 
 
 class PluginPart:
@@ -60,7 +60,9 @@ def factory(
     is_function = isinstance(called, types.FunctionType | types.MethodType)
     if not callable(make) or not (is_class or (is_function and not isinstance(given, str))):
         expected = f"a subclass of dwell.{kind.__name__}, a function that makes one, or "
-        raise ConfigError(f"{at} is {quoted(given)}; expected {expected}'module:Name' of a subclass")
+        raise ConfigError(
+            f"{at} is {quoted(given)}; expected {expected}'module:Name' of a subclass"
+        )
     if missing := sorted(getattr(called, "__abstractmethods__", ())):
         raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)

@@ -18,8 +18,8 @@ from dwell.files import atomic_write, read_json
 from dwell.house import House
 
 if TYPE_CHECKING:
-    from dwell.envs.python_tasks import RewardChoice, TaskChoice
     from dwell.envs.native_batch import NativeBatch
+    from dwell.envs.python_tasks import RewardChoice, TaskChoice
     from dwell.world import World
 
 #: What a file says of itself.
@@ -138,7 +138,8 @@ class Replay:
         for k, action in enumerate(self.actions):
             if action not in names:
                 raise MeasuredDataError(
-                    f"{self._at()}: actions[{k}] is {quoted(action)}; allowed are {', '.join(names)}"
+                    f"{self._at()}: actions[{k}] is {quoted(action)}; "
+                    f"allowed are {', '.join(names)}"
                 )
         if len(self.hashes) != len(self.actions) + 1 or len(self.actions) > MOST_STEPS:
             raise MeasuredDataError(
@@ -210,8 +211,8 @@ class Replay:
         renderer: str | None,
         house: House | None,
     ) -> NativeBatch:
-        from dwell.envs.python_tasks import PythonTask, split
         from dwell.envs.native_batch import NativeBatch
+        from dwell.envs.python_tasks import PythonTask, split
 
         given, custom = [], PythonTask()
         if task is not None or reward is not None:

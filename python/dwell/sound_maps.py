@@ -14,8 +14,8 @@ from dwell import ConfigError
 from dwell.acoustics import AcousticScene
 from dwell.arguments import choice
 from dwell.charts import INK, PAPER, font
-from dwell.listening import Source, source_of
 from dwell.false_color import scale_colors
+from dwell.listening import Source, source_of
 from dwell.places import receiver_grid
 from dwell.plans import floor_plan
 from dwell.world import World

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.action_api import ActionApi
+from dwell.agent_controls import controls_of
 from dwell.arguments import (
     finite,
     mapping,
@@ -26,7 +27,6 @@ from dwell.arguments import (
 )
 from dwell.camera import Camera, Channel, camera_settings
 from dwell.configs import bodies
-from dwell.agent_controls import controls_of
 from dwell.guide_api import GuideApi
 from dwell.heads import Head
 from dwell.house import House

@@ -5,7 +5,7 @@ use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
-use crate::prepared_env::PySpare;
+use crate::prepared_env::PyPreparedEnv;
 use crate::world::PyWorld;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
@@ -163,7 +163,7 @@ impl PyBatch {
     }
 
     /// An environment takes the place of environment `env`, and its episode goes on where it began one.
-    fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PySpare>) -> PyResult<()> {
+    fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PyPreparedEnv>) -> PyResult<()> {
         let spare = spare.get();
         self.with(py, |batch| {
             batch.put(env, spare.take()?)?;

@@ -42,7 +42,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<world::PyWorld>()?;
     module.add_class::<navigation::PyNavigation>()?;
     module.add_class::<batch::PyBatch>()?;
-    module.add_class::<prepared_env::PySpare>()?;
+    module.add_class::<prepared_env::PyPreparedEnv>()?;
     module.add_class::<acoustics::PyAcousticScene>()?;
     module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<hrtf::PyHead>()?;

@@ -9,12 +9,12 @@ use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// An environment that waits for its place in a batch: there its house is another from then on.
-#[pyclass(name = "Spare", module = "dwell._native", frozen)]
-pub(crate) struct PySpare {
+#[pyclass(name = "PreparedEnv", module = "dwell._native", frozen)]
+pub(crate) struct PyPreparedEnv {
     env: Mutex<Option<Env>>,
 }
 
-impl PySpare {
+impl PyPreparedEnv {
     /// The environment, once.
     pub(crate) fn take(&self) -> Result<Env, PyFault> {
         let mut env = self.env.lock().unwrap_or_else(PoisonError::into_inner);
@@ -32,7 +32,7 @@ pub(crate) fn spares(
     config_json: &str,
     seeds: Vec<Option<u64>>,
     threads: Option<usize>,
-) -> PyResult<Vec<PySpare>> {
+) -> PyResult<Vec<PyPreparedEnv>> {
     let shared: Vec<Arc<Engines>> = houses
         .iter()
         .map(|house| house.get().engines.clone())
@@ -49,7 +49,7 @@ pub(crate) fn spares(
             Ok::<_, PyFault>(env)
         });
         let wrap = |env: Result<Env, PyFault>| {
-            Ok(PySpare {
+            Ok(PyPreparedEnv {
                 env: Mutex::new(Some(env?)),
             })
         };

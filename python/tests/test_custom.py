@@ -17,7 +17,7 @@ from gymnasium.vector import AutoresetMode
 import dwell
 from dwell import _native
 from dwell.envs import DwellEnv, DwellVectorEnv
-from dwell.envs.snapshots import with_checksum, check_and_strip
+from dwell.envs.snapshots import check_and_strip, with_checksum
 
 STEPS = 40
 

@@ -30,9 +30,7 @@ def test_examples_are_short_and_listed() -> None:
         assert len(example.read_text("utf-8").splitlines()) < 60
 
 
-PROGRAMS = re.findall(
-    r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL
-)
+PROGRAMS = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text("utf-8"), re.DOTALL)
 
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=range(len(PROGRAMS)))

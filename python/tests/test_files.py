@@ -80,7 +80,10 @@ def test_devices_folders_and_sockets_are_refused(tmp_path: Path) -> None:
         path = tmp_path / name
         with pytest.raises(OSError, match=f"is {kind}, not a regular file"):
             files.read(path)
-        with pytest.raises(OSError, match=f"is {kind}, not a regular file"), files.atomic_write(path):
+        with (
+            pytest.raises(OSError, match=f"is {kind}, not a regular file"),
+            files.atomic_write(path),
+        ):
             pass
 
 
@@ -141,7 +144,10 @@ def test_links_are_followed_to_files_and_stay(tmp_path: Path) -> None:
     assert path.read_text() == "new"
     with pytest.raises(FileNotFoundError, match="leads to no file"), files.atomic_write(nowhere):
         pass
-    with pytest.raises(FileExistsError, match="is there already"), files.atomic_write(link, new=True):
+    with (
+        pytest.raises(FileExistsError, match="is there already"),
+        files.atomic_write(link, new=True),
+    ):
         pass
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a", "link", "nowhere"]
 

@@ -313,10 +313,12 @@ def test_a_forked_child_can_step_and_render(apartment: dwell.House) -> None:
 
 def test_observations_are_written_in_place() -> None:
     from dwell.envs.config import env_json
-    from dwell.envs.python_tasks import NativeSettings
     from dwell.envs.native_batch import NativeBatch
+    from dwell.envs.python_tasks import NativeSettings
 
-    config = env_json(NativeSettings("InstructionFollowing", sensors={"rgb": {"width": 16, "height": 16}}))
+    config = env_json(
+        NativeSettings("InstructionFollowing", sensors={"rgb": {"width": 16, "height": 16}})
+    )
     runner = NativeBatch([dwell.House.open("builtin:apartment")], config, 1)
     runner.batch.reset([0])
     buffer = runner.buffers[0]

@@ -163,7 +163,9 @@ def together(places: list[tuple[float, float, float]]) -> list[MicrophoneGroup]:
         centre = [sum(places[k][axis] for k in group) / len(group) for axis in range(3)]
         around = [[places[k][axis] - centre[axis] for axis in range(3)] for k in group]
         alone = Receiver.omni(places[group[0]])
-        groups.append(MicrophoneGroup(group, Receiver.array(centre, around) if len(group) > 1 else alone))
+        groups.append(
+            MicrophoneGroup(group, Receiver.array(centre, around) if len(group) > 1 else alone)
+        )
     return groups
 
 

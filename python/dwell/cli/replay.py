@@ -12,7 +12,7 @@ from dwell.cli.common import ProgressBar, add_back_end, back_end, count, number,
 from dwell.cli.write_files import add_bits, save_sound, write_image
 
 if TYPE_CHECKING:
-    from dwell.replays import ReplayStep, Replay
+    from dwell.replays import Replay, ReplayStep
 
 #: Beside the pictures, what ``--sensors`` takes.
 _AUDIO = "audio"

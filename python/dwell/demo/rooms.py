@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from dwell.camera import Camera, Channel
-from dwell.house import House
 from dwell.false_color import picture
+from dwell.house import House
 from dwell.world import World
 
 _CHANNELS: tuple[Channel, ...] = ("rgb", "depth", "instance")

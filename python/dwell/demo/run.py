@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError, plans
-from dwell.demo import calibration, episode, throughput, instruction, page, recording, rooms
+from dwell.demo import calibration, episode, instruction, page, recording, rooms, throughput
 from dwell.house import House
 
 Progress = Callable[[float, str], None]
@@ -61,7 +61,9 @@ def _fill(name: str, folder: Path, progress: Progress) -> dict[str, Any]:
     progress(0.15, "following an instruction")
     story["instruction"] = instruction.follow(name, folder)
     progress(0.3, "opening, taking, listening")
-    story["errand"] = episode.run_episode(house, folder, lambda part: progress(0.3 + 0.3 * part, "walking"))
+    story["errand"] = episode.run_episode(
+        house, folder, lambda part: progress(0.3 + 0.3 * part, "walking")
+    )
     ways = [("#1f7a6d", story["instruction"].get("way", [])), ("#c4532f", story["errand"]["way"])]
     world = story["errand"]["world"]
     plans.floor_plan(world, longest_edge=1000, ways=ways).save(folder / "map.png")

@@ -67,7 +67,7 @@ def step_limit(value: object) -> int | None:
         return None
     if isinstance(value, bool) or number < 1:
         raise ConfigError(
-            f"max_episode_steps is {quoted(value)}; allowed are whole numbers from 1, or None or -1 "
+            f"max_episode_steps is {quoted(value)}; allowed are whole numbers from 1, None or -1 "
             "for episodes without a limit"
         )
     return min(number, 2**63 - 1)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from dwell.envs.prefetch import Prefetcher
 from dwell.envs.config import KEPT
+from dwell.envs.env_pool import EnvPool, PreparedEnv
 from dwell.envs.native_batch import NativeBatch
-from dwell.envs.env_pool import PreparedEnv, EnvPool
+from dwell.envs.prefetch import Prefetcher
 
 
 class HouseAssignment:

@@ -10,9 +10,9 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.envs.python_tasks import PythonTask, PythonEpisode
-from dwell.envs.spaces import shareable, specs
 from dwell.envs.env_pool import PreparedEnv, add_heads
+from dwell.envs.python_tasks import PythonEpisode, PythonTask
+from dwell.envs.spaces import shareable, specs
 from dwell.heads import Head
 from dwell.house import House
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Hashable, Iterable
 from typing import Generic, TypeVar
 
 _Key = TypeVar("_Key", bound=Hashable)
-_Prepared = TypeVar("_Made")
+_Prepared = TypeVar("_Prepared")
 
 
 class Prefetcher(Generic[_Key, _Prepared]):

@@ -252,7 +252,9 @@ class VectorReplayRecorder(
             self._write(k)
             info = {name: infos[name][k] for name in ("scene_id", "episode_id")}
             batch = self._envs._runner.batch
-            self._running[k] = _EpisodeInProgress(self._envs, info, batch.instruction(k), batch.state_hash(k))
+            self._running[k] = _EpisodeInProgress(
+                self._envs, info, batch.instruction(k), batch.state_hash(k)
+            )
 
     def check(self) -> None:
         """A step is about to be made.

@@ -17,16 +17,16 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, quoted, to_json, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, Houses, HouseCache, arguments_of, env_json, step_limit
-from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.config import KEPT, HouseCache, Houses, arguments_of, env_json, step_limit
 from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
-from dwell.envs.snapshots import with_checksum, check_and_strip
+from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.snapshots import check_and_strip, with_checksum
 from dwell.envs.spaces import action_space
 from dwell.heads import Head
-from dwell.world_settings import Laws, with_head
 from dwell.object_state_api import agent_states
+from dwell.world_settings import Laws, with_head
 
 #: The image that ``render()`` gives.
 RENDER_CAMERA = Camera(width=320, height=240)
@@ -239,7 +239,9 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """
         episode_id = str(self._info()["episode_id"])
         parts = self._runner.saved_parts(0)
-        return with_checksum(b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0))))
+        return with_checksum(
+            b"\0".join((episode_id.encode(), parts, self._runner.batch.snapshot(0)))
+        )
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
         """Goes to where the snapshot was taken; the next steps give the same bits as they did then.

@@ -13,16 +13,16 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, refuse_unknown, quoted, some, to_json, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, some, to_json, whole
 from dwell.camera import camera_settings
-from dwell.envs.config import KEPT, Houses, HouseCache, arguments_of, env_json, step_limit
-from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.config import KEPT, HouseCache, Houses, arguments_of, env_json, step_limit
+from dwell.envs.env_pool import EnvPool
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.native_batch import INFO_KEYS, NativeBatch
-from dwell.envs.snapshots import BatchSnapshot
+from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.single import RENDER_CAMERA, DwellEnv, checked_render_mode
+from dwell.envs.snapshots import BatchSnapshot
 from dwell.envs.spaces import action_space
-from dwell.envs.env_pool import EnvPool
 from dwell.world_settings import Laws, with_head
 
 
@@ -160,7 +160,9 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._playing = NativeBatch(
             [shelf[0]] * num_envs, config, threads, custom=custom, overlap=overlap, heads=heads
         )
-        self._places = HouseAssignment(self._playing, EnvPool(shelf, config, heads, threads), load_ahead)
+        self._places = HouseAssignment(
+            self._playing, EnvPool(shelf, config, heads, threads), load_ahead
+        )
         self._copy = copy
         self._streams: list[np.random.Generator | None] = [None] * num_envs
         #: The seed of every environment's episode, once it has one.

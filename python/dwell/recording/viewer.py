@@ -15,8 +15,8 @@ from PIL import Image
 
 from dwell import UsageError, _native
 from dwell.camera import Camera
-from dwell.house import House
 from dwell.false_color import light_colors, scale_colors
+from dwell.house import House
 from dwell.world import World
 
 MISSING = "the Rerun SDK is not installed; pip install 'dwell[viewer]' (or rerun-sdk) gets it"
