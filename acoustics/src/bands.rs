@@ -45,7 +45,7 @@ pub fn sample(values: &Bands) -> BandValues {
     NOMINAL_CENTRES_HZ.map(|centre| values.at(centre))
 }
 
-/// How the power at `frequency_hz` is shared among the bands; the shares sum to 1. Shape (band,).
+/// Returns how the power at `frequency_hz` is shared among the bands; the shares sum to 1. Shape (band,).
 ///
 /// Between two centres the shares cross with a raised cosine in the logarithm of frequency that is `overlap` octaves
 /// wide, above 0 to 1 (1: the whole way from centre to centre). Everything below the lowest centre belongs to the lowest band, and

@@ -157,7 +157,7 @@ impl TabulatedPattern {
         Self::Table(cosines.map(|c| change(c, self.gain(c))).collect())
     }
 
-    /// Whether it is equal on all sides.
+    /// Returns whether it is equal on all sides.
     pub(crate) fn is_omni(&self) -> bool {
         matches!(self, Self::Omni)
     }

@@ -27,7 +27,7 @@ pub struct PropagationPath {
 }
 
 impl PropagationPath {
-    /// Whether it is the straight one, in sight or through walls.
+    /// Returns whether it is the straight one, in sight or through walls.
     pub fn is_direct(&self) -> bool {
         self.planes.is_empty() && self.bends.is_empty()
     }
@@ -123,7 +123,7 @@ impl Echogram {
         self.paths.iter().find(|path| path.is_direct())
     }
 
-    /// When a path arrives, s.
+    /// Returns when a path arrives, s.
     pub fn delay_s(&self, path: &PropagationPath) -> f64 {
         path.length_m / self.speed_m_s
     }
@@ -139,7 +139,7 @@ impl Echogram {
         sum
     }
 
-    /// Whether nothing at all is heard.
+    /// Returns whether nothing at all is heard.
     pub fn is_silent(&self) -> bool {
         self.total().iter().all(|energy| *energy == 0.0)
     }

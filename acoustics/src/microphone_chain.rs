@@ -131,7 +131,7 @@ impl MicrophoneChain {
         }
     }
 
-    /// What microphones that have heard nothing before give out of `samples` and the silence after it, until they have fallen
+    /// Returns what microphones that have heard nothing before give out of `samples` and the silence after it, until they have fallen
     /// silent themselves. Shape (channel, sample), flat.
     pub(crate) fn record(
         installed: &[LawSpec],

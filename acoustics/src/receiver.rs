@@ -38,17 +38,17 @@ impl SoundSourcePose {
         Self { pose, directivity }
     }
 
-    /// Where it is, m.
+    /// Returns where it is, m.
     pub const fn position(&self) -> Vec3 {
         self.pose.position
     }
 
-    /// Where its axis points, unit length.
+    /// Returns where its axis points, unit length.
     pub fn axis(&self) -> Vec3 {
         self.pose.rotation * Vec3::NEG_Z
     }
 
-    /// Whether it is somewhere and its directivity in range.
+    /// Returns whether it is somewhere and its directivity in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         finite("the source", self.pose.position)?;
         turned("the source", self.pose.rotation)?;
@@ -158,7 +158,7 @@ impl Receiver {
         self.pose.position
     }
 
-    /// How many channels it has.
+    /// Returns how many channels it has.
     pub fn channels(&self) -> usize {
         match &self.kind {
             ReceiverKind::Omni => 1,
@@ -168,7 +168,7 @@ impl Receiver {
         }
     }
 
-    /// How it is turned; nothing turns a microphone.
+    /// Returns how it is turned; nothing turns a microphone.
     pub fn rotation(&self) -> Quat {
         match self.kind {
             ReceiverKind::Omni => Quat::IDENTITY,
@@ -176,7 +176,7 @@ impl Receiver {
         }
     }
 
-    /// Where the microphones of an array are, m; nothing for a receiver at one point.
+    /// Returns where the microphones of an array are, m; nothing for a receiver at one point.
     pub(crate) fn microphone_positions(&self) -> Option<Vec<Vec3>> {
         let ReceiverKind::Array(microphones) = &self.kind else {
             return None;
@@ -188,7 +188,7 @@ impl Receiver {
         Some(positions.collect())
     }
 
-    /// How far its furthest channel is from its centre, m.
+    /// Returns how far its furthest channel is from its centre, m.
     pub(crate) fn radius_m(&self) -> f64 {
         let ReceiverKind::Array(microphones) = &self.kind else {
             return 0.0;
@@ -199,12 +199,12 @@ impl Receiver {
         f64::from(far.fold(0.0, f32::max))
     }
 
-    /// Whether a turn of it needs no new rays: all its channels are at one point.
+    /// Returns whether a turn of it needs no new rays: all its channels are at one point.
     pub(crate) fn turns_in_place(&self) -> bool {
         !matches!(self.kind, ReceiverKind::Array(_))
     }
 
-    /// Whether it is somewhere and all its parts are in range.
+    /// Returns whether it is somewhere and all its parts are in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "receiver";
         finite("the receiver", self.pose.position)?;
@@ -232,7 +232,7 @@ impl Receiver {
     }
 }
 
-/// Whether a rotation turns anything at all.
+/// Returns whether a rotation turns anything at all.
 fn turned(what: &'static str, rotation: Quat) -> Result<(), AcousticsError> {
     if rotation.is_finite() && (rotation.length_squared() - 1.0).abs() < 1e-2 {
         return Ok(());

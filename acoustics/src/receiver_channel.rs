@@ -81,7 +81,7 @@ impl ReceiverChannel {
         }
     }
 
-    /// How it hears a wave that comes from `towards`, unit length, world.
+    /// Returns how it hears a wave that comes from `towards`, unit length, world.
     pub(crate) fn hear(&self, speed_m_s: f64, towards: Vec3) -> ChannelResponse {
         let (gain, delay) = match self {
             Self::Omni => ([1.0; BAND_COUNT], Delay::None),
@@ -108,7 +108,7 @@ impl ReceiverChannel {
         ChannelResponse { gain, delay }
     }
 
-    /// Whether what it hears of a path needs room before the delay for ringing.
+    /// Returns whether what it hears of a path needs room before the delay for ringing.
     pub(crate) fn rings_early(&self) -> bool {
         matches!(self, Self::Ear(_))
     }

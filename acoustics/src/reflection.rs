@@ -69,7 +69,7 @@ fn from_all_sides(admittance: f64) -> f64 {
     8.0 * admittance * admittance * bracket(admittance)
 }
 
-/// What stands in the equation's brackets.
+/// Returns what stands in the equation's brackets.
 fn bracket(b: f64) -> f64 {
     1.0 + 1.0 / b - b / (1.0 + b) + 2.0 * libm::log(b / (1.0 + b))
 }

@@ -29,7 +29,7 @@ impl ImpulseResponse {
         self.samples.len() / self.channels.max(1)
     }
 
-    /// Whether nothing is heard.
+    /// Returns whether nothing is heard.
     pub fn is_empty(&self) -> bool {
         self.samples.is_empty()
     }

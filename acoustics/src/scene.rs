@@ -141,7 +141,7 @@ impl AcousticScene {
         scene
     }
 
-    /// What laws do to air and sources.
+    /// Returns what laws do to air and sources.
     pub(crate) fn effects(&self) -> &PathEffects {
         &self.effects
     }
@@ -223,7 +223,7 @@ impl AcousticScene {
         scattering
     }
 
-    /// Whether the state overrides a number of the material called `name`.
+    /// Returns whether the state overrides a number of the material called `name`.
     pub(crate) fn is_overridden(&self, name: &str) -> bool {
         let prefix = format!("material/{name}/");
         let mut addresses = self.overrides.keys();
@@ -240,12 +240,12 @@ impl AcousticScene {
         }
     }
 
-    /// What sound meets: areas, mean absorption, which materials are guesses.
+    /// Returns what sound meets: areas, mean absorption, which materials are guesses.
     pub fn explain(&self) -> AcousticReport {
         AcousticReport::new(self)
     }
 
-    /// Whether source and receiver are somewhere, and rays meet this house.
+    /// Returns whether source and receiver are somewhere, and rays meet this house.
     pub(crate) fn check(
         &self,
         rays: &RayScene,
@@ -353,7 +353,7 @@ impl AcousticScene {
         echogram
     }
 
-    /// What `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
+    /// Returns what `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
     /// have it.
     ///
     /// A law of microphones that has no impulse response (clipping, automatic gain, noise, clocks) does to this what it does to
@@ -418,7 +418,7 @@ impl AcousticScene {
         self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
     }
 
-    /// What the laws of microphones make of a response.
+    /// Returns what the laws of microphones make of a response.
     fn record(
         &self,
         response: ImpulseResponse,
@@ -434,7 +434,7 @@ impl AcousticScene {
         }
     }
 
-    /// Who listens; `room` and `own` as in [`StageContext`].
+    /// Returns who listens; `room` and `own` as in [`StageContext`].
     pub(crate) fn listener<'a>(
         &'a self,
         receiver: &'a Receiver,
@@ -450,7 +450,7 @@ impl AcousticScene {
         }
     }
 
-    /// Whether a receiver is in range, and its head known.
+    /// Returns whether a receiver is in range, and its head known.
     pub(crate) fn check_receiver(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
         receiver.check()?;
         self.heads.check(receiver)

@@ -72,7 +72,7 @@ impl AcousticSurface {
         }
     }
 
-    /// What is left of a wave that meets it with a cosine of incidence where so much is scattered.
+    /// Returns what is left of a wave that meets it with a cosine of incidence where so much is scattered.
     ///
     /// What is scattered forgets the angle that it came at, so that ways there and back lose alike.
     pub(crate) fn parts(&self, cosine: f32, scattering: &BandValues) -> ReflectedEnergy {

@@ -68,7 +68,7 @@ pub(crate) struct WallExit {
     pub(crate) passed: BandValues,
 }
 
-/// Where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
+/// Returns where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
 pub(crate) fn beyond(
     scene: &AcousticScene,
     rays: &RayScene,

@@ -61,7 +61,7 @@ fn squares_of(cell: usize) -> [f64; 3] {
     squares
 }
 
-/// What is left, at some times, of sound that filled a room with mirrors for walls evenly: its energy, and the mean squares of
+/// Returns what is left, at some times, of sound that filled a room with mirrors for walls evenly: its energy, and the mean squares of
 /// its directions, known by cell. Each direction u meets the walls across axis i `c |u_i| / L_i` times a second, always at the
 /// same angle.
 fn mirrors(kept: impl Fn(f64) -> f64, times_s: &[f64]) -> Vec<(f64, [f64; 3])> {

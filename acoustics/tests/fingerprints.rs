@@ -82,7 +82,7 @@ fn heard(
     response.unwrap()
 }
 
-/// What a microphone records of a signal in known noise.
+/// Returns what a microphone records of a signal in known noise.
 fn recording(hall: &Hall, hidden: &[LawSpec], at: Vec3, seed: u64, signal: &[f32]) -> Vec<f32> {
     let mut laws = vec![known_noise()];
     laws.extend(hidden.iter().cloned());
@@ -193,7 +193,7 @@ fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
     Vec3::new(side(2.0 * Vec3::X), side(Vec3::Y), side(2.0 * Vec3::Z))
 }
 
-/// Whether first-order ambisonics at [`NEAR`] hear known sources from elsewhere than they are, by the largest angle, degrees.
+/// Returns whether first-order ambisonics at [`NEAR`] hear known sources from elsewhere than they are, by the largest angle, degrees.
 fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let from = |laws: &[LawSpec], side: Vec3| {
         let receiver = Receiver::ambisonics(Pose::from_position(NEAR), 1);

@@ -199,7 +199,7 @@ fn a_point_that_is_nowhere_is_refused() {
     assert!(refused.unwrap_err().to_string().contains("the source"));
 }
 
-/// What air takes in 1 m by ISO 9613-1:1993, equations (3) to (5), in its own form: dB/m at 20 degrees Celsius, 50 % and 101.325 kPa.
+/// Returns what air takes in 1 m by ISO 9613-1:1993, equations (3) to (5), in its own form: dB/m at 20 degrees Celsius, 50 % and 101.325 kPa.
 fn iso_9613_1_db_per_m(frequency_hz: f64) -> f64 {
     let (t, t0, t01) = (293.15_f64, 293.15_f64, 273.16_f64);
     let vapour = 50.0 * 10.0_f64.powf(-6.8346 * (t01 / t).powf(1.261) + 4.6151);

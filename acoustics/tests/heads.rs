@@ -30,7 +30,7 @@ fn nowhere(rate_hz: u32) -> Hall {
     Hall::new(pieces(vec![(panel, material(0.5, 0.5))]), config)
 }
 
-/// What a head hears of a source in a direction in head space, from its centre. Shape (channel, sample).
+/// Returns what a head hears of a source in a direction in head space, from its centre. Shape (channel, sample).
 fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     scene.add_head(head);

@@ -50,7 +50,7 @@ fn each() -> Vec<LawSpec> {
     every
 }
 
-/// Whether a law has an impulse response: it neither looks at the level nor at the clock, and adds nothing.
+/// Returns whether a law has an impulse response: it neither looks at the level nor at the clock, and adds nothing.
 fn has_response(law: &LawSpec) -> bool {
     let others = [
         "background_noise",
@@ -115,7 +115,7 @@ fn play(
     heard
 }
 
-/// What [`Stream`] convolves with, computed offline under the laws. Shape (channel, sample).
+/// Returns what [`Stream`] convolves with, computed offline under the laws. Shape (channel, sample).
 fn response(hall: &Hall, laws: &[LawSpec]) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     let mut state = State::new(&hall.house);

@@ -69,7 +69,7 @@ impl Walk {
         }
     }
 
-    /// What is heard where the way ends.
+    /// Returns what is heard where the way ends.
     fn heard(&self, hall: &Hall, settings: StreamConfig, seed: u64) -> Echogram {
         let key = RandomKey::root(seed);
         let mut stream = Stream::new(hall.scene.clone(), settings, key, Threads::ONE).unwrap();

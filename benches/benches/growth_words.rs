@@ -68,7 +68,7 @@ impl Shape {
         }
     }
 
-    /// Where thing `k` goes.
+    /// Returns where thing `k` goes.
     fn place(self, k: usize, count: usize) -> Vec3 {
         let across = (count as f32).sqrt().ceil() as usize;
         match self {

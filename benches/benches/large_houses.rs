@@ -36,7 +36,7 @@ const ROUNDS: usize = 8;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// What is allocated and not freed, MiB.
+/// Returns what is allocated and not freed, MiB.
 fn in_use_mib() -> f64 {
     let stats = HEAP.stats();
     (stats.bytes_allocated - stats.bytes_deallocated) as f64 / MIB

@@ -41,7 +41,7 @@ pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
     }
 }
 
-/// What is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
+/// Returns what is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
 pub(crate) fn set_contact_properties(
     builder: ColliderBuilder,
     (own, special): (PairContact, bool),
@@ -171,7 +171,7 @@ pub(crate) fn invalidate_contacts(collider: &mut Collider) {
     collider.set_solver_groups(groups);
 }
 
-/// What the densities of each body's parts are multiplied with, so that overridden parts and objects weigh what they should. A
+/// Returns what the densities of each body's parts are multiplied with, so that overridden parts and objects weigh what they should. A
 /// part's own factor says how its mass is to the others', and the object's mass, where it is overridden, how much all weigh
 /// together. Shape (body, part).
 pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
@@ -256,7 +256,7 @@ pub(crate) fn colliders<'a>(engine: &'a RapierWorld, body: &BodyHandle) -> &'a [
         .map_or(&[], |rigid| rigid.colliders())
 }
 
-/// What a person calls an object: its finest category, else its name.
+/// Returns what a person calls an object: its finest category, else its name.
 pub(crate) fn name_of(house: &House, object: ObjectId) -> String {
     let object = &house.objects[object];
     let category = &object.category;

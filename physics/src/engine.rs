@@ -98,7 +98,7 @@ impl RapierWorld {
         self.parameters.dt * self.runs as f32
     }
 
-    /// How rapier keeps friction in contact points.
+    /// Returns how rapier keeps friction in contact points.
     pub(crate) fn friction_kept(&self) -> FrictionStorage {
         FrictionStorage {
             by_patch: self.parameters.friction_model == FrictionModel::Simplified,
@@ -106,7 +106,7 @@ impl RapierWorld {
         }
     }
 
-    /// Whether rapier runs several times in a physics step; contacts then tell of the last run.
+    /// Returns whether rapier runs several times in a physics step; contacts then tell of the last run.
     pub(crate) fn has_multiple_runs(&self) -> bool {
         self.runs > 1
     }
@@ -148,7 +148,7 @@ impl RapierWorld {
         body.colliders().iter().flat_map(pairs)
     }
 
-    /// Whether something pressed on a body in the last step.
+    /// Returns whether something pressed on a body in the last step.
     fn is_pressed(&self, body: &RigidBody) -> bool {
         if self.soft {
             return self.pairs_of(body).any(ContactPair::has_any_active_contact);
@@ -159,7 +159,7 @@ impl RapierWorld {
             .any(|(_, point)| point.impulse > 0.0)
     }
 
-    /// Whether a body rests on something: that presses, and is not left at a speed that a step of gravity does not take back;
+    /// Returns whether a body rests on something: that presses, and is not left at a speed that a step of gravity does not take back;
     /// or that it stands over so low, and moves so slowly, that its bounces would last two steps. Contacts that give carry as
     /// long as they touch.
     fn is_carried(&self, body: &RigidBody) -> bool {

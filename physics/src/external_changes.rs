@@ -212,7 +212,7 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// Where a joint stands and how fast it moves, rad or m and per second, as the next step begins; `None` for a joint that
+    /// Returns where a joint stands and how fast it moves, rad or m and per second, as the next step begins; `None` for a joint that
     /// moves nothing.
     ///
     /// Physics moves joints by their own numbers. It goes on from those of the state where bodies say the same up to the
@@ -226,7 +226,7 @@ impl PhysicsWorld {
     }
 }
 
-/// Whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass, `arm`
+/// Returns whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass, `arm`
 /// away, m.
 fn same_velocity(a: &Velocity, b: &Velocity, arm: Vec3) -> bool {
     let most = |v: Vec3| v.abs().max_element();

@@ -19,7 +19,7 @@ pub(crate) struct BodyInertia {
 }
 
 impl BodyInertia {
-    /// What a body's pieces have and its parts state in a world, with each part's density times its factor. Shape of
+    /// Returns what a body's pieces have and its parts state in a world, with each part's density times its factor. Shape of
     /// `factors`: (part,).
     pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
         let given = plan.given_mass(house, state, factors);
@@ -37,7 +37,7 @@ impl BodyInertia {
         }
     }
 
-    /// Whether the tensor is symmetric and positive definite.
+    /// Returns whether the tensor is symmetric and positive definite.
     pub(crate) fn is_positive(&self) -> bool {
         let t = self.tensor;
         let minor = t.x_axis.x * t.y_axis.y - t.x_axis.y * t.y_axis.x;

@@ -50,7 +50,7 @@ fn refuse<T>(
     })
 }
 
-/// Whether a world can hold a house as it stands in `state`.
+/// Returns whether a world can hold a house as it stands in `state`.
 pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, PhysicsError> {
     let house = &model.house;
     let bodies = model.bodies.len();
@@ -82,7 +82,7 @@ pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, Phy
     })
 }
 
-/// Whether joints that act on each other are few enough.
+/// Returns whether joints that act on each other are few enough.
 pub(crate) fn check_trees(
     house: &House,
     joints: &[PhysicsJoint],
@@ -104,7 +104,7 @@ pub(crate) fn check_trees(
     refuse(what, (count, MOST_JOINTS_TOGETHER), change)
 }
 
-/// Whether what passes through each other is few enough, of an object and those before it.
+/// Returns whether what passes through each other is few enough, of an object and those before it.
 pub(crate) fn check_passing(
     house: &House,
     object: ObjectId,
@@ -121,7 +121,7 @@ pub(crate) fn check_passing(
     refuse(what, (pairs, MOST_PASSING_PAIRS), change)
 }
 
-/// How many pairs of pieces rapier will keep as a world begins.
+/// Returns how many pairs of pieces rapier will keep as a world begins.
 fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
     /// What stands belongs to one body.
     const STANDS: u32 = u32::MAX;

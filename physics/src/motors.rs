@@ -5,12 +5,12 @@ use crate::laws::{InstalledLaw, MotorStep};
 use crate::world::PhysicsWorld;
 use dwell_scene::{JointCommand, JointId, State};
 
-/// Whether a law changes what motors do between control steps.
+/// Returns whether a law changes what motors do between control steps.
 pub(crate) fn are_driven(laws: &[InstalledLaw]) -> bool {
     laws.iter().any(|installed| installed.law.drives())
 }
 
-/// What a joint's motor is told in this control step.
+/// Returns what a joint's motor is told in this control step.
 pub(crate) fn commanded(state: &State, joint: JointId) -> JointCommand {
     let command = state.joint_command[joint];
     if command.is_finite() {

@@ -34,7 +34,7 @@ pub struct PairCounts {
 }
 
 impl PhysicsWorld {
-    /// How many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
+    /// Returns how many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
     pub fn pair_counts(&self) -> PairCounts {
         let mut counts = PairCounts::default();
         for pair in self.engine.narrow_phase.contact_pairs() {

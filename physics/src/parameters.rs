@@ -184,7 +184,7 @@ impl PhysicsWorld {
         self.write_bodies(state);
     }
 
-    /// Whether a collider is a cylinder that rolls now: its contacts are asked about whatever the materials say.
+    /// Returns whether a collider is a cylinder that rolls now: its contacts are asked about whatever the materials say.
     fn rolls(&self, collider: ColliderHandle) -> bool {
         self.model.rollers.iter().any(|roller| {
             let body = self.bodies.get(roller.body());

@@ -154,7 +154,7 @@ impl PhysicsWorld {
         Ok(within)
     }
 
-    /// What is said of a part as what its body's first part does.
+    /// Returns what is said of a part as what its body's first part does.
     fn root_state(&self, body: &BodyState) -> Result<(PartId, Pose, Velocity), PhysicsError> {
         let house = &self.model.house;
         let Some(part) = house.parts.get(body.part) else {
@@ -228,7 +228,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// How a free body moves as physics itself has it, by one of its parts; `None` for what does not move.
+    /// Returns how a free body moves as physics itself has it, by one of its parts; `None` for what does not move.
     pub fn measure_body(&self, part: PartId) -> Option<BodyState> {
         let index = (*self.model.body_of_part.get(part)?)? as usize;
         let rigid = self.engine.bodies.get(self.bodies[index].handle)?;

@@ -59,7 +59,7 @@ impl SleepingIslandCache {
         self.place(body).is_ok()
     }
 
-    /// What those things touch that are laid aside, among themselves and with what stands.
+    /// Returns what those things touch that are laid aside, among themselves and with what stands.
     pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
         self.contacts.iter().map(|kept| kept.contact)
     }
@@ -100,7 +100,7 @@ enum WakeRequest {
 }
 
 impl RapierWorld {
-    /// Whether a body is free and sleeps: by rapier, or laid aside.
+    /// Returns whether a body is free and sleeps: by rapier, or laid aside.
     pub(crate) fn sleeps(&self, body: RigidBodyHandle) -> bool {
         let rigid = self.bodies.get(body);
         self.sleeping_cache.has(body)
@@ -197,7 +197,7 @@ impl RapierWorld {
         self.sleeping_cache.forget_contacts(&woken);
     }
 
-    /// How far from where a body is something must be so that it does not meet it in the next step; `None` for what stands.
+    /// Returns how far from where a body is something must be so that it does not meet it in the next step; `None` for what stands.
     fn reach_m(&self, body: RigidBodyHandle) -> Option<f32> {
         let rigid = self.bodies.get(body)?;
         let dt_s = self.step_s();
@@ -413,7 +413,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// Who touches whom among the pairs that rapier has.
+    /// Returns who touches whom among the pairs that rapier has.
     fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
         touching(
             &self.engine.narrow_phase,
@@ -444,7 +444,7 @@ impl PhysicsWorld {
         contacts.dedup_by_key(|contact| (contact.a, contact.b));
     }
 
-    /// Whether a body sleeps and has nothing to do with hands.
+    /// Returns whether a body sleeps and has nothing to do with hands.
     fn is_cacheable(&self, index: usize) -> bool {
         let handle = self.bodies[index].handle;
         let rigid = self.engine.bodies.get(handle);

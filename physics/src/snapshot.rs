@@ -102,7 +102,7 @@ impl PhysicsWorld {
         self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
     }
 
-    /// What a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder; a
+    /// Returns what a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder; a
     /// heap in motion may pass it.
     pub fn largest_snapshot(&self) -> usize {
         (256 + 2 * self.bodies.len()) * 1024

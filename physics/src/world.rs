@@ -329,7 +329,7 @@ impl PhysicsWorld {
         &self.settings.config
     }
 
-    /// What became, in the last step, of doors and grips that take time.
+    /// Returns what became, in the last step, of doors and grips that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
         &self.notices
     }
@@ -356,7 +356,7 @@ impl PhysicsWorld {
         self.tick as f64 / f64::from(self.settings.config.physics_rate_hz)
     }
 
-    /// How many rigid bodies are awake.
+    /// Returns how many rigid bodies are awake.
     pub fn awake_count(&self) -> usize {
         let awake = |body: &&BodyHandle| {
             let rigid = self.engine.bodies.get(body.handle);
@@ -489,7 +489,7 @@ impl fmt::Debug for PhysicsWorld {
     }
 }
 
-/// Where a body is, in the scene's words.
+/// Returns where a body is, in the scene's words.
 pub(crate) fn pose_of(engine: &RapierWorld, body: &BodyHandle) -> Option<dwell_scene::Pose> {
     engine
         .bodies

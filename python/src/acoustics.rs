@@ -193,7 +193,7 @@ pub(crate) fn response_metrics_json(
     })
 }
 
-/// What two ears make of their impulse responses: one JSON object.
+/// Returns what two ears make of their impulse responses: one JSON object.
 #[pyfunction]
 pub(crate) fn ear_metrics_json(
     py: Python<'_>,

@@ -171,7 +171,7 @@ impl PyBatch {
         })
     }
 
-    /// How many steps each environment's episode has had.
+    /// Returns how many steps each environment's episode has had.
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let steps = self.with(py, |batch| {
             let of = |env: &Env| env.steps().cast_signed();
@@ -359,7 +359,7 @@ impl PyBatch {
             .into_pyarray(py))
     }
 
-    /// What the scripted expert of one environment would do now.
+    /// Returns what the scripted expert of one environment would do now.
     fn expert_action(&self, py: Python<'_>, env: usize) -> PyResult<i64> {
         self.with(py, |batch| Ok(batch.env_mut(env)?.expert_action()? as i64))
     }

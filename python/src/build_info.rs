@@ -138,7 +138,7 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
     facts.collect()
 }
 
-/// How quick the paths of an adapter are in a built-in house.
+/// Returns how quick the paths of an adapter are in a built-in house.
 fn speeds(adapter: &dwell_render::Adapter) -> Result<dwell_render::VisibilityPathSpeeds, String> {
     let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
     let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));

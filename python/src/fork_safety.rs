@@ -51,7 +51,7 @@ impl Drop for EngineCallGuard {
     }
 }
 
-/// Whether this is the thread on which Python runs handlers of signals.
+/// Returns whether this is the thread on which Python runs handlers of signals.
 pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
     let generation = GENERATION.load(Ordering::Relaxed);
     if let Some((of, is_main)) = MAIN.get()

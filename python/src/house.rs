@@ -155,13 +155,13 @@ impl PyHouse {
         py.engine(|| Ok::<_, PyFault>(!self.house().rooms.is_empty()))
     }
 
-    /// How many rooms and objects there are.
+    /// Returns how many rooms and objects there are.
     #[getter]
     fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
         py.engine(|| Ok::<_, PyFault>((self.house().rooms.len(), self.house().objects.len())))
     }
 
-    /// Whether the other house holds the same in all its tables, meshes and images.
+    /// Returns whether the other house holds the same in all its tables, meshes and images.
     fn same(&self, py: Python<'_>, other: &Self) -> PyResult<bool> {
         py.engine(|| {
             let (a, b) = (self.house(), other.house());
@@ -298,7 +298,7 @@ pub(crate) fn describe_level(
     })
 }
 
-/// Where an instruction leads, by the numbers of sensors and of the scene graph: ids of objects, rooms counted from 0.
+/// Returns where an instruction leads, by the numbers of sensors and of the scene graph: ids of objects, rooms counted from 0.
 fn goal(house: &House, goal: &InstructionGoal) -> Value {
     let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
     json!({

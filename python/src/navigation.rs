@@ -113,7 +113,7 @@ impl PyNavigation {
         })
     }
 
-    /// Where everything stands, as the constructor takes it; `None`: as the house starts.
+    /// Returns where everything stands, as the constructor takes it; `None`: as the house starts.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let bytes = py.engine(|| {
             let moment = self.moment()?;

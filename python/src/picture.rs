@@ -74,7 +74,7 @@ impl Default for PictureSettings {
     }
 }
 
-/// What the sensors called `channels` give for the view that `view_json` describes.
+/// Returns what the sensors called `channels` give for the view that `view_json` describes.
 pub(crate) fn render(
     world: &World,
     view_json: &str,
@@ -118,7 +118,7 @@ pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<
     })
 }
 
-/// Where the camera stands.
+/// Returns where the camera stands.
 fn place(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFault> {
     let own = &settings.camera;
     let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);

@@ -151,20 +151,20 @@ impl ObjectFacts {
         large.map(|(substance, _)| substance.adjective.as_str())
     }
 
-    /// Whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
+    /// Returns whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
     pub fn is_opening(&self) -> bool {
         let classes = ["door", "window", "curtain", "blinds"];
         self.category
             .is_some_and(|row| classes.contains(&row.nyu40_name))
     }
 
-    /// Whether it closes or frames a way between rooms.
+    /// Returns whether it closes or frames a way between rooms.
     pub fn is_door(&self) -> bool {
         let names = ["door", "garage_door", "arch"];
         self.category.is_some_and(|row| names.contains(&row.name))
     }
 
-    /// Whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
+    /// Returns whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
     /// coffee table).
     pub fn is_called(&self, noun: &str) -> bool {
         let matches = |name: &str| {

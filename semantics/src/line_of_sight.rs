@@ -9,7 +9,7 @@ use glam::Vec3;
 /// Where rays are aimed in a thing's box: its middle, and points 60 % of the way to its corners.
 const AIM: f32 = 0.6;
 
-/// Whether a straight line from the viewer meets `object` before anything else, at most `half_angle_rad` away from where
+/// Returns whether a straight line from the viewer meets `object` before anything else, at most `half_angle_rad` away from where
 /// the viewer looks.
 ///
 /// Nine rays are aimed at the thing's box; one that meets it first is enough. `rays` must be up to date with the scene's

@@ -40,7 +40,7 @@ pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<Roo
     found
 }
 
-/// How much of the border of `room` is open to each other room, m.
+/// Returns how much of the border of `room` is open to each other room, m.
 fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32> {
     let house = rays.house();
     let mut open = BTreeMap::new();

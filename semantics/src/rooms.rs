@@ -109,12 +109,12 @@ impl RoomProperties {
         }
     }
 
-    /// Where somebody in it is: "in the kitchen", "on the second balcony".
+    /// Returns where somebody in it is: "in the kitchen", "on the second balcony".
     pub fn place(&self) -> String {
         format!("{} the {}", preposition(&self.noun), self.label)
     }
 
-    /// Whether a speaker may call it `name`.
+    /// Returns whether a speaker may call it `name`.
     pub fn is_called(&self, name: &str) -> bool {
         self.names.iter().any(|known| known == name) || self.label == name
     }

@@ -129,12 +129,12 @@ impl<'a> SemanticScene<'a> {
         self.semantics.house()
     }
 
-    /// What is always true of an object.
+    /// Returns what is always true of an object.
     pub fn facts(&self, object: ObjectId) -> &'a ObjectFacts {
         self.semantics.facts(object)
     }
 
-    /// Whether every part of the object stands where the house puts it.
+    /// Returns whether every part of the object stands where the house puts it.
     pub fn at_rest(&self, object: ObjectId) -> bool {
         let house = self.house();
         house.objects[object]
@@ -142,7 +142,7 @@ impl<'a> SemanticScene<'a> {
             .all(|part| self.state.part_pose[part] == house.parts[part].world_from_part)
     }
 
-    /// Where the object is.
+    /// Returns where the object is.
     pub fn extent(&self, object: ObjectId) -> &Extent {
         if self.at_rest(object) {
             return self.semantics.rest_extent(object);
@@ -171,34 +171,34 @@ impl<'a> SemanticScene<'a> {
         found.map(ObjectId::from_index).collect()
     }
 
-    /// What the object rests on, the largest share first.
+    /// Returns what the object rests on, the largest share first.
     pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
         let supports = &self.known[object].supports;
         supports.get_or_init(|| supports_of(self, object))
     }
 
-    /// What the object is in, rising; at most 32 things.
+    /// Returns what the object is in, rising; at most 32 things.
     pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
         self.known[object]
             .around
             .get_or_init(|| containers(self, object))
     }
 
-    /// What may be next to the object, rising; at most [`MOST_NEAR`] things.
+    /// Returns what may be next to the object, rising; at most [`MOST_NEAR`] things.
     pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
         self.known[object]
             .near
             .get_or_init(|| neighbour_candidates(self, object))
     }
 
-    /// What is next to the object, rising.
+    /// Returns what is next to the object, rising.
     pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
         self.known[object]
             .beside
             .get_or_init(|| neighbours(self, object))
     }
 
-    /// Whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
+    /// Returns whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
     pub(crate) fn is_lain_upon(&self, object: ObjectId) -> bool {
         let seats = ["chair", "sofa", "bed"];
         let row = self.facts(object).category;
@@ -207,7 +207,7 @@ impl<'a> SemanticScene<'a> {
             && !places.any(|place| place.holding == ReceptacleKind::In)
     }
 
-    /// Who holds the object.
+    /// Returns who holds the object.
     pub fn holder(&self, object: ObjectId) -> Option<AgentId> {
         self.state.held_by.get(object).copied().flatten()
     }
@@ -252,7 +252,7 @@ impl<'a> SemanticScene<'a> {
         &rooms[room]
     }
 
-    /// How many windows a room has.
+    /// Returns how many windows a room has.
     pub(crate) fn windows_in(&self, room: RoomId) -> usize {
         let rooms = self.windows.get_or_init(|| {
             let mut rooms = IdVec::filled(0, self.house().rooms.len());

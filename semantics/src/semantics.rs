@@ -84,17 +84,17 @@ impl Semantics {
         &self.house
     }
 
-    /// What is always true of an object.
+    /// Returns what is always true of an object.
     pub fn facts(&self, object: ObjectId) -> &ObjectFacts {
         &self.facts[object]
     }
 
-    /// What is always true of a room.
+    /// Returns what is always true of a room.
     pub fn room(&self, room: RoomId) -> &RoomProperties {
         &self.rooms[room]
     }
 
-    /// Where a door or archway leads; `None` for other things.
+    /// Returns where a door or archway leads; `None` for other things.
     pub fn doorway(&self, door: ObjectId) -> Option<&RoomDoorway> {
         self.doorways.get(&door)
     }
@@ -141,7 +141,7 @@ impl Semantics {
         SemanticScene::new(self, state)
     }
 
-    /// Whether the relation `predicate` holds between two things.
+    /// Returns whether the relation `predicate` holds between two things.
     ///
     /// # Errors
     /// [`SemanticsError::UnknownPredicate`] for a name that [`predicates::all`] lacks.

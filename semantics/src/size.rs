@@ -5,7 +5,7 @@ use dwell_scene::math;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Whether a box says nothing about the size of such things: doors swing, cloth is folded, and what is built in has the size
+/// Returns whether a box says nothing about the size of such things: doors swing, cloth is folded, and what is built in has the size
 /// of its room.
 fn has_no_usual_size(row: &SemanticCategory) -> bool {
     let classes = ["door", "curtain", "blinds", "towel", "clothes", "counter"];

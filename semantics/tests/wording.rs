@@ -41,7 +41,7 @@ impl Told {
         predicate.holds(&scene, Term::Object(thing), other, None)
     }
 
-    /// What is said to tell a thing from others means that thing alone.
+    /// Returns what is said to tell a thing from others means that thing alone.
     fn refers(&self, object: ObjectId) -> String {
         let scene = self.semantics.scene(&self.state);
         let expression = refer(&scene, object).expect("it can be told apart");

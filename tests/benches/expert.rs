@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Whether the expert solves the episode that has begun; says how it ended where not.
+/// Returns whether the expert solves the episode that has begun; says how it ended where not.
 fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
     let mut last = Vec::new();
     for step in 0..MOST_STEPS {

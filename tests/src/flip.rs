@@ -140,7 +140,7 @@ impl Picture {
         adjusted.collect()
     }
 
-    /// How strong edges and points are at each pixel, in lightness (section 4.2).
+    /// Returns how strong edges and points are at each pixel, in lightness (section 4.2).
     fn features(&self) -> Vec<[f64; 2]> {
         let deviation = 0.5 * FEATURE_WIDTH_DEG * PIXELS_PER_DEG;
         let radius = (3.0 * deviation).ceil() as usize;

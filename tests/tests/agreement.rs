@@ -77,7 +77,7 @@ fn camera() -> Camera {
     camera.with_range(0.05, 50.0).unwrap()
 }
 
-/// What sensors give for the eyes of agents that walk and turn, one after the other in each place. Shape (view,) of (sensor,).
+/// Returns what sensors give for the eyes of agents that walk and turn, one after the other in each place. Shape (view,) of (sensor,).
 fn look(
     stage: &Stage,
     renderer: &BackEnd,
@@ -149,7 +149,7 @@ fn is_within(flips: &[f64]) -> bool {
     mean(flips) < MEAN_FLIP && beyond <= flips.len() / 100
 }
 
-/// Where two pictures show different things at one depth, within 0.1 mm or a millionth, the first one's colour is put in the second.
+/// Returns where two pictures show different things at one depth, within 0.1 mm or a millionth, the first one's colour is put in the second.
 /// Returns the share of such pixels. The views hold colour, depth and ids.
 fn leave_coincident_out(views: &[Vec<Observation>], others: &mut [Vec<Observation>]) -> f64 {
     let (mut coincident, mut all) = (0, 0);
@@ -376,7 +376,7 @@ fn rows(data: &ObservationData, parts: usize) -> BTreeMap<i64, Vec<f64>> {
     rows.map(|row| (row[0] as i64, row[1..].to_vec())).collect()
 }
 
-/// How many rows of a list are about things that only one of two pictures shows, or differ; of how many.
+/// Returns how many rows of a list are about things that only one of two pictures shows, or differ; of how many.
 fn rows_off(
     name: &str,
     pixels: &BTreeMap<i64, Vec<f64>>,

@@ -45,7 +45,7 @@ fn world(house: House) -> World {
     world
 }
 
-/// What both ears heard in some steps.
+/// Returns what both ears heard in some steps.
 fn heard_rms(world: &mut World, steps: usize) -> f64 {
     let mut power = 0.0;
     for _ in 0..steps {

@@ -108,7 +108,7 @@ fn air_db_per_m(hz: f64) -> f64 {
     place(pair)
 }
 
-/// What air leaves: each 10 ms of the response through a symmetric filter for the way it has come.
+/// Returns what air leaves: each 10 ms of the response through a symmetric filter for the way it has come.
 fn through_air(response: &[f64], speed: f64) -> Vec<f64> {
     const TAPS: usize = 33;
     let mut out = vec![0.0; response.len()];

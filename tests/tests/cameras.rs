@@ -76,7 +76,7 @@ const DEPTH: ImageChannels = ImageChannels {
     ..ImageChannels::NONE
 };
 
-/// Where the eye was a share of the last step ago; the agent turned evenly, about its own axis.
+/// Returns where the eye was a share of the last step ago; the agent turned evenly, about its own axis.
 fn eye_before(world: &World, share: f32) -> Pose {
     let is = world.state().agents[AgentId(0)].world_from_eye();
     let was = world.past().eye(AgentId(0), world.state()).unwrap();
@@ -140,7 +140,7 @@ fn turning(laws: Vec<LawSpec>) -> World {
     world
 }
 
-/// How fast the eye turned in the last step, rad/s.
+/// Returns how fast the eye turned in the last step, rad/s.
 fn turn_rate(world: &World) -> f32 {
     let is = world.state().agents[AgentId(0)].world_from_eye().rotation;
     let was = world

@@ -95,7 +95,7 @@ fn plans(golden: &mut Golden) {
     }
 }
 
-/// What the first agent sees.
+/// Returns what the first agent sees.
 fn eyes() -> PictureRequest {
     PictureRequest {
         camera: views::plain_camera(80, 60).unwrap(),

@@ -23,7 +23,7 @@ static ALONE: Mutex<()> = Mutex::new(());
 /// The most that a further world may keep, without images, bytes.
 const FURTHER_BYTES: i64 = 2 * 1024 * 1024;
 
-/// What is allocated and not freed, bytes.
+/// Returns what is allocated and not freed, bytes.
 fn in_use() -> i64 {
     let stats = HEAP.stats();
     stats.bytes_allocated as i64 - stats.bytes_deallocated as i64

@@ -35,7 +35,7 @@ fn env(renderer: &BackEnd, edge: u32, blurs: bool) -> Env {
     Env::new(dwell_tests::apartment(), &config).unwrap()
 }
 
-/// What a caller sees who resets, steps, changes and restores worlds, and looks at all or some of them.
+/// Returns what a caller sees who resets, steps, changes and restores worlds, and looks at all or some of them.
 fn play(renderer: &BackEnd, blurs: bool, overlaps: bool) -> Vec<Vec<Vec<u8>>> {
     use DiscreteAction::{MoveForward, TurnLeft, TurnRight};
     let envs = (0..COUNT).map(|_| env(renderer, 16, blurs)).collect();

@@ -103,7 +103,7 @@ fn parse(text: &str) -> Result<DependencyTree, String> {
 }
 
 impl DependencyTree {
-    /// What becomes part of a library that is made of `package`: all it uses, but for derive macros and what only they use.
+    /// Returns what becomes part of a library that is made of `package`: all it uses, but for derive macros and what only they use.
     pub(crate) fn linked(&self, package: &str) -> BTreeSet<PackageId> {
         let mut open: Vec<&PackageId> = self
             .packages

@@ -42,12 +42,12 @@ impl CreakSound {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
-    /// How long it is heard, s.
+    /// Returns how long it is heard, s.
     pub fn duration_s(&self) -> f64 {
         self.length() + SLIP_S + Radiator::new(&self.partners, self.place).ring_s() + 0.012
     }
 
-    /// When it slips, from the beginning of the stretch, s, and how hard, N·s.
+    /// Returns when it slips, from the beginning of the stretch, s, and how hard, N·s.
     fn slips(&self) -> Vec<(f64, f64)> {
         let [from, to] = self.angle_rad.map(f64::from);
         let turned = to - from;

@@ -59,7 +59,7 @@ fn table() -> &'static BTreeMap<String, ElasticProperties> {
     })
 }
 
-/// How the substance called `name` rings; one that the library does not know, as the library's default.
+/// Returns how the substance called `name` rings; one that the library does not know, as the library's default.
 ///
 /// # Panics
 /// Never: this crate's tests hold the table against the library.

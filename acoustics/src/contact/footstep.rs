@@ -72,7 +72,7 @@ impl FootstepSound {
         }
     }
 
-    /// How long it is heard, s.
+    /// Returns how long it is heard, s.
     pub fn duration_s(&self) -> f64 {
         let ring_s = Radiator::new(std::slice::from_ref(&self.floor), self.key).ring_s();
         (self.toe_s() + 0.1 + ring_s + 0.012).max(self.rub().duration_s())

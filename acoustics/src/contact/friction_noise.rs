@@ -62,7 +62,7 @@ impl FrictionSound {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
-    /// How long it is heard, s.
+    /// Returns how long it is heard, s.
     pub fn duration_s(&self) -> f64 {
         self.length() + Radiator::new(&self.partners, self.place).ring_s() + 0.012
     }

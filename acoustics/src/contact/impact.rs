@@ -30,7 +30,7 @@ pub struct ImpactSound {
 }
 
 impl ImpactSound {
-    /// How long it is heard, s: the blow, and the ringing down to 60 dB, at most 2.1.
+    /// Returns how long it is heard, s: the blow, and the ringing down to 60 dB, at most 2.1.
     pub fn duration_s(&self) -> f64 {
         let radiator = Radiator::new(&self.partners, self.key);
         lasts_s(&self.partners, f64::from(self.speed_m_s)) + radiator.ring_s() + 0.012

@@ -9,7 +9,7 @@ const LASTS_S: (f64, f64) = (2e-5, 0.1);
 const CURVATURE: f64 = 0.1;
 const CURVATURE_M: (f64, f64) = (2e-3, 5e-2);
 
-/// How long two things touch when they hit at `speed_m_s`, s.
+/// Returns how long two things touch when they hit at `speed_m_s`, s.
 ///
 /// # Source
 /// H. Hertz; K. L. Johnson, *Contact Mechanics* (1985), equation 11.24: T = 2.87 (m² / R E*² v)^(1/5).
@@ -28,7 +28,7 @@ pub(super) fn modulus_pa(a: &str, b: &str) -> f64 {
     1.0 / (yields[0] + yields[1])
 }
 
-/// How long a blow between two things lasts, s.
+/// Returns how long a blow between two things lasts, s.
 pub(super) fn lasts_s(partners: &[ContactPartner; 2], speed_m_s: f64) -> f64 {
     let inverse: f64 = partners
         .iter()

@@ -92,7 +92,7 @@ pub enum ContactSound {
 }
 
 impl ContactSound {
-    /// Where it sounds, m.
+    /// Returns where it sounds, m.
     pub fn position(&self) -> Vec3 {
         match self {
             Self::Impact(sound) => sound.position,
@@ -102,7 +102,7 @@ impl ContactSound {
         }
     }
 
-    /// How long it lasts with its ringing, s; at most 6.
+    /// Returns how long it lasts with its ringing, s; at most 6.
     pub fn duration_s(&self) -> f64 {
         match self {
             Self::Impact(sound) => sound.duration_s(),
@@ -126,7 +126,7 @@ impl ContactSound {
     }
 }
 
-/// How many samples a sound of a duration has.
+/// Returns how many samples a sound of a duration has.
 fn samples(duration_s: f64, rate_hz: u32) -> usize {
     (duration_s * f64::from(rate_hz)).ceil() as usize
 }

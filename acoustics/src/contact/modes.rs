@@ -95,7 +95,7 @@ pub struct BendingMode {
 }
 
 impl BendingPanel {
-    /// What `body` of a substance is.
+    /// Returns what `body` of a substance is.
     ///
     /// The box around it and its mass say how much of the box the substance fills: below 0.4 it is hollow, with walls of equal
     /// thickness all around, one of which bends.

@@ -126,7 +126,7 @@ impl Radiator {
         }
     }
 
-    /// How long it rings after the force has ended, until it has decayed by 60 dB, s.
+    /// Returns how long it rings after the force has ended, until it has decayed by 60 dB, s.
     pub(super) fn ring_s(&self) -> f64 {
         let longest = self
             .modes

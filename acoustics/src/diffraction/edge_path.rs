@@ -166,7 +166,7 @@ impl EdgeFrame {
 }
 
 impl EdgePath {
-    /// What an edge of this length stands for against an endless one. `n_per_m`: Fresnel number of a metre.
+    /// Returns what an edge of this length stands for against an endless one. `n_per_m`: Fresnel number of a metre.
     pub(super) fn reach(&self, n_per_m: f64) -> f64 {
         reach(self.ends_m, n_per_m)
     }

@@ -35,7 +35,7 @@ pub(super) fn passed(n: f64) -> f64 {
     (AT_BORDER * ratio * ratio).min(1.0)
 }
 
-/// What a second edge `apart_m` behind the first leaves of what one edge with the same detour lets pass: from 1 down to 1/3.
+/// Returns what a second edge `apart_m` behind the first leaves of what one edge with the same detour lets pass: from 1 down to 1/3.
 /// `bends`: Fresnel numbers of the bend at each edge alone; it acts in full only where both are well in the shadow of the other.
 ///
 /// # Source

@@ -62,7 +62,7 @@ impl EdgePoint {
         }
     }
 
-    /// Whether both belong to one profile: parallel, close together, and on one side of the straight line.
+    /// Returns whether both belong to one profile: parallel, close together, and on one side of the straight line.
     fn is_near(&self, other: &Self) -> bool {
         self.at.distance(other.at) < PROFILE_M
             && self.along.dot(other.along).abs() > 0.9
@@ -163,7 +163,7 @@ pub(crate) fn around_edges(
     paths.collect()
 }
 
-/// What edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
+/// Returns what edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
 pub(crate) fn in_sight(
     scene: &AcousticScene,
     rays: &RayScene,
@@ -173,7 +173,7 @@ pub(crate) fn in_sight(
     beside_edges(scene, rays, source, receiver, &[])
 }
 
-/// What edges that hide nothing but are close to the straight line leave of the sound, but for those of profiles that are `touched`
+/// Returns what edges that hide nothing but are close to the straight line leave of the sound, but for those of profiles that are `touched`
 /// anyway. Shape (band,).
 fn beside_edges(
     scene: &AcousticScene,

@@ -87,12 +87,12 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Where the next byte stands in the file.
+    /// Returns where the next byte stands in the file.
     pub(super) fn position(&self) -> u64 {
         self.start + self.at as u64
     }
 
-    /// How many bytes are left.
+    /// Returns how many bytes are left.
     pub(super) fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }

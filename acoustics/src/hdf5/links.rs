@@ -126,7 +126,7 @@ fn in_heap(
     Ok(found)
 }
 
-/// What a link message stands for if it has that name.
+/// Returns what a link message stands for if it has that name.
 fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
     let version = cursor.u8()?;
     if version != 1 {

@@ -51,7 +51,7 @@ impl Dataspace {
         Ok(Some(Self { lengths, longest }))
     }
 
-    /// How many values that are, if the number can be held.
+    /// Returns how many values that are, if the number can be held.
     pub(super) fn count(&self) -> Option<u64> {
         product(&self.lengths)
     }

@@ -54,7 +54,7 @@ impl HeadSet {
         }
     }
 
-    /// Whether a head is here.
+    /// Returns whether a head is here.
     pub(crate) fn knows(&self, id: HeadId) -> bool {
         self.others.contains_key(&id)
     }
@@ -68,7 +68,7 @@ impl HeadSet {
         heads
     }
 
-    /// Whether a receiver's head is here.
+    /// Returns whether a receiver's head is here.
     pub(crate) fn check(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
         match receiver.kind {
             ReceiverKind::Head(id) if !self.knows(id) => {

@@ -35,7 +35,7 @@ impl Ear {
     /// Both, in the order of the channels.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Where the ear points, in head space (forward -Z, right +X).
+    /// Returns where the ear points, in head space (forward -Z, right +X).
     pub fn axis_in_head(self) -> glam::Vec3 {
         match self {
             Self::Left => glam::Vec3::NEG_X,
@@ -115,7 +115,7 @@ impl Head {
         self.id
     }
 
-    /// What was found in the measurement; `None` for a sphere.
+    /// Returns what was found in the measurement; `None` for a sphere.
     pub fn about(&self) -> Option<&HeadSummary> {
         match &self.shape {
             HeadModel::Sphere { .. } => None,

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Angles of incidence in the table: every 3 degrees.
 const ANGLES: usize = 61;
 
-/// When a wave from far away reaches a point on a sphere, s, against when it would pass the centre.
+/// Returns when a wave from far away reaches a point on a sphere, s, against when it would pass the centre.
 ///
 /// # Source
 /// R. S. Woodworth, H. Schlosberg, *Experimental Psychology* (1954): straight on the lit side, along the great circle on

@@ -134,7 +134,7 @@ fn subtract_transmitted(
     around.retain(|path| path.energy.iter().any(|e| *e > 0.0));
 }
 
-/// What becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
+/// Returns what becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
 /// reflections that are still there.
 pub(crate) fn follow(
     scene: &AcousticScene,

@@ -4,7 +4,7 @@ use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-/// How far a microphone is off along one axis.
+/// Returns how far a microphone is off along one axis.
 const fn offset(name: &'static str) -> ParamInfo {
     ParamInfo {
         name,

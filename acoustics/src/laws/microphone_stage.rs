@@ -80,17 +80,17 @@ pub(crate) trait MicrophoneStage: fmt::Debug + Send + Sync {
     /// Goes on from what another stage of the same law remembered, possibly with other numbers.
     fn recall(&mut self, _memory: &StageMemory) {}
 
-    /// What it remembers.
+    /// Returns what it remembers.
     fn memory(&self) -> StageMemory {
         StageMemory::default()
     }
 
-    /// How many samples what it gives out is longer than what it is given, for `length` samples.
+    /// Returns how many samples what it gives out is longer than what it is given, for `length` samples.
     fn longer(&self, _length: usize) -> usize {
         0
     }
 
-    /// Whether the first block it hears must fade in when it is put to work amid sound: what comes late would begin with a step.
+    /// Returns whether the first block it hears must fade in when it is put to work amid sound: what comes late would begin with a step.
     fn starts_softly(&self) -> bool {
         false
     }

@@ -68,7 +68,7 @@ static LAWS: &[AcousticLaw] = &[
     clock_drift::LAW,
 ];
 
-/// What is known about each law of sound.
+/// Returns what is known about each law of sound.
 ///
 /// ```
 /// assert!(dwell_acoustics::laws::all().iter().any(|law| law.id == "microphone_noise"));
@@ -140,7 +140,7 @@ fn acting(spec: &LawSpec) -> Option<(&'static AcousticLaw, LawNumbers<'_>)> {
     (!spec.is_default(info)).then_some((law, LawNumbers { spec, info }))
 }
 
-/// What the installed laws do to air and sources.
+/// Returns what the installed laws do to air and sources.
 pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
     let mut effects = PathEffects::default();
     for (law, values) in installed.iter().filter_map(acting) {

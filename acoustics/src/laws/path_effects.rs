@@ -78,7 +78,7 @@ impl PathEffects {
         self.air_absorption
     }
 
-    /// Where a source's axis points, unit length, and its gains around that, in air with `speed_m_s`.
+    /// Returns where a source's axis points, unit length, and its gains around that, in air with `speed_m_s`.
     pub(crate) fn radiation(
         &self,
         source: &SoundSourcePose,

@@ -21,7 +21,7 @@ pub(super) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
     }
 }
 
-/// Who listens at `receiver` in the place `room`, in the block `own`.
+/// Returns who listens at `receiver` in the place `room`, in the block `own`.
 pub(super) fn with_listener<T>(
     receiver: &Receiver,
     room: u64,
@@ -40,7 +40,7 @@ pub(super) fn with_listener<T>(
     })
 }
 
-/// What one microphone gives out, its ringing included.
+/// Returns what one microphone gives out, its ringing included.
 pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
     with_listener(&here, seed, RandomKey::root(seed), |listener| {

@@ -27,7 +27,7 @@ const THIRDS_HZ: [f64; 10] = [
 ];
 
 impl BandWidth {
-    /// How many bands there are.
+    /// Returns how many bands there are.
     pub fn count(self) -> usize {
         match self {
             Self::Octave => 8,
@@ -126,7 +126,7 @@ impl ZeroPhaseFilters {
         bin as f64 * self.rate_hz / self.fft.len() as f64
     }
 
-    /// What a band holds of a spectrum, scaled so that a pulse keeps its energy; nothing above half the rate.
+    /// Returns what a band holds of a spectrum, scaled so that a pulse keeps its energy; nothing above half the rate.
     ///
     /// What rings before the signal stands at the end. Shape (sample,), longer than the signal.
     pub(super) fn band(&mut self, band: usize, spectrum: &[Complex<f32>]) -> Option<Vec<f32>> {
@@ -146,7 +146,7 @@ impl ZeroPhaseFilters {
         Some(self.fft.inverse(&mut filtered))
     }
 
-    /// What a spectrum holds below a frequency, in samples as those of [`Self::band`].
+    /// Returns what a spectrum holds below a frequency, in samples as those of [`Self::band`].
     pub(super) fn low_pass(&mut self, spectrum: &[Complex<f32>], edge_hz: f64) -> Vec<f32> {
         let gain = |bin: usize| {
             // A slope of half an octave, so that it rings little.

@@ -55,7 +55,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
     })
 }
 
-/// When the first sound of a band arrives, s; nothing in silence.
+/// Returns when the first sound of a band arrives, s; nothing in silence.
 fn first_arrival(echogram: &Echogram, band: usize) -> Option<f64> {
     let heard = |path: &&PropagationPath| path.energy[band] > 0.0;
     let paths = echogram.paths.iter().filter(heard);

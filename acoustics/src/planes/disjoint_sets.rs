@@ -12,7 +12,7 @@ impl DisjointSets {
         }
     }
 
-    /// Which number stands for the set of `k`.
+    /// Returns which number stands for the set of `k`.
     pub(super) fn root(&mut self, mut k: usize) -> usize {
         while self.parent[k] != k {
             self.parent[k] = self.parent[self.parent[k]];

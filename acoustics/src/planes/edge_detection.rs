@@ -87,7 +87,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diffractio
     merge(&edges)
 }
 
-/// Which triangles to look at: of equal ones the first two. Whether a side is shared or lies open needs no third, and things that
+/// Returns which triangles to look at: of equal ones the first two. Whether a side is shared or lies open needs no third, and things that
 /// stand at one place by the thousand are not compared with each other.
 fn two_of_each(corners: &[[Vec3; 3]]) -> Vec<usize> {
     let mut counts: HashMap<[[u32; 3]; 3], u8> = HashMap::with_capacity(corners.len());
@@ -174,7 +174,7 @@ impl FaceBoundary {
         self.along().dot(other.along()).abs() > STRAIGHT
     }
 
-    /// Whether it passes through a point.
+    /// Returns whether it passes through a point.
     fn passes(&self, point: Vec3) -> bool {
         let from_start = point - self.ends[0];
         let along_m = from_start.dot(self.along());
@@ -319,7 +319,7 @@ impl<'a> PlaneCoverage<'a> {
         Self { corners, order }
     }
 
-    /// Whether most of what lies beside a side belongs to other triangles of its plane.
+    /// Returns whether most of what lies beside a side belongs to other triangles of its plane.
     fn is_covered_beyond(&self, side: &TriangleSide) -> bool {
         let from = self.order.partition_point(|entry| entry.0 < side.plane);
         let to = self.order.partition_point(|entry| entry.0 <= side.plane);
@@ -334,7 +334,7 @@ impl<'a> PlaneCoverage<'a> {
     }
 }
 
-/// Whether a triangle contains a point that lies next to its plane.
+/// Returns whether a triangle contains a point that lies next to its plane.
 fn contains(triangle: &[Vec3; 3], point: Vec3) -> bool {
     let far = |axis: usize| {
         let values = triangle.map(|corner| corner[axis]);

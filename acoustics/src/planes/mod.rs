@@ -159,7 +159,7 @@ impl PlaneTable {
         self.at_start.len()
     }
 
-    /// Whether nothing reflects.
+    /// Returns whether nothing reflects.
     pub fn is_empty(&self) -> bool {
         self.at_start.is_empty()
     }
@@ -185,7 +185,7 @@ impl PlaneTable {
         place.map_or(ReflectorPanel::NONE, |place| self.panels[place])
     }
 
-    /// Where the triangle of a hit stands in the tables.
+    /// Returns where the triangle of a hit stands in the tables.
     fn place_of(&self, house: &House, hit: &Hit) -> Option<usize> {
         let geometry = house.geometry();
         let (placed, triangle) = if let Some(instance) = hit.instance {
@@ -199,7 +199,7 @@ impl PlaneTable {
         (place < self.of_triangle.len()).then_some(place)
     }
 
-    /// Where the moving parts stand at the start. Shape (moving part,).
+    /// Returns where the moving parts stand at the start. Shape (moving part,).
     pub(crate) fn poses_at_start(&self, house: &House) -> Vec<Pose> {
         let parts = self.moving.iter();
         parts

@@ -19,7 +19,7 @@ struct RelievedWall<'a> {
     bounds: Aabb,
 }
 
-/// How far the panel of each triangle stands out of the wall that it stands least out of, m, as [`of_panel`] has it; infinite
+/// Returns how far the panel of each triangle stands out of the wall that it stands least out of, m, as [`of_panel`] has it; infinite
 /// where no wall is near, and for walls. Shape (triangle,).
 pub(super) fn reliefs(
     corners: &[[Vec3; 3]],

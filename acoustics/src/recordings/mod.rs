@@ -166,7 +166,7 @@ impl Recording {
         &self.samples
     }
 
-    /// How long it is, s.
+    /// Returns how long it is, s.
     pub fn duration_s(&self) -> f64 {
         self.samples.len() as f64 / f64::from(self.rate_hz)
     }

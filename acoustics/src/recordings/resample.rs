@@ -48,7 +48,7 @@ fn kernel() -> &'static [f64] {
     })
 }
 
-/// How many samples `count` become.
+/// Returns how many samples `count` become.
 pub(super) fn length(count: usize, from_hz: u32, to_hz: u32) -> usize {
     let (count, from) = (count as u128, u128::from(from_hz.max(1)));
     let samples = (count * u128::from(to_hz) * 2 + from) / (2 * from);

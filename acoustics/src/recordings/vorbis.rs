@@ -42,7 +42,7 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, Aco
 /// Samples of the longest block that the format knows.
 const LONGEST_BLOCK: u64 = 8192;
 
-/// How many samples the sound has, as its last page says; `None` when it does not end.
+/// Returns how many samples the sound has, as its last page says; `None` when it does not end.
 fn length(bytes: &[u8]) -> Option<u64> {
     const LAST_PAGE: u8 = 4;
     let last = bytes

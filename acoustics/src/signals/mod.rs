@@ -42,7 +42,7 @@ pub fn list() -> &'static [SignalInfo] {
     &table::ALL
 }
 
-/// What is known about the signal called `name`.
+/// Returns what is known about the signal called `name`.
 ///
 /// # Errors
 /// [`AcousticsError::UnknownSignal`] lists the names there are.
@@ -62,14 +62,14 @@ pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
 
 type SharedLoop = Arc<OnceLock<Arc<[f32]>>>;
 
-/// Where a loop is, or will be.
+/// Returns where a loop is, or will be.
 fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
     static LOOPS: Mutex<BTreeMap<(&'static str, u32), SharedLoop>> = Mutex::new(BTreeMap::new());
     let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
     loops.entry((info.name, rate_hz)).or_default().clone()
 }
 
-/// Whether a signal is known and has not been opened yet: opening it will take its time, up to a second.
+/// Returns whether a signal is known and has not been opened yet: opening it will take its time, up to a second.
 pub fn is_to_be_made(name: &str, rate_hz: u32) -> bool {
     info(name).is_ok_and(|info| made(info, rate_hz).get().is_none())
 }

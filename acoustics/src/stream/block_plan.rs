@@ -122,7 +122,7 @@ impl Stream {
         Ok(planned.collect())
     }
 
-    /// What has changed for a source; `None` for what was never heard.
+    /// Returns what has changed for a source; `None` for what was never heard.
     fn want(
         &self,
         around: &BlockContext<'_>,
@@ -224,7 +224,7 @@ impl Stream {
         all
     }
 
-    /// What another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
+    /// Returns what another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
     pub(super) fn nearby_similar_source(
         &self,
         rays: &RayScene,

@@ -73,7 +73,7 @@ impl ConvolverInput {
         &self.history
     }
 
-    /// Whether all that a filter can still reach is zero.
+    /// Returns whether all that a filter can still reach is zero.
     pub(super) fn is_silent(&self) -> bool {
         self.spectra.iter().all(Option::is_none)
     }

@@ -47,7 +47,7 @@ impl<'a> DelayedSegment<'a> {
         passage
     }
 
-    /// Where in the history sample `k` of the block is heard.
+    /// Returns where in the history sample `k` of the block is heard.
     #[inline(always)]
     fn place(&self, k: usize) -> f64 {
         let (from, to) = self.delays;
@@ -68,7 +68,7 @@ impl<'a> DelayedSegment<'a> {
         filtered
     }
 
-    /// What a filter of `taps` meets for the first `count` samples of the passage, and as many samples before them; silence where there
+    /// Returns what a filter of `taps` meets for the first `count` samples of the passage, and as many samples before them; silence where there
     /// is no history.
     fn met(&self, taps: usize, count: usize) -> Vec<f32> {
         let mut met = vec![0.0; taps + count];

@@ -18,7 +18,7 @@ pub(super) struct TrackedPath {
     pub(super) wavelets: Vec<Wavelet>,
 }
 
-/// How unlike two paths are, before and after a movement: how far their bends have slid, m; nothing where they are not one.
+/// Returns how unlike two paths are, before and after a movement: how far their bends have slid, m; nothing where they are not one.
 fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
     if a.planes != b.planes || a.bends.len() != b.bends.len() {
         return None;

@@ -157,7 +157,7 @@ impl Stream {
         self.block
     }
 
-    /// How each source is heard now, as energies, by its id: what an agent that needs no waveform observes. Early paths that are
+    /// Returns how each source is heard now, as energies, by its id: what an agent that needs no waveform observes. Early paths that are
     /// followed stand where they are now, the others and the tail where they were last traced.
     pub fn echograms(&self) -> impl Iterator<Item = (u64, Echogram)> {
         let voices = self.voices.iter();
@@ -320,7 +320,7 @@ impl Stream {
         Ok(report)
     }
 
-    /// Where the large parts are. Shape (large part,).
+    /// Returns where the large parts are. Shape (large part,).
     fn poses(&self, state: &State) -> Vec<Pose> {
         let parts = self.large_parts.iter();
         parts.map(|part| state.part_pose[*part]).collect()
@@ -340,7 +340,7 @@ impl Stream {
             .expect("a snapshot is plain data that postcard can always write to memory")
     }
 
-    /// What the stream remembers, as bytes: with them an equal stream continues bit for bit.
+    /// Returns what the stream remembers, as bytes: with them an equal stream continues bit for bit.
     pub fn snapshot(&self) -> Vec<u8> {
         let body = self.bytes();
         let mut bytes = xxh3_64(&body).to_le_bytes().to_vec();
@@ -409,7 +409,7 @@ impl Stream {
         voice
     }
 
-    /// What is random in how a source is heard.
+    /// Returns what is random in how a source is heard.
     fn key_of(&self, source: u64) -> RandomKey {
         self.key.child("source").child(source)
     }
@@ -420,7 +420,7 @@ impl Stream {
     }
 }
 
-/// What moves the early paths of a voice through its block.
+/// Returns what moves the early paths of a voice through its block.
 fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a SourceState) -> DelayGlide<'a> {
     DelayGlide {
         history: voice.input.history(),

@@ -49,7 +49,7 @@ impl ResponseUpdater<'_> {
         Ok((self.arrive(echogram), known))
     }
 
-    /// What `count` rays tell of a response.
+    /// Returns what `count` rays tell of a response.
     ///
     /// # Errors
     /// As [`AcousticScene::echogram`].

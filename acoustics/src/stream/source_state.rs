@@ -52,7 +52,7 @@ pub(super) struct UpdateThreshold {
 /// The tail that is heard beside a door changes with its way so many times faster than with one's own: a quarter of a turn changes all.
 const PART_WAYS: f32 = 25.0;
 
-/// How far the one that moved furthest did, m, or turned, rad: a part that turns by an angle moves its far edge about as many metres.
+/// Returns how far the one that moved furthest did, m, or turned, rad: a part that turns by an angle moves its far edge about as many metres.
 /// Shape of both: (large part,).
 pub(super) fn largest_movement(before: &[Pose], now: &[Pose]) -> f32 {
     let ways = before.iter().zip(now).filter(|(a, b)| a != b);
@@ -69,14 +69,14 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
 }
 
 impl ListeningSituation {
-    /// How far source and receiver are from where they are `now`, m; large parts' ways count [`PART_WAYS`] times.
+    /// Returns how far source and receiver are from where they are `now`, m; large parts' ways count [`PART_WAYS`] times.
     pub(super) fn moved_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
         let parts = PART_WAYS * largest_movement(&self.parts, &now.parts);
         f64::from(self.source.distance(now.source) + receivers + parts)
     }
 
-    /// Whether only source and receiver moved, and large parts if they are `passing`.
+    /// Returns whether only source and receiver moved, and large parts if they are `passing`.
     pub(super) fn differs_by_places_only(
         &self,
         now: &Self,
@@ -95,7 +95,7 @@ impl ListeningSituation {
             && there.change(now, threshold) == SituationChange::None
     }
 
-    /// Whether more has changed than where things are, so that nothing else may be heard any more.
+    /// Returns whether more has changed than where things are, so that nothing else may be heard any more.
     pub(super) fn is_of_another_kind(&self, now: &Self) -> bool {
         self.receiver.kind != now.receiver.kind
             || self.overrides != now.overrides
@@ -172,7 +172,7 @@ pub(super) struct TraceJob {
 }
 
 impl TraceJob {
-    /// Whether what it traces is still worth hearing. Parts that creep on meanwhile are heard by the rays that come later, and in its
+    /// Returns whether what it traces is still worth hearing. Parts that creep on meanwhile are heard by the rays that come later, and in its
     /// next turn.
     pub(super) fn is_still_useful(
         &self,

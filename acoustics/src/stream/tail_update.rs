@@ -34,18 +34,18 @@ pub(super) struct TailHistory<'a> {
     pub(super) update: u64,
 }
 
-/// How many rays an update traces that remembers the rest.
+/// Returns how many rays an update traces that remembers the rest.
 pub(super) fn rays_of(config: &AcousticConfig, share: f64) -> usize {
     (config.rays as f64 * share).ceil() as usize
 }
 
 impl TailHistory<'_> {
-    /// How many rays are traced anew.
+    /// Returns how many rays are traced anew.
     pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
         rays_of(config, self.share)
     }
 
-    /// How unlike `now` is to what was heard before, where it has mixed, as a deviate of a normal distribution: who walks through a
+    /// Returns how unlike `now` is to what was heard before, where it has mixed, as a deviate of a normal distribution: who walks through a
     /// door hears another tail, however short the way.
     ///
     /// # Source

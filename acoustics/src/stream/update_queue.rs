@@ -95,12 +95,12 @@ struct RayBudget {
 }
 
 impl RayBudget {
-    /// Whether there is room for `rays`.
+    /// Returns whether there is room for `rays`.
     fn holds(&self, rays: usize) -> bool {
         self.left.is_none_or(|left| rays <= left)
     }
 
-    /// Whether it is the turn of what takes `rays`.
+    /// Returns whether it is the turn of what takes `rays`.
     fn allows(&self, rays: usize) -> bool {
         !self.served || self.holds(rays)
     }

@@ -117,7 +117,7 @@ impl Synthesizer {
         }
     }
 
-    /// What `config`'s air, of whose absorption there is `share`, takes above the highest band.
+    /// Returns what `config`'s air, of whose absorption there is `share`, takes above the highest band.
     pub(crate) fn upper_air(&self, config: &AcousticConfig, share: f64) -> Option<UpperAir> {
         UpperAir::new(config, share, &self.filters)
     }

@@ -158,7 +158,7 @@ impl CachedGains {
 
 #[cfg(test)]
 impl CachedGains {
-    /// Whether both are the same piece of memory.
+    /// Returns whether both are the same piece of memory.
     pub(crate) fn are_shared_with(&self, other: &Self) -> bool {
         let both = self.0.as_ref().zip(other.0.as_ref());
         both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))

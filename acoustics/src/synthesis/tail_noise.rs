@@ -195,7 +195,7 @@ impl TailNoise<'_> {
         wanted
     }
 
-    /// How strong an arrival is in each band.
+    /// Returns how strong an arrival is in each band.
     fn pulse(&self, arrival: &TailArrival, levels: &BandGains) -> BandValues {
         let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
         std::array::from_fn(|band| arrival.amplitude[band] * levels[band].at(place))

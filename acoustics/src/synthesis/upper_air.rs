@@ -60,7 +60,7 @@ impl UpperAir {
         })
     }
 
-    /// What a path of `length_m` adds to the logarithm of its spectrum.
+    /// Returns what a path of `length_m` adds to the logarithm of its spectrum.
     pub(super) fn along(&self, length_m: f64) -> (&[Complex<f32>], f32) {
         (&self.per_m, length_m.min(FURTHEST_M) as f32)
     }

@@ -41,7 +41,7 @@ const OPEN_AIR_M: f32 = 20.0;
 /// Time over which directions are summed, s.
 const DIRECTION_S: f64 = 0.02;
 
-/// How far a ray starts off the surface at `point`, m: more than what f32 loses there.
+/// Returns how far a ray starts off the surface at `point`, m: more than what f32 loses there.
 pub(crate) fn margin_m(point: Vec3) -> f32 {
     1e-4 * point.abs().max_element().max(1.0)
 }
@@ -168,12 +168,12 @@ impl TraceProgress {
         }
     }
 
-    /// How many rays are done, in whole chunks.
+    /// Returns how many rays are done, in whole chunks.
     pub(crate) fn rays(&self) -> usize {
         self.chunks.saturating_mul(RAYS_PER_CHUNK)
     }
 
-    /// Whether it can be that of one receiver: whatever a snapshot says, going on with it must not panic.
+    /// Returns whether it can be that of one receiver: whatever a snapshot says, going on with it must not panic.
     pub(crate) fn is_sound(&self, config: &AcousticConfig) -> bool {
         let energy = |e: &f64| e.is_finite() && *e >= 0.0;
         let sums = |sums: &ReceiverSums| {
@@ -330,7 +330,7 @@ impl<'a> TailTrace<'a> {
         progress.chunks >= chunks || progress.enough
     }
 
-    /// What all rays so far tell. Shape (receiver,).
+    /// Returns what all rays so far tell. Shape (receiver,).
     pub(crate) fn end(&self, progress: TraceProgress) -> Vec<LateReverberation> {
         let config = self.scene.config();
         let speed = config.air.speed_of_sound_m_s();

@@ -373,7 +373,7 @@ fn sum(rays: &[TracedRay]) -> BandValues {
     sum
 }
 
-/// What energy is worth in each band: all bands are worth the same, 1, until they fall below their `least`. Shape (band,).
+/// Returns what energy is worth in each band: all bands are worth the same, 1, until they fall below their `least`. Shape (band,).
 fn band_importance(rays: &[TracedRay], least: &BandValues) -> BandValues {
     let all = sum(rays);
     std::array::from_fn(|band| {
@@ -441,7 +441,7 @@ impl TracedRay {
         }
     }
 
-    /// What it counts among others.
+    /// Returns what it counts among others.
     fn weight(&self, worth: &BandValues) -> f32 {
         self.energy
             .iter()

@@ -46,7 +46,7 @@ pub(super) struct SpanVariance {
 }
 
 impl SpanVariance {
-    /// Whether these are sums of numbers from 0.
+    /// Returns whether these are sums of numbers from 0.
     pub(super) fn is_sound(&self) -> bool {
         let mut all = self.sums.iter().chain(&self.squares);
         all.all(|sum| sum.is_finite() && *sum >= 0.0)

@@ -450,7 +450,7 @@ fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
     }
 }
 
-/// Whether there is enough to work with.
+/// Returns whether there is enough to work with.
 pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     let scene = &bundle.manifest.scene;
     let at = format!("{}/manifest.json", bundle.name);
@@ -564,7 +564,7 @@ pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     unit_checks::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
 }
 
-/// Whether no episode is longer than can be computed.
+/// Returns whether no episode is longer than can be computed.
 fn durations(bundle: &Bundle) -> CheckResult {
     for episode in &bundle.episodes {
         let samples = episode.samples.iter().map(|s| s.t_s);

@@ -105,7 +105,7 @@ pub(crate) struct MeasuredResponse {
 }
 
 impl Bundle {
-    /// What kind of measurement it is.
+    /// Returns what kind of measurement it is.
     pub(crate) fn kind(&self) -> BundleKind {
         self.manifest.kind
     }

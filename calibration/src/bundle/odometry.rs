@@ -48,7 +48,7 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Whether the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
+/// Returns whether the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
 pub(super) fn complete(
     name: &str,
     manifest: &Manifest,

@@ -152,7 +152,7 @@ fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec
     }
 }
 
-/// Whether the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
+/// Returns whether the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
 /// agree with the poses in unit, sign, frame and clock.
 pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> PoseCheck {
     let Some(form) = &manifest.poses else {
@@ -202,7 +202,7 @@ impl Mismatch {
         self.other_left += (other - from_poses).length_squared();
     }
 
-    /// How many times as large as the poses show the told velocities are.
+    /// Returns how many times as large as the poses show the told velocities are.
     fn factor(&self) -> f64 {
         self.along / self.shown
     }

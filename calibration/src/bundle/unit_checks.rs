@@ -42,7 +42,7 @@ fn is_near(found: f64, wanted: f64, tolerance: f64) -> bool {
     (found / wanted - 1.0).abs() <= tolerance
 }
 
-/// What to do about numbers in another unit. `key`: of the map of `dwell measure import`.
+/// Returns what to do about numbers in another unit. `key`: of the map of `dwell measure import`.
 fn convert(what: &str, unit: UnitScale, key: &str) -> String {
     let (name, factor) = unit;
     let digits = if factor.fract() == 0.0 { 0 } else { 4 };
@@ -52,13 +52,13 @@ fn convert(what: &str, unit: UnitScale, key: &str) -> String {
     )
 }
 
-/// What to do about angles that are larger by `factor` than radians; empty where degrees do not explain it.
+/// Returns what to do about angles that are larger by `factor` than radians; empty where degrees do not explain it.
 pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
     is_near(factor, DEGREES, FACTOR_TOLERANCE)
         .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
 }
 
-/// What to do about lengths that are larger by `factor` than metres; empty where no unit explains it.
+/// Returns what to do about lengths that are larger by `factor` than metres; empty where no unit explains it.
 pub(super) fn lengths(what: &str, factor: f64) -> Option<String> {
     let unit = LENGTHS
         .iter()
@@ -139,7 +139,7 @@ impl CoordinateTrack {
         median(&mut sizes).unwrap_or(0.0) / (0.674_5 * 20.0_f64.sqrt())
     }
 
-    /// Where the body turns from falling to rising, which no flight does, and by how much it rises: (s, m).
+    /// Returns where the body turns from falling to rising, which no flight does, and by how much it rises: (s, m).
     fn bounce(&self) -> Option<(f64, f64)> {
         let least = LEAST_RISE_M.max(RISE_SD * self.noise_m());
         // Without what one sample alone shows.
@@ -189,7 +189,7 @@ fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3
     })
 }
 
-/// Whether bodies fall along y by what the manifest says, in metres and seconds, and whether flights are flights alone.
+/// Returns whether bodies fall along y by what the manifest says, in metres and seconds, and whether flights are flights alone.
 pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> UnitCheck {
     let file = match manifest.kind {
         BundleKind::Trajectory => "trajectory.csv",
@@ -279,7 +279,7 @@ fn factors() -> impl Iterator<Item = f64> {
     std::iter::once(1.0).chain(LENGTHS.iter().map(|unit| unit.1))
 }
 
-/// What to change where a guess holds.
+/// Returns what to change where a guess holds.
 fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
     let mut told = String::new();
     if axis != 1 {

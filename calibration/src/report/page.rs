@@ -45,7 +45,7 @@ pub(crate) fn shares(title: &str, unit: &str, most: f64, rows: &[(String, Vec<f6
     svg::curves(title, (unit, most), ("percent", 100.0), &curves)
 }
 
-/// Which colour is which.
+/// Returns which colour is which.
 pub(crate) fn key<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let mut out = String::from("<p class=\"soft key\">");
     for (name, colour) in names.zip(COLOURS.iter().cycle()) {

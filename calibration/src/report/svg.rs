@@ -87,7 +87,7 @@ fn frame(x: &AxisScale, y: &AxisScale, x_name: &str, y_name: &str) -> String {
     out
 }
 
-/// What is left over time: before and after.
+/// Returns what is left over time: before and after.
 pub(super) fn residuals(plot: &ResidualPlot, name: &str) -> String {
     let points = || plot.before.iter().chain(&plot.after);
     let far = |k: usize| points().map(|p| p[k].abs()).fold(0.0, f64::max);

@@ -190,7 +190,7 @@ impl BallDrops {
     }
 }
 
-/// What lies after the release.
+/// Returns what lies after the release.
 fn released(rows: &[(f64, f64)]) -> &[(f64, f64)] {
     let falls = |pair: &[(f64, f64)]| {
         let ((t0, y0), (t1, y1)) = (pair[0], pair[RELEASE_SAMPLES]);

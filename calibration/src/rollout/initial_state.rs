@@ -26,7 +26,7 @@ pub struct TrackerNoise {
 }
 
 impl TrackerNoise {
-    /// What flights show of it: second differences of positions, freed from the fall, and of rotations have the square
+    /// Returns what flights show of it: second differences of positions, freed from the fall, and of rotations have the square
     /// root of six times the noise of one sample. The median keeps what is no noise out.
     pub fn of(episodes: &[PoseTrack], step_s: f64, gravity_m_s2: f64) -> Self {
         let fall = DVec3::NEG_Y * (gravity_m_s2 * step_s * step_s);

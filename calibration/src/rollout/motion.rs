@@ -43,7 +43,7 @@ impl Deviation {
         self.rotation_rad.to_degrees()
     }
 
-    /// Whether it is larger than `limit` in distance or angle.
+    /// Returns whether it is larger than `limit` in distance or angle.
     pub fn exceeds(&self, limit: &Self) -> bool {
         self.position_m > limit.position_m || self.rotation_rad > limit.rotation_rad
     }

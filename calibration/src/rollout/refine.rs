@@ -87,7 +87,7 @@ pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> 
     found
 }
 
-/// What came out, in a sentence.
+/// Returns what came out, in a sentence.
 pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
     let artefacts = refinements.iter().filter(|r| r.artefact);
     let told: Vec<String> = artefacts

@@ -77,7 +77,7 @@ pub fn scores(
 /// How often the chaos guard starts an episode once more.
 const NUDGES: u64 = 4;
 
-/// Whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence`]) when its start is drawn from within the
+/// Returns whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence`]) when its start is drawn from within the
 /// tracker's noise: which way it goes is chance then.
 ///
 /// # Errors

@@ -10,13 +10,13 @@ pub trait RolloutSubject: Sync {
     /// The simulation, set to some values.
     type Rig: Send + Sync;
 
-    /// How many episodes.
+    /// Returns how many episodes.
     fn count(&self) -> usize;
 
-    /// What was measured, at even spacing. Shape (sample,).
+    /// Returns what was measured, at even spacing. Shape (sample,).
     fn measured(&self, episode: usize) -> &[MeasuredMotion];
 
-    /// What the body did at each sample. Shape (sample,).
+    /// Returns what the body did at each sample. Shape (sample,).
     fn regimes(&self, episode: usize) -> &[Regime];
 
     /// Samples before a start that its state is estimated from and that must be there.
@@ -25,7 +25,7 @@ pub trait RolloutSubject: Sync {
     /// Apart by more than this, two predictions are of different outcomes.
     fn divergence(&self) -> Deviation;
 
-    /// How many samples ahead a residual tells most: pictures show that horizon, one of [`HORIZONS`](super::HORIZONS).
+    /// Returns how many samples ahead a residual tells most: pictures show that horizon, one of [`HORIZONS`](super::HORIZONS).
     fn telling_horizon(&self) -> usize {
         10
     }

@@ -124,7 +124,7 @@ pub fn ends<S: RolloutSubject>(
     Ok(found?.concat())
 }
 
-/// What the windows deviate by, by horizon and regime; those that diverge apart.
+/// Returns what the windows deviate by, by horizon and regime; those that diverge apart.
 pub fn windows(ends: &[WindowEnd]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {

@@ -23,7 +23,7 @@ pub struct Agreement {
 }
 
 impl Agreement {
-    /// Whether the two differ by more than chance and the precision of masses and sizes allow.
+    /// Returns whether the two differ by more than chance and the precision of masses and sizes allow.
     pub(crate) fn refutes(&self) -> bool {
         let size = self.weak.abs().max(self.strong.abs());
         self.z.abs() > REFUTED && (self.weak - self.strong).abs() > ALLOWED_SHARE * size

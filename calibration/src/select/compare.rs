@@ -114,7 +114,7 @@ impl CauseComparison<'_> {
         })
     }
 
-    /// How much better `larger` is than `smaller`. `effective_weight`: independent numbers in a number, the same for all models that
+    /// Returns how much better `larger` is than `smaller`. `effective_weight`: independent numbers in a number, the same for all models that
     /// are compared: a wrong model's residuals are correlated because it is wrong.
     ///
     /// # Source
@@ -144,7 +144,7 @@ impl CauseComparison<'_> {
         }
     }
 
-    /// Whether a comparison speaks for the larger model.
+    /// Returns whether a comparison speaks for the larger model.
     pub(crate) fn passes(&self, against: &ModelAdvantage) -> bool {
         against.delta_bic > self.options.min_delta_bic
             && against.gain.log_density_interval[0] > 0.0

@@ -56,7 +56,7 @@ fn autocorrelation(sequences: &[&[f64]]) -> f64 {
     if square > 0.0 { product / square } else { 0.0 }
 }
 
-/// How many independent numbers `count` autocorrelated ones are worth.
+/// Returns how many independent numbers `count` autocorrelated ones are worth.
 ///
 /// # Source
 /// G. V. Bayley, J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 184 (1946), for an autoregression of first order.
@@ -154,7 +154,7 @@ pub(crate) fn by_channel(
     report
 }
 
-/// How many independent numbers all residuals are worth.
+/// Returns how many independent numbers all residuals are worth.
 pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
     match twin.structure() {
         ResidualStructure::OverTime => {
@@ -196,7 +196,7 @@ pub struct UnexplainedResidual {
 }
 
 impl UnexplainedResidual {
-    /// Whether something systematic is left.
+    /// Returns whether something systematic is left.
     pub(crate) fn is_structured(&self) -> bool {
         self.ratio > self.threshold
     }

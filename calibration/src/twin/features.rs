@@ -28,7 +28,7 @@ pub(super) fn bands(rate_hz: u32) -> std::ops::Range<usize> {
     FIRST_BAND..NOMINAL_CENTRES_HZ.iter().filter(whole).count()
 }
 
-/// When the direct sound arrives, s from the first sample: the first sample near the peak, refined to a fraction of a
+/// Returns when the direct sound arrives, s from the first sample: the first sample near the peak, refined to a fraction of a
 /// sample by the parabola through the largest of the next few.
 pub(super) fn onset_s(response: &MeasuredResponse) -> f64 {
     let samples = &response.samples;
@@ -165,7 +165,7 @@ impl Smear {
     }
 }
 
-/// What chance does to a level, dB: with B T degrees of freedom the energy of overlapping arrivals spreads by 1/sqrt(B T)
+/// Returns what chance does to a level, dB: with B T degrees of freedom the energy of overlapping arrivals spreads by 1/sqrt(B T)
 /// of itself.
 ///
 /// # Source

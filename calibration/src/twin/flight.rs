@@ -332,7 +332,7 @@ impl Twin for FlightTwin {
             .collect())
     }
 
-    /// Where a flight starts shifts all of it.
+    /// Returns where a flight starts shifts all of it.
     fn derivative(
         &self,
         episode: usize,

@@ -77,20 +77,20 @@ pub(crate) trait Twin: Sync {
     fn episodes(&self) -> &[EpisodeData];
     /// The episodes, for estimates of their noise.
     fn episodes_mut(&mut self) -> &mut [EpisodeData];
-    /// What the channels mean.
+    /// Returns what the channels mean.
     fn channels(&self) -> &[ChannelInfo];
-    /// How noise is told from structure.
+    /// Returns how noise is told from structure.
     fn structure(&self) -> ResidualStructure;
-    /// What may be wrong.
+    /// Returns what may be wrong.
     fn causes(&self) -> &[Cause];
     /// Nuisances that all episodes share.
     fn shared(&self) -> &[FitParameter];
     /// Nuisances of each episode.
     fn own(&self) -> &[FitParameter];
-    /// Where an episode's nuisances start.
+    /// Returns where an episode's nuisances start.
     fn start(&self, episode: usize) -> Vec<f64>;
 
-    /// What the simulation says instead of [`EpisodeData::y`].
+    /// Returns what the simulation says instead of [`EpisodeData::y`].
     fn predict(
         &self,
         episode: usize,
@@ -153,7 +153,7 @@ pub(crate) trait Twin: Sync {
             .collect())
     }
 
-    /// What is known about a slot's parameter.
+    /// Returns what is known about a slot's parameter.
     fn parameter(&self, slot: ParameterIndex) -> &FitParameter {
         match slot {
             ParameterIndex::Own(k) => &self.own()[k],
@@ -218,7 +218,7 @@ impl ParameterVector {
         }
     }
 
-    /// Where fitting begins: no cause acts.
+    /// Returns where fitting begins: no cause acts.
     pub(crate) fn start(twin: &dyn Twin) -> Self {
         let parameters = twin.causes().iter().flat_map(|cause| &cause.parameters);
         Self {

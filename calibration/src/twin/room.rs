@@ -209,7 +209,7 @@ impl RoomTwin {
     }
 }
 
-/// How finely the twin hears.
+/// Returns how finely the twin hears.
 fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
     let air = &bundle.manifest.scene.environment;
     AcousticConfig {

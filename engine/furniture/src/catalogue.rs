@@ -49,7 +49,7 @@ impl CatalogueEntry {
         self
     }
 
-    /// Whether it may stand in a house of this style.
+    /// Returns whether it may stand in a house of this style.
     pub fn suits(&self, style: &Style) -> bool {
         self.styles.is_empty() || self.styles.contains(&style.name)
     }

@@ -109,7 +109,7 @@ impl Finish {
         (stuffed / self.substance().density_kg_m3).min(1.0)
     }
 
-    /// What it is made of.
+    /// Returns what it is made of.
     pub fn substance(&self) -> &'static Substance {
         library().get_or_default(self.substance)
     }

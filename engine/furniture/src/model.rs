@@ -337,7 +337,7 @@ impl Model {
         })
     }
 
-    /// Where a part stands at the start.
+    /// Returns where a part stands at the start.
     pub fn model_from_part(&self, part: usize) -> Pose {
         let Some(joint) = self.joints.iter().find(|joint| joint.child == part) else {
             return Pose::IDENTITY;

@@ -128,7 +128,7 @@ fn cut(collider: &Collider) -> Vec<Aabb> {
     (0..count as usize).map(piece).collect()
 }
 
-/// What is made to measure: equal settings are built once in a process and shared by all houses. `settings` names the thing and
+/// Returns what is made to measure: equal settings are built once in a process and shared by all houses. `settings` names the thing and
 /// says all that `build` depends on.
 pub fn built_to_size(settings: String, build: impl FnOnce() -> Model) -> Arc<Model> {
     static SHELF: Mutex<BTreeMap<String, Arc<Model>>> = Mutex::new(BTreeMap::new());

@@ -98,7 +98,7 @@ impl SizeSampler {
         items[self.below(purpose, N)]
     }
 
-    /// Whether something with this chance (0 to 1) is so.
+    /// Returns whether something with this chance (0 to 1) is so.
     pub(crate) fn chance(&self, purpose: &'static str, chance: f32) -> bool {
         self.key.child(purpose).stream().uniform_f32() < chance
     }

@@ -35,7 +35,7 @@ pub struct CategoryRow {
 }
 
 impl CategoryRow {
-    /// Whether a person can push it or pick it up.
+    /// Returns whether a person can push it or pick it up.
     pub fn is_movable(&self) -> bool {
         self.movable == 1
     }
@@ -45,12 +45,12 @@ impl CategoryRow {
         self.mass_kg
     }
 
-    /// Whether it has a switch.
+    /// Returns whether it has a switch.
     pub fn is_switchable(&self) -> bool {
         self.switchable == 1
     }
 
-    /// Whether it hangs on a wall or ceiling.
+    /// Returns whether it hangs on a wall or ceiling.
     pub fn is_mounted(&self) -> bool {
         self.mounted == 1
     }
@@ -65,7 +65,7 @@ impl CategoryRow {
         }
     }
 
-    /// What it is usually made of.
+    /// Returns what it is usually made of.
     pub fn substance(&self) -> &'static Substance {
         library().get_or_default(self.substances.split(';').next().unwrap_or_default())
     }

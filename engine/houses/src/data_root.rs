@@ -67,7 +67,7 @@ impl DataRoot {
         Ok(parts.join("/"))
     }
 
-    /// Whether a file exists at `path`, inside the root.
+    /// Returns whether a file exists at `path`, inside the root.
     pub fn has_file(&self, path: &str) -> bool {
         self.folder.join(path).is_file()
     }
@@ -88,7 +88,7 @@ impl DataRoot {
         Ok(names)
     }
 
-    /// Whether a link leads from `full`, which stands for `path` inside, out of the root.
+    /// Returns whether a link leads from `full`, which stands for `path` inside, out of the root.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`], and [`HousesError::Io`] when it does not exist.
@@ -148,7 +148,7 @@ impl UserFile {
     }
 }
 
-/// Whether a file is JSON by its name and holds all of these words: enough to tell formats apart, before anything is read in earnest.
+/// Returns whether a file is JSON by its name and holds all of these words: enough to tell formats apart, before anything is read in earnest.
 pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
     let is_json = path
         .extension()

@@ -155,22 +155,22 @@ impl LoadReport {
         &self.warnings
     }
 
-    /// How many distinct warnings there are.
+    /// Returns how many distinct warnings there are.
     pub fn len(&self) -> usize {
         self.warnings.len()
     }
 
-    /// Whether nothing was wrong.
+    /// Returns whether nothing was wrong.
     pub fn is_empty(&self) -> bool {
         self.warnings.is_empty() && self.not_kept == 0
     }
 
-    /// How many warnings were counted but not kept.
+    /// Returns how many warnings were counted but not kept.
     pub fn not_kept(&self) -> u64 {
         self.not_kept
     }
 
-    /// How often damage happened for which `is` holds.
+    /// Returns how often damage happened for which `is` holds.
     pub fn count(&self, is: impl Fn(&WarningKind) -> bool) -> u64 {
         self.warnings
             .iter()

@@ -19,7 +19,7 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usiz
         .collect()
 }
 
-/// How many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
+/// Returns how many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
 fn distance(a: &str, b: &str) -> usize {
     let letters = |text: &str| -> Vec<char> {
         let lower = text.chars().flat_map(char::to_lowercase);

@@ -226,7 +226,7 @@ fn images_of_basis_universal_are_reported_and_the_rest_is_read() {
     assert_eq!(report.count(unreadable), 1, "{report:?}");
 }
 
-/// What a foreign reader sees: the `gltf` crate's own document.
+/// Returns what a foreign reader sees: the `gltf` crate's own document.
 fn foreign(house: &House) -> ::gltf::Gltf {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.glb");

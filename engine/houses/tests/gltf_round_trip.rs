@@ -8,7 +8,7 @@ use dwell_houses::{WarningKind, gltf, open};
 use dwell_scene::House;
 use glam::Vec3;
 
-/// What was reported beside triangles without area, which models have.
+/// Returns what was reported beside triangles without area, which models have.
 fn real_damage(report: &dwell_houses::LoadReport) -> u64 {
     report.count(|damage| !matches!(damage, WarningKind::DegenerateTriangles))
 }

@@ -41,7 +41,7 @@ fn close(a: &Aabb, b: &Aabb, tolerance: f32) -> bool {
 
 type Look = (Option<(u32, u64)>, [u8; 3], u32);
 
-/// What the format keeps of a material: the image (its name may change), colour and opacity.
+/// Returns what the format keeps of a material: the image (its name may change), colour and opacity.
 fn seen(house: &House, material: &Material) -> Look {
     let image = |rgba: &[u8]| {
         rgba.iter().fold(0_u64, |hash, byte| {

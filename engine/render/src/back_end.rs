@@ -137,7 +137,7 @@ impl Renderer {
         }
     }
 
-    /// Whether [`Self::submit`] takes views of a preset: an adapter does, of those that it has.
+    /// Returns whether [`Self::submit`] takes views of a preset: an adapter does, of those that it has.
     pub fn can_submit(&self, preset: Preset) -> bool {
         matches!(self, Self::Gpu(_)) && preset != Preset::Full
     }
@@ -176,7 +176,7 @@ impl Renderer {
         }
     }
 
-    /// Who renders, in words: `cpu`, or the adapter and its path.
+    /// Returns who renders, in words: `cpu`, or the adapter and its path.
     pub fn describe(&self) -> String {
         match self {
             Self::Cpu(_) => "cpu".to_owned(),

@@ -72,7 +72,7 @@ impl ShadingMaterial {
         look
     }
 
-    /// How agents' bodies look: a middle blue, unlike most furniture.
+    /// Returns how agents' bodies look: a middle blue, unlike most furniture.
     pub(crate) fn body() -> Self {
         let base = [0.08, 0.19, 0.42];
         Self {

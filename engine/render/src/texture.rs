@@ -101,7 +101,7 @@ impl Textures {
         self.images[texture.index()].uniform
     }
 
-    /// Whether some texel lets light through.
+    /// Returns whether some texel lets light through.
     pub(crate) fn is_clear(&self, texture: TextureId) -> bool {
         self.images[texture.index()].clear
     }

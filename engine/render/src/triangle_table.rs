@@ -66,7 +66,7 @@ impl PosedTriangle {
 }
 
 impl PosedTriangle {
-    /// How texture coordinates change along a way on the triangle.
+    /// Returns how texture coordinates change along a way on the triangle.
     #[inline]
     pub(crate) fn uv_along(&self, way: Vec3) -> Vec2 {
         let [u, v] = &self.uv;
@@ -237,7 +237,7 @@ impl TriangleTable {
         self.first.iter().chain(&self.bodies).copied()
     }
 
-    /// Where a hit's triangle stands in the tables.
+    /// Returns where a hit's triangle stands in the tables.
     #[inline]
     pub(crate) fn position(&self, instance: Option<u32>, triangle: u32) -> usize {
         match instance {

@@ -19,7 +19,7 @@ fn room() -> World {
     World::new(House::shoebox(SIZE.to_array(), &ShoeboxMaterials::default()).unwrap())
 }
 
-/// Where a ray from [`EYE`] leaves the room: distance, and the wall's inward normal.
+/// Returns where a ray from [`EYE`] leaves the room: distance, and the wall's inward normal.
 fn wall(direction: Vec3) -> (f32, Vec3) {
     let mut nearest = (f32::INFINITY, Vec3::ZERO);
     for axis in 0..3 {

@@ -87,7 +87,7 @@ fn pictures_agree_with_single_rays() {
     }
 }
 
-/// Whether rays a thousandth of a pixel apart see different things.
+/// Returns whether rays a thousandth of a pixel apart see different things.
 fn edge(world: &World, view: &View, k: usize) -> bool {
     let width = view.camera.width() as usize;
     let image = Vec2::new((k % width) as f32 + 0.5, (k / width) as f32 + 0.5);

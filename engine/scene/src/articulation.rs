@@ -91,7 +91,7 @@ impl JointCommand {
         }
     }
 
-    /// Whether its number is finite.
+    /// Returns whether its number is finite.
     pub fn is_finite(self) -> bool {
         match self {
             Self::Off => true,
@@ -167,7 +167,7 @@ impl Articulation {
         motion_along(self.kind, self.axis, position)
     }
 
-    /// Where the child stands when the parent stands at `world_from_parent` and the joint at `position`.
+    /// Returns where the child stands when the parent stands at `world_from_parent` and the joint at `position`.
     pub fn world_from_child(&self, world_from_parent: &Pose, position: f32) -> Pose {
         *world_from_parent
             * self.parent_from_joint
@@ -205,12 +205,12 @@ impl Articulation {
             .map_or(position, |[low, high]| position.clamp(low, high))
     }
 
-    /// Whether it is something to open and close by hand: a door, a drawer, a lid.
+    /// Returns whether it is something to open and close by hand: a door, a drawer, a lid.
     pub fn opens(&self) -> bool {
         self.open != self.closed && self.servo.is_none() && self.mimic.is_none()
     }
 
-    /// How far it is open: 0 closed, 1 fully open, clamped.
+    /// Returns how far it is open: 0 closed, 1 fully open, clamped.
     pub fn openness(&self, position: f32) -> f32 {
         let range = self.open - self.closed;
         if range == 0.0 {

@@ -59,7 +59,7 @@ impl Aabb {
         }
     }
 
-    /// Whether the box holds nothing.
+    /// Returns whether the box holds nothing.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }
@@ -87,17 +87,17 @@ impl Aabb {
         self.size().element_product()
     }
 
-    /// Whether `point` lies inside or on the border.
+    /// Returns whether `point` lies inside or on the border.
     pub fn contains(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// Whether all of `other` lies inside or on the border.
+    /// Returns whether all of `other` lies inside or on the border.
     pub fn encloses(&self, other: &Self) -> bool {
         self.contains(other.min) && self.contains(other.max)
     }
 
-    /// Whether the boxes share a point.
+    /// Returns whether the boxes share a point.
     pub fn intersects(&self, other: &Self) -> bool {
         self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }

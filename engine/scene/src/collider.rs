@@ -80,7 +80,7 @@ impl Collider {
         }
     }
 
-    /// Whether its numbers are finite and all of it lies within `reach_m` of the part's origin; sizes count without their sign,
+    /// Returns whether its numbers are finite and all of it lies within `reach_m` of the part's origin; sizes count without their sign,
     /// as physics takes them.
     pub fn is_valid(&self, reach_m: f32) -> bool {
         let around = |middle: Vec3, size_m: f32| middle.abs().max_element() + size_m.abs();

@@ -81,7 +81,7 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(&draft.path, &place)
 }
 
-/// Where a file that is written to `path` stands afterwards: elsewhere when `path` is a link.
+/// Returns where a file that is written to `path` stands afterwards: elsewhere when `path` is a link.
 ///
 /// # Errors
 /// When something stands there that is no regular file, or a link that leads nowhere.
@@ -135,7 +135,7 @@ impl StagedPath {
         Self::claim(place, make, |path| fs::remove_dir_all(path))
     }
 
-    /// Where it is.
+    /// Returns where it is.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -212,7 +212,7 @@ fn left_behind(path: &Path) -> Option<File> {
     (handle.try_lock().is_ok() && is_at(&handle, path)).then_some(handle)
 }
 
-/// Whether a handle is that of what stands at `path` now.
+/// Returns whether a handle is that of what stands at `path` now.
 #[cfg(unix)]
 fn is_at(handle: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt as _;

@@ -137,7 +137,7 @@ fn is_set(token: &CancelToken) -> bool {
     token.load(Ordering::Relaxed)
 }
 
-/// Whether this thread has somebody to ask.
+/// Returns whether this thread has somebody to ask.
 pub(crate) fn asks() -> bool {
     ASK.get().is_some()
 }

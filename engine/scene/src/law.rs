@@ -31,7 +31,7 @@ impl LawSpec {
         Some(self.params.get(name).copied().unwrap_or(param.default))
     }
 
-    /// Whether every parameter has its default: such a law is not installed, so that nothing changes bit for bit.
+    /// Returns whether every parameter has its default: such a law is not installed, so that nothing changes bit for bit.
     pub fn is_default(&self, info: &LawInfo) -> bool {
         info.params.iter().all(|param| {
             self.params

@@ -116,7 +116,7 @@ impl Read for WhileWanted {
     }
 }
 
-/// What [`pack`] packed with the same `base`.
+/// Returns what [`pack`] packed with the same `base`.
 ///
 /// # Errors
 /// [`SceneError::Snapshot`] for bytes that are damaged, or larger than 1 GiB unpacked.

@@ -84,7 +84,7 @@ impl Pose {
         Affine3A::from_rotation_translation(self.rotation, self.position)
     }
 
-    /// Whether all numbers are finite and the rotation has unit length (within 1e-3).
+    /// Returns whether all numbers are finite and the rotation has unit length (within 1e-3).
     pub fn is_valid(&self) -> bool {
         self.position.is_finite()
             && self.rotation.is_finite()

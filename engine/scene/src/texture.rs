@@ -109,7 +109,7 @@ impl Texture {
         })
     }
 
-    /// Whether the pixels are in memory.
+    /// Returns whether the pixels are in memory.
     pub fn is_painted(&self) -> bool {
         self.pixels.get().is_some()
     }

@@ -165,7 +165,7 @@ impl World {
         }))
     }
 
-    /// What the hand does to the thing the agent looks at; `None` for an action of the feet or neck.
+    /// Returns what the hand does to the thing the agent looks at; `None` for an action of the feet or neck.
     fn use_hand(&mut self, agent: AgentId, action: DiscreteAction) -> Option<ActionOutcome> {
         let on_target: fn(dwell_scene::ObjectId) -> Action = match action {
             DiscreteAction::Drop => return Some(self.act(agent, &Action::Drop)),

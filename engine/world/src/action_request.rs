@@ -123,7 +123,7 @@ impl ActionRequest {
         KINDS.iter().map(|(kind, _)| *kind)
     }
 
-    /// What is said besides the kind.
+    /// Returns what is said besides the kind.
     fn given_fields(&self) -> Vec<&'static str> {
         let throws = self.kind == "throw";
         let target = self.object.is_some()
@@ -279,7 +279,7 @@ fn missing(kind: &str, field: &str) -> WorldError {
 }
 
 impl World {
-    /// What a pixel of a camera at an agent's eye shows, as a target.
+    /// Returns what a pixel of a camera at an agent's eye shows, as a target.
     ///
     /// `eye_from_camera`: where the camera is mounted.
     /// `pixel`: column and row, counted from 0 at the top left; the middle of the pixel is meant.
@@ -386,7 +386,7 @@ impl World {
         Ok(self.act(agent, &action))
     }
 
-    /// What became, in the last step, of actions that take time.
+    /// Returns what became, in the last step, of actions that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
         self.physics().notices()
     }

@@ -59,7 +59,7 @@ impl Batch {
         })
     }
 
-    /// Whether an adapter takes the pictures of worlds that have stepped or begun while others still step. Observations are
+    /// Returns whether an adapter takes the pictures of worlds that have stepped or begun while others still step. Observations are
     /// the same, of the same step; what goes wrong with a picture is told by [`Self::observe`], which waits for it. Who
     /// steps without observing pays for pictures all the same. By the processor nothing changes.
     #[must_use]
@@ -130,7 +130,7 @@ impl Batch {
         self.or_over(&active, |batch| batch.env_mut(index)?.restore(bytes))
     }
 
-    /// What the scripted expert would do now in each environment.
+    /// Returns what the scripted expert would do now in each environment.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
@@ -140,7 +140,7 @@ impl Batch {
         Ok(actions.into_iter().flatten().collect())
     }
 
-    /// What every environment's sensors give.
+    /// Returns what every environment's sensors give.
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.envs[0].specs()
     }
@@ -296,7 +296,7 @@ impl Batch {
         })
     }
 
-    /// What the environments that begin will sound like and nobody has made yet; all have one rate.
+    /// Returns what the environments that begin will sound like and nobody has made yet; all have one rate.
     fn signals_to_make(&self, active: &[bool]) -> (Vec<String>, u32) {
         let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);

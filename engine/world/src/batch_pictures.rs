@@ -40,7 +40,7 @@ struct RendererGroup<'a> {
     orders: Vec<PictureOrder<'a>>,
 }
 
-/// What environments, with their numbers, ask for, by renderer.
+/// Returns what environments, with their numbers, ask for, by renderer.
 fn gather<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
 ) -> Result<Vec<RendererGroup<'a>>, WorldError> {

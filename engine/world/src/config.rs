@@ -154,7 +154,7 @@ impl WorldConfig {
     }
 }
 
-/// What is wrong with the body of one of the agents, with its place among them.
+/// Returns what is wrong with the body of one of the agents, with its place among them.
 fn of_agent(number: usize, error: SceneError) -> SceneError {
     match error {
         SceneError::Range {

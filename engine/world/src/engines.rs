@@ -91,7 +91,7 @@ impl Engines {
         Ok(renderer)
     }
 
-    /// What can be said about the house.
+    /// Returns what can be said about the house.
     pub fn semantics(&self) -> &Semantics {
         self.semantics.get_or_init(|| Semantics::new(&self.house))
     }
@@ -102,7 +102,7 @@ impl Engines {
             .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
     }
 
-    /// Where worlds of a config begin; worlds that run side by side share it.
+    /// Returns where worlds of a config begin; worlds that run side by side share it.
     pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<InitialWorld>, WorldError> {
         let mut latest = self.start.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = latest.as_ref().filter(|(of, _)| of == config);
@@ -189,7 +189,7 @@ impl Engines {
         self.recordings.check_house(&self.house)
     }
 
-    /// Where a body can walk in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
+    /// Returns where a body can walk in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
     ///
     /// # Errors
     /// As [`Engines::grid`].
@@ -203,7 +203,7 @@ impl Engines {
         })
     }
 
-    /// Where a walker can walk in the house as it starts. Grids of the latest eight walkers are kept and shared.
+    /// Returns where a walker can walk in the house as it starts. Grids of the latest eight walkers are kept and shared.
     ///
     /// # Errors
     /// [`WorldError::Scene`] for a setting out of range, or a house too large for the grid.

@@ -192,12 +192,12 @@ impl Env {
         self.kind
     }
 
-    /// How far movement actions go.
+    /// Returns how far movement actions go.
     pub fn stride(&self) -> &StepSizes {
         &self.stride
     }
 
-    /// What the sensors give, in order.
+    /// Returns what the sensors give, in order.
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.sensors.iter().map(|sensor| sensor.spec()).collect()
     }
@@ -218,7 +218,7 @@ impl Env {
         self.episode.as_ref()
     }
 
-    /// How many steps the episode has had; 0 where none runs.
+    /// Returns how many steps the episode has had; 0 where none runs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -279,7 +279,7 @@ impl Env {
         self.done = false;
     }
 
-    /// Whether a step can be made.
+    /// Returns whether a step can be made.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.
@@ -330,7 +330,7 @@ impl Env {
         })
     }
 
-    /// What the scripted expert would do now.
+    /// Returns what the scripted expert would do now.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
@@ -348,7 +348,7 @@ impl Env {
         self.world.listen(&self.requests.ears)
     }
 
-    /// What the sensors ask of the engines.
+    /// Returns what the sensors ask of the engines.
     pub(crate) fn requests(&self) -> &Requests {
         &self.requests
     }

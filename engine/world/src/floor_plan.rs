@@ -51,7 +51,7 @@ pub struct PlanDoor {
     pub open: [f32; 2],
 }
 
-/// What a plan of a storey says; neither rooms nor doors for a storey that the house does not have.
+/// Returns what a plan of a storey says; neither rooms nor doors for a storey that the house does not have.
 pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
     let (house, state) = (world.house(), world.state());
     let here = || {

@@ -142,7 +142,7 @@ fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> RoomVie
     }
 }
 
-/// How much a view shows of a room: the mean logarithm of distance to what is in it, and how many things there are.
+/// Returns how much a view shows of a room: the mean logarithm of distance to what is in it, and how many things there are.
 fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
     let [across, down] = RAYS;
     let mut seen: Vec<i32> = Vec::new();

@@ -20,7 +20,7 @@ pub(crate) struct InitialWorld {
 }
 
 impl InitialWorld {
-    /// What snapshots are packed beside, made when the first one asks.
+    /// Returns what snapshots are packed beside, made when the first one asks.
     pub(crate) fn base(&self, engines: &Engines, config: &WorldConfig) -> &SnapshotBase {
         self.base.get_or_init(|| SnapshotBase::of(engines, config))
     }

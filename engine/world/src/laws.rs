@@ -111,7 +111,7 @@ pub fn start<'a>(
     Ok(state)
 }
 
-/// What stands at any address: a law's, or one of the scene.
+/// Returns what stands at any address: a law's, or one of the scene.
 ///
 /// # Errors
 /// [`SceneError::Address`] says which word is wrong and what is allowed there.

@@ -120,7 +120,7 @@ fn check_against(need: &MemoryEstimate, count: usize, free: u64) -> Result<(), W
     })
 }
 
-/// What this process may still take: of the machine, of its group's limit and of its own; `None` where nobody says.
+/// Returns what this process may still take: of the machine, of its group's limit and of its own; `None` where nobody says.
 fn free_bytes() -> Option<u64> {
     let of_machine = kibibytes("/proc/meminfo", "MemAvailable:");
     [of_machine, of_group(), of_process()]

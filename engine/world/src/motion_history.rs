@@ -38,13 +38,13 @@ impl MotionHistory {
         self.feet.clear();
     }
 
-    /// Where an agent's eyes were; where they are, when nothing has been before.
+    /// Returns where an agent's eyes were; where they are, when nothing has been before.
     pub fn eye(&self, agent: AgentId, now: &State) -> Option<Pose> {
         let is = now.agents.get(agent)?.world_from_eye();
         Some(self.eyes.get(agent.index()).copied().unwrap_or(is))
     }
 
-    /// Whether nothing but eyes has moved.
+    /// Returns whether nothing but eyes has moved.
     pub(crate) fn is_still(&self, now: &State) -> bool {
         let feet = self.feet.iter().zip(now.agents.iter());
         self.moved.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)

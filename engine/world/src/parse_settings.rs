@@ -24,7 +24,7 @@ pub(crate) fn read<T: DeserializeOwned>(of: &'static str, value: &Value) -> Resu
     })
 }
 
-/// What a reader of JSON says, in people's words and without the place in a text that nobody wrote.
+/// Returns what a reader of JSON says, in people's words and without the place in a text that nobody wrote.
 pub fn plain_json_error(error: &serde_json::Error) -> String {
     let text = dwell_houses::plain_parse_error(error);
     let text = text.split(" at line ").next().unwrap_or_default();

@@ -113,7 +113,7 @@ impl PendingPicture {
         self.moments.copies = Vec::new();
     }
 
-    /// Whether [`Self::develop`] has something to do.
+    /// Returns whether [`Self::develop`] has something to do.
     pub(crate) fn is_exposed(&self) -> bool {
         !self.exposed.is_empty()
     }

@@ -195,7 +195,7 @@ impl World {
         }
     }
 
-    /// What all worlds over the house share.
+    /// Returns what all worlds over the house share.
     pub fn engines(&self) -> &Arc<Engines> {
         &self.engines
     }
@@ -220,12 +220,12 @@ impl World {
         &self.rays
     }
 
-    /// Where things were before the last step.
+    /// Returns where things were before the last step.
     pub fn past(&self) -> &MotionHistory {
         &self.past
     }
 
-    /// Whether laws of an agent's depth sensors look at normals.
+    /// Returns whether laws of an agent's depth sensors look at normals.
     pub(crate) fn needs_normals(&self, agent: AgentId) -> bool {
         dwell_render::Optics::of(&self.state.laws, agent).needs_normals()
     }
@@ -244,17 +244,17 @@ impl World {
         self.physics.merged_events()
     }
 
-    /// How many pairs of collision pieces physics keeps.
+    /// Returns how many pairs of collision pieces physics keeps.
     pub fn pair_counts(&self) -> dwell_physics::PairCounts {
         self.physics.pair_counts()
     }
 
-    /// What had to be moved or frozen so that the world could start.
+    /// Returns what had to be moved or frozen so that the world could start.
     pub fn start_report(&self) -> &StartReport {
         &self.start.report
     }
 
-    /// What stands at an address now.
+    /// Returns what stands at an address now.
     ///
     /// # Errors
     /// [`WorldError::Scene`] for an unknown address.

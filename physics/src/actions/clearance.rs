@@ -95,7 +95,7 @@ impl PhysicsWorld {
         })
     }
 
-    /// Whether a body would overlap nothing under a pose, besides agents that hold it.
+    /// Returns whether a body would overlap nothing under a pose, besides agents that hold it.
     pub(crate) fn is_clear(&self, body: usize, place: &RapierPose) -> bool {
         self.first_overlap(body, place, HolderContacts::Passes)
             .is_none()
@@ -145,7 +145,7 @@ impl PhysicsWorld {
         levels
     }
 
-    /// What a person calls something that touches.
+    /// Returns what a person calls something that touches.
     pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
         match entry.toucher {
             Some(ContactEntity::Structure(id)) => self.surface_name(SurfaceOwner::Structure(id)),

@@ -27,7 +27,7 @@ fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
 }
 
 impl PhysicsWorld {
-    /// Where a body comes to rest that is put under a pose, found by the same solver among what is near, which stands
+    /// Returns where a body comes to rest that is put under a pose, found by the same solver among what is near, which stands
     /// still meanwhile; `None` when it slides, topples or rolls away.
     pub(super) fn trial_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
         let plan = &self.model().bodies[body];

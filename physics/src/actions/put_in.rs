@@ -196,7 +196,7 @@ impl PhysicsWorld {
 }
 
 impl PhysicsWorld {
-    /// Whether a hand gets to a point inside a loose thing with a lid or a door, whose walls would otherwise be reached
+    /// Returns whether a hand gets to a point inside a loose thing with a lid or a door, whose walls would otherwise be reached
     /// around: straight out of it on some side nothing of it is in the way, and from there to the eye nothing else.
     fn gets_in(
         &self,
@@ -237,7 +237,7 @@ impl PhysicsWorld {
     }
 }
 
-/// Whether a space is the one that was pointed at: by its part, or by the point.
+/// Returns whether a space is the one that was pointed at: by its part, or by the point.
 fn is_meant(space: &Receptacle, aim: &ResolvedTarget, state: &State) -> bool {
     match (aim.point, aim.part) {
         (Some(point), _) => {

@@ -62,7 +62,7 @@ impl PhysicsWorld {
         None
     }
 
-    /// How far an object's surface is from a point, m, and its nearest point.
+    /// Returns how far an object's surface is from a point, m, and its nearest point.
     fn distance_m(&self, state: &State, object: ObjectId, from: Vec3) -> (f32, Vec3) {
         let mut points = Vec::new();
         let model: &PhysicsModel = self.model();
@@ -97,7 +97,7 @@ impl PhysicsWorld {
         (distance(&nearest), nearest)
     }
 
-    /// Whether some point of an object is seen; the error is what hides it, where that is something.
+    /// Returns whether some point of an object is seen; the error is what hides it, where that is something.
     fn sight(
         &self,
         state: &State,

@@ -62,7 +62,7 @@ pub enum Grasp {
 }
 
 impl Grasp {
-    /// Whether its numbers are in their ranges.
+    /// Returns whether its numbers are in their ranges.
     pub fn is_valid(&self) -> bool {
         match self {
             Self::Kinematic => true,

@@ -75,7 +75,7 @@ impl StablePose {
         self.high - self.low
     }
 
-    /// Where the body's origin is when the middle of its foot stands on a point.
+    /// Returns where the body's origin is when the middle of its foot stands on a point.
     pub(super) fn pose_on(&self, foot: Vec3) -> RapierPose {
         let middle = 0.5 * (self.low + self.high);
         let base = Vec3::new(middle.x, self.low.y - GAP_M, middle.z);
@@ -84,7 +84,7 @@ impl StablePose {
         pose
     }
 
-    /// How far the centre of mass lies within the part of the sole that is carried, in the worst direction, m.
+    /// Returns how far the centre of mass lies within the part of the sole that is carried, in the worst direction, m.
     fn stability_margin_m(&self, carried: &[bool; DIRECTIONS]) -> f32 {
         let points = || {
             self.sole
@@ -103,7 +103,7 @@ impl StablePose {
             .fold(f32::INFINITY, f32::min)
     }
 
-    /// Whether a thing that stands so on level ground stays, or at least stays when nobody touches it.
+    /// Returns whether a thing that stands so on level ground stays, or at least stays when nobody touches it.
     fn stands(&self, carried: &[bool; DIRECTIONS]) -> bool {
         let whole = self.stability_margin_m(&[true; DIRECTIONS]);
         let least = if whole >= STEADY_M { STEADY_M } else { ROUND_M };
@@ -157,7 +157,7 @@ impl PhysicsWorld {
         stances
     }
 
-    /// Where a body comes to rest with its foot's middle on a point: free of everything, on ground that carries it. What is
+    /// Returns where a body comes to rest with its foot's middle on a point: free of everything, on ground that carries it. What is
     /// in the way otherwise; `None` when it would not stay.
     pub(super) fn stand_at(
         &self,

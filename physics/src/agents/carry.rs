@@ -86,7 +86,7 @@ impl HeldObject {
     }
 }
 
-/// Where a held body shall be.
+/// Returns where a held body shall be.
 pub(crate) fn hand_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
     let yaw = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, 0.0);
     let pitch = holder.pitch_rad.clamp(PITCHES[0], PITCHES[1]);
@@ -190,12 +190,12 @@ impl ImplicitSpring {
 }
 
 impl HeldObject {
-    /// Whether it carries the whole weight.
+    /// Returns whether it carries the whole weight.
     pub(crate) fn is_firm(&self) -> bool {
         self.grasp == Grasp::Kinematic
     }
 
-    /// Where a held body's middle is, m.
+    /// Returns where a held body's middle is, m.
     pub(crate) fn middle_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
         *world_from_body * self.middle_in_body
     }

@@ -115,7 +115,7 @@ impl CharacterController<'_> {
         target
     }
 
-    /// Whether a movement leads from above something to above nothing at all: out of the house.
+    /// Returns whether a movement leads from above something to above nothing at all: out of the house.
     fn leaves(&self, feet: Vec3, target: Vec3) -> bool {
         !self.probe.is_above_something(target) && self.probe.is_above_something(feet)
     }

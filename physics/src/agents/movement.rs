@@ -107,7 +107,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// What surrounds an agent, which has the height it has now.
+    /// Returns what surrounds an agent, which has the height it has now.
     fn probe<'a>(
         &'a self,
         agent: &AgentState,
@@ -117,7 +117,7 @@ impl PhysicsWorld {
         self.probe_with(super::current_body(agent), id, others)
     }
 
-    /// What surrounds an agent with a body as high as it is now.
+    /// Returns what surrounds an agent with a body as high as it is now.
     pub(super) fn probe_with<'a>(
         &'a self,
         body: AgentBody,
@@ -250,7 +250,7 @@ impl PhysicsWorld {
     }
 }
 
-/// Where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
+/// Returns where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
 fn stride(agent: &AgentState, gait: &LeggedLocomotion, control: &AgentControl, dt_s: f32) -> Vec3 {
     let fastest = if agent.crouched_by_m > 0.0 {
         gait.max_crouched_speed_m_s.min(gait.max_speed_m_s)

@@ -6,7 +6,7 @@ use crate::error::PhysicsError;
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentBody, AgentState, Id, State};
 
-/// Whether two bodies take the same room.
+/// Returns whether two bodies take the same room.
 fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
     let room = |body: &AgentBody| (body.radius_m, body.height_m, body.step_height_m);
     room(a) == room(b)

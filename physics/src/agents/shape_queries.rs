@@ -79,7 +79,7 @@ pub(crate) struct AgentQueries<'a> {
 }
 
 impl AgentQueries<'_> {
-    /// What a collider is to this agent.
+    /// Returns what a collider is to this agent.
     fn sees(&self, collider: &Collider) -> ObstacleKind {
         let Some(entry) = self.entries.get(entry_index(collider)) else {
             return ObstacleKind::Ignored;
@@ -196,19 +196,19 @@ impl AgentQueries<'_> {
         })
     }
 
-    /// How far down the cylinder can go, as a fraction of `down_m`.
+    /// Returns how far down the cylinder can go, as a fraction of `down_m`.
     pub(crate) fn drop_fraction(&self, feet: Vec3, down_m: f32) -> f32 {
         let hit = self.cast_kind(feet, Vec3::NEG_Y * down_m, false);
         hit.map_or(1.0, |hit| hit.fraction)
     }
 
-    /// How far up the cylinder can go, as a fraction of `up_m`.
+    /// Returns how far up the cylinder can go, as a fraction of `up_m`.
     pub(crate) fn rise_fraction(&self, feet: Vec3, up_m: f32) -> f32 {
         let hit = self.cast_kind(feet, Vec3::Y * up_m, false);
         hit.map_or(1.0, |hit| hit.fraction)
     }
 
-    /// Whether the cylinder can rise by `up_m`.
+    /// Returns whether the cylinder can rise by `up_m`.
     pub(crate) fn headroom(&self, feet: Vec3, up_m: f32) -> bool {
         self.cast_kind(feet, Vec3::Y * up_m, false).is_none()
     }
@@ -225,12 +225,12 @@ impl AgentQueries<'_> {
         self.core().0.radius
     }
 
-    /// Whether the core overlaps something that cannot be pushed.
+    /// Returns whether the core overlaps something that cannot be pushed.
     pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
         self.overlaps(feet, self.core())
     }
 
-    /// Whether the whole cylinder overlaps something that cannot be pushed, or another agent.
+    /// Returns whether the whole cylinder overlaps something that cannot be pushed, or another agent.
     pub(crate) fn is_cylinder_blocked(&self, feet: Vec3) -> bool {
         let beside = |shell: &AgentCylinder| {
             let apart = (shell.feet - feet).with_y(0.0).length();
@@ -313,7 +313,7 @@ impl AgentQueries<'_> {
         Some(start.y - radius - fall * hit.time_of_impact)
     }
 
-    /// Whether something lies under the feet, however deep: no one walks out of the house onto nothing.
+    /// Returns whether something lies under the feet, however deep: no one walks out of the house onto nothing.
     pub(crate) fn is_above_something(&self, feet: Vec3) -> bool {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entries.get(entry_index(collider));
@@ -348,7 +348,7 @@ impl AgentQueries<'_> {
         (hit.time_of_impact > 0.0).then_some(up)
     }
 
-    /// Whether there is room above for a body that is taller by `up_m`.
+    /// Returns whether there is room above for a body that is taller by `up_m`.
     pub(crate) fn room_above(&self, feet: Vec3, up_m: f32) -> bool {
         let rise = Vec3::Y * up_m;
         let top = feet.y + self.body.height_m;

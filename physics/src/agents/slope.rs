@@ -14,7 +14,7 @@ const MARGIN: f32 = 1e-3;
 const FASTEST_M_S: f32 = 30.0;
 
 impl CharacterController<'_> {
-    /// Whether the surface under the middle of the feet, near `height_m`, is too steep to walk up.
+    /// Returns whether the surface under the middle of the feet, near `height_m`, is too steep to walk up.
     pub(super) fn is_too_steep(&self, feet: Vec3, height_m: f32) -> bool {
         let steepest = math::cos(self.probe.body.max_slope_rad);
         self.probe

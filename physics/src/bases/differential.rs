@@ -22,7 +22,7 @@ impl From<&DifferentialDrive> for WheelGeometry {
 }
 
 impl WheelGeometry {
-    /// How the body moves when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean of
+    /// Returns how the body moves when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean of
     /// both speeds forward, their difference over the wheel base to the left.
     ///
     /// # Source
@@ -81,7 +81,7 @@ pub(crate) struct WheelMotion {
 }
 
 impl WheelMotion {
-    /// How the body moves.
+    /// Returns how the body moves.
     pub(crate) fn twist(&self) -> PlanarTwist {
         let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip[side]));
         self.wheels.twist(gripping)

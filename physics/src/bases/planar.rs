@@ -36,7 +36,7 @@ fn sinc(x: f64) -> f64 {
 }
 
 impl PlanarPose {
-    /// Where a body is after it moved with a constant twist for `duration_s`: exactly, on an arc of a circle.
+    /// Returns where a body is after it moved with a constant twist for `duration_s`: exactly, on an arc of a circle.
     ///
     /// # Source
     /// The exponential map of SE(2): R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic

@@ -55,7 +55,7 @@ pub(super) fn speed_after(speed: f32, acceleration: f32, way_m: f32) -> f32 {
     (speed * speed + 2.0 * acceleration * way_m).max(0.0).sqrt()
 }
 
-/// Where the two surfaces of a contact point stood before the step.
+/// Returns where the two surfaces of a contact point stood before the step.
 fn ends_before(
     manifold: &ContactManifold,
     contact: &SolverContact,

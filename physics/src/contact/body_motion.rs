@@ -28,7 +28,7 @@ pub(crate) struct BodyMotion {
 }
 
 impl BodyMotion {
-    /// How far the body would have gone on in the step since then, when it was stopped on its way and kept its speed.
+    /// Returns how far the body would have gone on in the step since then, when it was stopped on its way and kept its speed.
     pub(super) fn held_back(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
         let fell = self.linear + self.gravity * dt_s;
         let free = (self.linear + fell) * (0.5 * dt_s);
@@ -44,7 +44,7 @@ impl BodyMotion {
         self.kinetic_energy_j - mass_kg * self.gravity.dot(self.center + self.ahead)
     }
 
-    /// Where the centre of mass of a body in free flight stands after a time, or stood before.
+    /// Returns where the centre of mass of a body in free flight stands after a time, or stood before.
     pub(super) fn center_after(&self, time_s: f32) -> Vec3 {
         self.center + self.ahead + (self.linear + self.gravity * (0.5 * time_s)) * time_s
     }
@@ -62,7 +62,7 @@ pub(super) fn before(motions: &[BodyMotion], body: Option<RigidBodyHandle>) -> B
         .unwrap_or_default()
 }
 
-/// Where the motion of a body is kept.
+/// Returns where the motion of a body is kept.
 fn at(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
     let index = body.into_raw_parts().0 as usize;
     if motions.len() <= index {

@@ -134,7 +134,7 @@ impl<'a> ContactCollector<'a> {
         (report.impulse > 0.0).then_some(report)
     }
 
-    /// What contacts pushed into the body of a collider in the step, N·s.
+    /// Returns what contacts pushed into the body of a collider in the step, N·s.
     fn pushed(
         &self,
         bodies: &RigidBodySet,

@@ -38,7 +38,7 @@ impl ContactClasses {
         }
     }
 
-    /// Whether some class of the surface is such.
+    /// Returns whether some class of the surface is such.
     pub(crate) fn any_class(&self, is: impl Fn(u16) -> bool) -> bool {
         match self {
             Self::Uniform(class) => is(*class),

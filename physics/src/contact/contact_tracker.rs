@@ -285,7 +285,7 @@ impl ContactAccumulator {
         self.travel / self.steps as f32
     }
 
-    /// What it was; nothing when the two stood, rocked or hardly touched.
+    /// Returns what it was; nothing when the two stood, rocked or hardly touched.
     fn kind(&self, config: &PhysicsConfig) -> Option<ContactKind> {
         if self.impulse_n_s < config.event_min_impulse_n_s {
             return None;

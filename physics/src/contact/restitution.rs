@@ -118,7 +118,7 @@ impl RestitutionContext<'_> {
         RestitutionResult { added, placed }
     }
 
-    /// What a body hit, apart from those `later`; `None` where nothing bounces.
+    /// Returns what a body hit, apart from those `later`; `None` where nothing bounces.
     fn landing(
         &self,
         engine: &RapierWorld,
@@ -241,7 +241,7 @@ impl RestitutionContext<'_> {
         })
     }
 
-    /// How fast two surfaces part where they stand after the step, m/s; 0 for those that had not been apart.
+    /// Returns how fast two surfaces part where they stand after the step, m/s; 0 for those that had not been apart.
     fn parting(
         &self,
         engine: &RapierWorld,
@@ -365,7 +365,7 @@ impl ImpactPoint {
 }
 
 impl ImpactSide {
-    /// How fast it goes in its direction, m/s.
+    /// Returns how fast it goes in its direction, m/s.
     fn speed(&self, engine: &RapierWorld, struck: &[ImpulseDynamics]) -> f32 {
         if let Some(joined) = &self.joined {
             return struck[joined.tree].speed(&joined.point) as f32;
@@ -376,7 +376,7 @@ impl ImpactSide {
         })
     }
 
-    /// How fast it goes after 1 N·s in its direction, m/s.
+    /// Returns how fast it goes after 1 N·s in its direction, m/s.
     fn inverse_effective_mass(&self, engine: &RapierWorld) -> f32 {
         match (&self.joined, self.body) {
             (Some(joined), _) => joined.point.inverse_effective_mass() as f32,
@@ -403,14 +403,14 @@ fn parent(engine: &RapierWorld, collider: ColliderHandle) -> Option<RigidBodyHan
     engine.colliders.get(collider).and_then(Collider::parent)
 }
 
-/// Whether a push moves a body: not what stands, sleeps, is led or hangs on joints.
+/// Returns whether a push moves a body: not what stands, sleeps, is led or hangs on joints.
 fn moves(engine: &RapierWorld, body: RigidBodyHandle) -> bool {
     let loose = engine.joints.attached_joints(body).next().is_none();
     let rigid = engine.bodies.get(body);
     loose && rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
 }
 
-/// How fast a point of a body goes along a direction after 1 N·s along it, m/s. `turn`: of the arm to the point with the
+/// Returns how fast a point of a body goes along a direction after 1 N·s along it, m/s. `turn`: of the arm to the point with the
 /// direction.
 fn inverse_effective_mass(engine: &RapierWorld, body: RigidBodyHandle, turn: Vec3) -> f32 {
     let Some(rigid) = engine.bodies.get(body).filter(|_| moves(engine, body)) else {

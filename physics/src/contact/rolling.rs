@@ -52,7 +52,7 @@ pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
 }
 
 impl RollingCylinder {
-    /// Whether it turns about its axis.
+    /// Returns whether it turns about its axis.
     pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
         let axis = body.position().rotation * self.axis_in_body;
         (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S

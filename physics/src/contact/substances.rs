@@ -155,7 +155,7 @@ impl ContactTable {
         }
     }
 
-    /// Whether some pair has other values than in `other`.
+    /// Returns whether some pair has other values than in `other`.
     pub(crate) fn differs(&self, other: &Self) -> bool {
         self.classes != other.classes || self.pairs != other.pairs
     }
@@ -166,7 +166,7 @@ impl ContactTable {
     }
 }
 
-/// How many pieces of the house have each class.
+/// Returns how many pieces of the house have each class.
 fn usage(house: &House, class_of_material: &IdVec<MaterialId, u16>, count: usize) -> Vec<usize> {
     let mut usage = vec![0; count];
     let parts = house.parts.iter().map(|part| &part.materials);

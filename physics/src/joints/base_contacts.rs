@@ -24,7 +24,7 @@ pub(super) enum SupportState {
 }
 
 impl SupportState {
-    /// Which directions it holds.
+    /// Returns which directions it holds.
     fn holds(self) -> [bool; 3] {
         match self {
             Self::Sticks => [true; 3],
@@ -185,7 +185,7 @@ impl ReducedProblem {
     }
 }
 
-/// How a point of a joint's body (or the root) moves, in three directions.
+/// Returns how a point of a joint's body (or the root) moves, in three directions.
 fn rows(
     motion: &TreeDynamics<'_>,
     floating: &FloatingBase,
@@ -210,7 +210,7 @@ fn rows(
 }
 
 impl BaseContactSolver {
-    /// What the root does when the joints have these velocities at the end of the step.
+    /// Returns what the root does when the joints have these velocities at the end of the step.
     pub(super) fn answer(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
         let mut left = self.momentum;
         for (column, velocity) in self.shared.iter().zip(velocities) {

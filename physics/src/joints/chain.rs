@@ -143,7 +143,7 @@ impl Chain {
         self.touches = external_contact::of_tree(engine, &bodies, floats);
     }
 
-    /// Whether what the tree hangs on stands.
+    /// Returns whether what the tree hangs on stands.
     pub(super) fn stands(&self) -> bool {
         self.stands
     }
@@ -214,7 +214,7 @@ impl Chain {
 }
 
 impl LawWrenchQuery<'_> {
-    /// How laws push at a body that moves with this velocity and spin.
+    /// Returns how laws push at a body that moves with this velocity and spin.
     fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
         (self.push)(LinkStep {
             body,
@@ -230,7 +230,7 @@ impl LawWrenchQuery<'_> {
 }
 
 impl Chain {
-    /// How laws push at a free root: it is looked at as the step begins.
+    /// Returns how laws push at a free root: it is looked at as the step begins.
     fn root_push(&self, pushed: &LawWrenchQuery<'_>) -> ExternalWrench {
         let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
             return ExternalWrench::default();
@@ -242,7 +242,7 @@ impl Chain {
         begins.at(body, lump, self.root_velocity, self.root.angular)
     }
 
-    /// How laws push at each joint's body. Shape (freedom,).
+    /// Returns how laws push at each joint's body. Shape (freedom,).
     fn pushes(
         &self,
         pushed: &LawWrenchQuery<'_>,

@@ -215,7 +215,7 @@ impl EffortProblem {
         gradient
     }
 
-    /// How far to go along `way`: to the lowest point, at most 1.
+    /// Returns how far to go along `way`: to the lowest point, at most 1.
     fn stride(&self, from: &[f64], way: &[f64]) -> f64 {
         let rise = |stride: f64| -> f64 {
             let there: Vec<f64> = from.iter().zip(way).map(|(v, d)| v + stride * d).collect();

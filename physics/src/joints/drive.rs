@@ -108,7 +108,7 @@ impl HandDrive {
     }
 }
 
-/// What pulls at a joint during the next control step, and how its hand stands. `values`: what is in force at the joint;
+/// Returns what pulls at a joint during the next control step, and how its hand stands. `values`: what is in force at the joint;
 /// `command`: what it is told;
 /// `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(

@@ -121,7 +121,7 @@ fn carry(
 }
 
 impl PredictedJoint {
-    /// Whether a joint that was as `before` came to `now` as it was expected to. rapier takes a whole step for the blow of a
+    /// Returns whether a joint that was as `before` came to `now` as it was expected to. rapier takes a whole step for the blow of a
     /// stop, and may leave the joint short of it.
     fn as_predicted(
         &self,

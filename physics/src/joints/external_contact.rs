@@ -41,7 +41,7 @@ impl ExternalContact {
     }
 }
 
-/// What touches the bodies of a tree, in a fixed order. `stands`: whether what carries it from below is left out; what it
+/// Returns what touches the bodies of a tree, in a fixed order. `stands`: whether what carries it from below is left out; what it
 /// carries of itself never is, or it would press on itself one way only.
 pub(super) fn of_tree(
     engine: &RapierWorld,

@@ -67,7 +67,7 @@ impl FloatingBase {
         }
     }
 
-    /// What the six freedoms resist with.
+    /// Returns what the six freedoms resist with.
     pub(super) fn inertia(&self) -> SymmetricMatrix {
         six_by_six(&self.whole)
     }

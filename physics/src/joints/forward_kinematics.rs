@@ -111,7 +111,7 @@ fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
 }
 
 impl JointPlacement {
-    /// Whether this is what bodies say, within these shares, or these numbers below 1.
+    /// Returns whether this is what bodies say, within these shares, or these numbers below 1.
     fn says(&self, (position, velocity): (f64, f64), within: [f32; 2]) -> bool {
         let same = |told: f32, found: f64, within: f32| {
             (found - f64::from(told)).abs() <= f64::from(within * told.abs().max(1.0))
@@ -120,7 +120,7 @@ impl JointPlacement {
     }
 }
 
-/// Whether bodies say the same of a joint as the numbers it was told, up to their rounding. A slide's numbers are differences
+/// Returns whether bodies say the same of a joint as the numbers it was told, up to their rounding. A slide's numbers are differences
 /// of places and velocities in the world, and round as those do.
 pub(crate) fn matches_bodies(
     engine: &RapierWorld,

@@ -57,14 +57,14 @@ pub(crate) struct ImpulsePoint {
 }
 
 impl ImpulsePoint {
-    /// How fast the point goes after 1 N·s, m/s.
+    /// Returns how fast the point goes after 1 N·s, m/s.
     pub(crate) fn inverse_effective_mass(&self) -> f64 {
         dot(&self.row, &self.answer)
     }
 }
 
 impl ImpulseDynamics {
-    /// Which of the world's trees a body is of.
+    /// Returns which of the world's trees a body is of.
     pub(crate) fn tree_of(
         trees: &[KinematicTree],
         joints: &[PhysicsJoint],
@@ -188,7 +188,7 @@ impl ImpulseDynamics {
         })
     }
 
-    /// What 1 N·s adds to the velocities. Joints at a stop are not pushed through it.
+    /// Returns what 1 N·s adds to the velocities. Joints at a stop are not pushed through it.
     fn answer(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
         let mut answer = inertia.factor().solve(row);
@@ -212,7 +212,7 @@ impl ImpulseDynamics {
         }
     }
 
-    /// How fast a point goes in its direction, m/s.
+    /// Returns how fast a point goes in its direction, m/s.
     pub(crate) fn speed(&self, point: &ImpulsePoint) -> f64 {
         dot(&point.row, &self.velocities) + point.root_velocity_along
     }
@@ -225,7 +225,7 @@ impl ImpulseDynamics {
         self.moved |= impulse != 0.0;
     }
 
-    /// How it moves, to be given back to [`ImpulseDynamics::restore_velocities`].
+    /// Returns how it moves, to be given back to [`ImpulseDynamics::restore_velocities`].
     pub(crate) fn velocities(&self) -> Vec<f64> {
         self.velocities.clone()
     }

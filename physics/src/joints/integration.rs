@@ -78,7 +78,7 @@ fn plus(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + share * b).collect()
 }
 
-/// What changes in a time, per second.
+/// Returns what changes in a time, per second.
 fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
     let pairs = before.iter().zip(after);
     pairs
@@ -86,7 +86,7 @@ fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// What to take for the loads next, where `taken` led to `seen`: the latter or, where a load answers to what was taken for it,
+/// Returns what to take for the loads next, where `taken` led to `seen`: the latter or, where a load answers to what was taken for it,
 /// where the line through both pairs meets itself (Steffensen). Shape (freedom,).
 fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> Vec<f64> {
     let Some([taken_before, seen_before]) = before else {
@@ -104,7 +104,7 @@ fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> 
 }
 
 impl TreeSolver<'_> {
-    /// Where the tree goes from here.
+    /// Returns where the tree goes from here.
     pub(super) fn integrate<'c>(
         &self,
         chain: &'c Chain,
@@ -173,7 +173,7 @@ impl TreeSolver<'_> {
         }
     }
 
-    /// Where joints are after a part of a step that would end at `next`. Stops act on the velocity at its end, and the mean
+    /// Returns where joints are after a part of a step that would end at `next`. Stops act on the velocity at its end, and the mean
     /// velocity may pass them.
     fn within_stops(&self, from: &[f64], mut next: Vec<f64>) -> Vec<f64> {
         for ((joint, from), next) in self.joints.iter().zip(from).zip(&mut next) {
@@ -311,7 +311,7 @@ impl TreeSolver<'_> {
         }
     }
 
-    /// What a joint resists with under a load.
+    /// Returns what a joint resists with under a load.
     fn resistance(&self, k: usize, load: &JointLoad) -> JointResistance {
         let joint = self.joints[k];
         let mut resistance = JointResistance {
@@ -326,7 +326,7 @@ impl TreeSolver<'_> {
         resistance
     }
 
-    /// What acts along a joint by its motor and by what it resists with.
+    /// Returns what acts along a joint by its motor and by what it resists with.
     fn own_elements<'a>(
         &'a self,
         freedom: &'a JointDof,

@@ -39,7 +39,7 @@ pub(super) struct JointReading {
     spins: [DVec3; 2],
 }
 
-/// Where a joint stands and how fast it moves, rad or m (and per second). `last_known` picks the turn of a hinge.
+/// Returns where a joint stands and how fast it moves, rad or m (and per second). `last_known` picks the turn of a hinge.
 pub(crate) fn read(engine: &RapierWorld, joint: &PhysicsJoint, last_known: f64) -> (f64, f64) {
     let reading = JointReading::of(engine, joint, last_known);
     (reading.position, reading.velocity)
@@ -80,7 +80,7 @@ fn rounding(engine: &RapierWorld, joint: &PhysicsJoint) -> [f64; 2] {
     sizes.map(|size| grain * size)
 }
 
-/// How many substeps a physics step has, and how long each is, s.
+/// Returns how many substeps a physics step has, and how long each is, s.
 fn substeps(engine: &RapierWorld) -> (f64, f64) {
     (engine.substeps().into(), engine.substep_s().into())
 }
@@ -142,7 +142,7 @@ impl JointReading {
         })
     }
 
-    /// How far the joint goes in a physics step that it ends with a velocity, rad or m, when its acceleration is even: rapier
+    /// Returns how far the joint goes in a physics step that it ends with a velocity, rad or m, when its acceleration is even: rapier
     /// goes on with the velocity at the end of each substep.
     pub(super) fn way(&self, engine: &RapierWorld, velocity: f64) -> f64 {
         let (count, substep_s) = substeps(engine);
@@ -199,7 +199,7 @@ impl JointReading {
     }
 }
 
-/// Whether a joint's body moves freely and nothing pressed on it in the last step.
+/// Returns whether a joint's body moves freely and nothing pressed on it in the last step.
 pub(super) fn is_untouched(engine: &RapierWorld, joint: &PhysicsJoint) -> bool {
     let Some(body) = engine.bodies.get(joint.child_handle) else {
         return false;
@@ -211,7 +211,7 @@ pub(super) fn is_untouched(engine: &RapierWorld, joint: &PhysicsJoint) -> bool {
     body.is_dynamic() && !body.is_sleeping() && !body.colliders().iter().any(|c| pressed(*c))
 }
 
-/// What a body that turned with `before` and now turns with `after`, rad/s, has turned too little in `count` substeps, rad.
+/// Returns what a body that turned with `before` and now turns with `after`, rad/s, has turned too little in `count` substeps, rad.
 fn missing_turn(before: DVec3, after: DVec3, count: f64, substep_s: f64) -> DVec3 {
     let mut missing = DVec3::ZERO;
     let mut k = 1.0;

@@ -5,7 +5,7 @@ use crate::body::{BodyHandle, BodyStatus, body_type};
 use crate::engine::RapierWorld;
 use dwell_scene::{Articulation, JointKind};
 
-/// How near to its closed position a joint counts as shut, rad or m.
+/// Returns how near to its closed position a joint counts as shut, rad or m.
 pub(crate) fn tolerance(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge => 0.02,
@@ -13,7 +13,7 @@ pub(crate) fn tolerance(kind: JointKind) -> f32 {
     }
 }
 
-/// Whether a joint at `position` is shut.
+/// Returns whether a joint at `position` is shut.
 pub(crate) fn stands_shut(
     joint: &PhysicsJoint,
     articulation: &Articulation,

@@ -68,13 +68,13 @@ impl PhysicsJoint {
         self.values.axis.as_dvec3().normalize_or(DVec3::X)
     }
 
-    /// Where it stops, rad or m; infinite where it does not.
+    /// Returns where it stops, rad or m; infinite where it does not.
     fn stops(&self) -> [f64; 2] {
         let limits = self.values.limits.map(|limits| limits.map(f64::from));
         limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// How far the joint's frame is from the origins of the bodies that it holds, m.
+    /// Returns how far the joint's frame is from the origins of the bodies that it holds, m.
     fn reach_m(&self) -> f32 {
         let [parent, child] = [self.parent_from_joint, self.child_from_joint];
         parent.translation.length() + child.translation.length()
@@ -220,7 +220,7 @@ pub(crate) fn set_values(
     true
 }
 
-/// Where the child's body stands when the joint is at `position` and its parent where it is.
+/// Returns where the child's body stands when the joint is at `position` and its parent where it is.
 pub(crate) fn child_at(engine: &RapierWorld, joint: &PhysicsJoint, position: f32) -> RapierPose {
     let parent = engine
         .bodies

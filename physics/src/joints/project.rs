@@ -84,7 +84,7 @@ impl TreeStep {
     }
 }
 
-/// Where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
+/// Returns where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
 fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     let [low, high] = joint.stops();
     match end {
@@ -93,7 +93,7 @@ fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     }
 }
 
-/// What keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
+/// Returns what keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
 fn held_by_stops(
     joints: &[&PhysicsJoint],
     positions: &[f64],

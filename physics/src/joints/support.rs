@@ -71,7 +71,7 @@ pub(super) fn of_body(
     supports
 }
 
-/// Whether a plane of contact carries a body from below on points that stand. A wheel does not: it stands on another line in every
+/// Returns whether a plane of contact carries a body from below on points that stand. A wheel does not: it stands on another line in every
 /// step. `first`: whether the body's is the first of its colliders.
 pub(super) fn carries(
     engine: &RapierWorld,
@@ -91,7 +91,7 @@ pub(super) fn carries(
     normal.y >= UPRIGHT && !engine.colliders.get(own).is_some_and(on_its_side)
 }
 
-/// Where the surfaces of a point touch now, m. What is flat carries its points along; on what rolls they stay where it is
+/// Returns where the surfaces of a point touch now, m. What is flat carries its points along; on what rolls they stay where it is
 /// nearest.
 pub(super) fn place(
     engine: &RapierWorld,

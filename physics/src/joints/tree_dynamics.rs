@@ -96,7 +96,7 @@ impl JointAxisState {
         }
     }
 
-    /// What it feels of a force and moment about the origin: what acts along it.
+    /// Returns what it feels of a force and moment about the origin: what acts along it.
     pub(super) fn generalized_force_of(&self, wrench: &Wrench) -> f64 {
         let Wrench { force, moment } = *wrench;
         match self.kind {
@@ -172,7 +172,7 @@ impl TreeDynamics<'_> {
         (carried, momenta)
     }
 
-    /// What the joints resist with. Shape (freedom, freedom).
+    /// Returns what the joints resist with. Shape (freedom, freedom).
     pub(super) fn inertia(&self) -> SymmetricMatrix {
         let mut inertia = self.held_inertia();
         if let Some(floating) = self.floating() {
@@ -197,14 +197,14 @@ impl TreeDynamics<'_> {
         inertia
     }
 
-    /// How the root answers; `None` for one that does not.
+    /// Returns how the root answers; `None` for one that does not.
     pub(super) fn floating(&self) -> Option<FloatingBase> {
         let root = self.free_root.as_ref()?;
         let (carried, momenta) = self.carried();
         Some(FloatingBase::of(root, &self.axes, &carried, &momenta))
     }
 
-    /// How every body moves when the joints accelerate like this. Shape (freedom,).
+    /// Returns how every body moves when the joints accelerate like this. Shape (freedom,).
     fn moving(&self, accelerations: &[f64]) -> Vec<BodyAcceleration> {
         self.moving_over(self.root, accelerations)
     }
@@ -237,7 +237,7 @@ impl TreeDynamics<'_> {
         moving
     }
 
-    /// What the touches of the last step do: to the joints, shape (freedom,), and to a free root's six.
+    /// Returns what the touches of the last step do: to the joints, shape (freedom,), and to a free root's six.
     pub(super) fn touched(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
         let mut efforts = vec![0.0; self.axes.len()];
         let mut whole = Wrench::default();
@@ -298,7 +298,7 @@ impl TreeDynamics<'_> {
         (wrenches, of_root)
     }
 
-    /// What all bodies need so that no joint accelerates, and neither does the root.
+    /// Returns what all bodies need so that no joint accelerates, and neither does the root.
     pub(super) fn loads(&self) -> TreeLoads {
         let n = self.axes.len();
         let own = |body: &BodyAcceleration, lump: &LumpedBody| {

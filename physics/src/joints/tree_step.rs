@@ -63,7 +63,7 @@ impl TreeStep {
         std::mem::replace(&mut self.readings, now)
     }
 
-    /// Whether nothing of a tree moves and its bodies are where its joints say. It is then left to rapier, which lets it sleep:
+    /// Returns whether nothing of a tree moves and its bodies are where its joints say. It is then left to rapier, which lets it sleep:
     /// whatever is put somewhere, however near, it keeps awake.
     pub(super) fn rests(
         &self,

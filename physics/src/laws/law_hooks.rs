@@ -22,12 +22,12 @@ pub(crate) trait LawHooks: Debug + Send + Sync {
     /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
     fn before_step(&mut self, _stage: &mut LawContext<'_>) {}
 
-    /// Whether it pushes at bodies of trees of joints: [`LawHooks::push`].
+    /// Returns whether it pushes at bodies of trees of joints: [`LawHooks::push`].
     fn pushes(&self) -> bool {
         false
     }
 
-    /// How it pushes at a body that a joint moves, or that joints hang on and that is free. It is asked several times in a step, until the tree's course and what
+    /// Returns how it pushes at a body that a joint moves, or that joints hang on and that is free. It is asked several times in a step, until the tree's course and what
     /// pushes at it fit.
     fn push(&self, _link: &LinkStep) -> ExternalWrench {
         ExternalWrench::default()
@@ -45,12 +45,12 @@ pub(crate) trait LawHooks: Debug + Send + Sync {
     /// Changes mass, centre of mass or inertia of a body, once when laws or masses change.
     fn modify_mass_properties(&self, _body: u32, _inertia: &mut BodyInertia) {}
 
-    /// How all contacts of the world give; `None`: as the engine has it.
+    /// Returns how all contacts of the world give; `None`: as the engine has it.
     fn compliance(&self) -> Option<ContactCompliance> {
         None
     }
 
-    /// Whether it changes what motors do in each physics step: [`LawHooks::drive`] or [`LawHooks::modify_motor`].
+    /// Returns whether it changes what motors do in each physics step: [`LawHooks::drive`] or [`LawHooks::modify_motor`].
     fn drives(&self) -> bool {
         false
     }
@@ -61,7 +61,7 @@ pub(crate) trait LawHooks: Debug + Send + Sync {
     /// Changes what a joint's motor gives for its command in one physics step.
     fn modify_motor(&self, _joint: JointId, _pull: &mut JointActuation) {}
 
-    /// Whether it remembers where joints have been: [`LawHooks::follow`].
+    /// Returns whether it remembers where joints have been: [`LawHooks::follow`].
     fn follows(&self) -> bool {
         false
     }
@@ -72,7 +72,7 @@ pub(crate) trait LawHooks: Debug + Send + Sync {
     /// A joint was put at `position` (rad or m) from outside, which is no motion.
     fn placed(&mut self, _joint: JointId, _position: f32) {}
 
-    /// Whether it changes how joints resist: [`LawHooks::resist`].
+    /// Returns whether it changes how joints resist: [`LawHooks::resist`].
     fn resists(&self) -> bool {
         false
     }
@@ -84,12 +84,12 @@ pub(crate) trait LawHooks: Debug + Send + Sync {
     /// Changes how the two wheels of an agent's differential drive roll in one physics step.
     fn roll(&self, _agent: AgentId, _rolling: &mut WheelMotion) {}
 
-    /// What the gyro of an agent's base reads when it turns with `rate_rad_s`.
+    /// Returns what the gyro of an agent's base reads when it turns with `rate_rad_s`.
     fn gyro(&self, _agent: AgentId, rate_rad_s: f32) -> f32 {
         rate_rad_s
     }
 
-    /// What it remembers, for snapshots.
+    /// Returns what it remembers, for snapshots.
     fn memory(&self) -> Vec<f32> {
         Vec::new()
     }
@@ -243,12 +243,12 @@ pub(crate) struct LawContact<'a> {
 }
 
 impl LawContact<'_> {
-    /// How fast the two approach, m/s; negative when they part.
+    /// Returns how fast the two approach, m/s; negative when they part.
     pub(crate) fn approach_speed_m_s(&self) -> f32 {
         -self.relative_velocity.dot(self.normal)
     }
 
-    /// How the other slides over the surface, m/s.
+    /// Returns how the other slides over the surface, m/s.
     pub(crate) fn slip(&self) -> Vec3 {
         self.relative_velocity + self.normal * self.approach_speed_m_s()
     }

@@ -65,7 +65,7 @@ static LAWS: &[PhysicsLaw] = &[
     bases::gyro_bias_scale::LAW,
 ];
 
-/// What is known about each law of this engine.
+/// Returns what is known about each law of this engine.
 ///
 /// ```
 /// let drag = dwell_physics::laws::all().iter().find(|law| law.id == "drag").unwrap();
@@ -125,7 +125,7 @@ pub(crate) fn install(
     Ok(installed)
 }
 
-/// How contacts give under the laws; the last law that says so wins.
+/// Returns how contacts give under the laws; the last law that says so wins.
 pub(crate) fn compliance(laws: &[InstalledLaw]) -> Option<ContactCompliance> {
     laws.iter()
         .rev()

@@ -161,7 +161,7 @@ impl ContactScope {
         })
     }
 
-    /// Whether rapier must ask about the pairs of a collider.
+    /// Returns whether rapier must ask about the pairs of a collider.
     pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &ColliderEntry) -> bool {
         let Some(one) = &self.one else {
             return entry.body.is_some();
@@ -170,7 +170,7 @@ impl ContactScope {
         entry.surface.any_class(made_of) || one.is_thing(house, entry.toucher)
     }
 
-    /// Whether a contact is within, and if so, whether `b` is the surface and not `a`.
+    /// Returns whether a contact is within, and if so, whether `b` is the surface and not `a`.
     pub(crate) fn turns(
         &self,
         house: &House,

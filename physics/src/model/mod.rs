@@ -40,12 +40,12 @@ impl PhysicsModel {
         &self.house
     }
 
-    /// How many rigid bodies can move.
+    /// Returns how many rigid bodies can move.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
     }
 
-    /// How many pieces never move.
+    /// Returns how many pieces never move.
     pub fn static_piece_count(&self) -> usize {
         self.statics.len()
     }

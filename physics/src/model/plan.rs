@@ -216,7 +216,7 @@ fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
     }
 }
 
-/// What a part of a body states of its mass, in the body's frame: its mass and moments times `factor`. `inertial`: where its
+/// Returns what a part of a body states of its mass, in the body's frame: its mass and moments times `factor`. `inertial`: where its
 /// mass sits.
 fn given(
     house: &House,
@@ -452,7 +452,7 @@ impl BodyPlan {
         })
     }
 
-    /// What its parts state of their mass in a world, each times its factor. Shape of `factors`: (part,).
+    /// Returns what its parts state of their mass in a world, each times its factor. Shape of `factors`: (part,).
     pub(crate) fn given_mass(
         &self,
         house: &House,

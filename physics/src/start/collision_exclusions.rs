@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const LEAF_MARGIN_M: f32 = 0.01;
 
 impl StartResolver<'_> {
-    /// What the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
+    /// Returns what the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
     /// pass through fewer things: the links they are joined with, and what they are inside of at the start.
     ///
     /// # Errors
@@ -115,7 +115,7 @@ impl StartResolver<'_> {
         })
     }
 
-    /// Whether a body's object stands on its own feet.
+    /// Returns whether a body's object stands on its own feet.
     fn is_free(&self, plan: &BodyPlan) -> bool {
         self.model.house.objects[plan.object].mobility == Mobility::Movable
     }

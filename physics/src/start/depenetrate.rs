@@ -132,7 +132,7 @@ impl StartResolver<'_> {
         overlap.is_none_or(|overlap| !self.counts(&overlap)) && from_rapier(place).is_valid()
     }
 
-    /// Whether a body's middle goes straight to another place through no wall, floor or ceiling.
+    /// Returns whether a body's middle goes straight to another place through no wall, floor or ceiling.
     fn is_reached(&self, plan: &BodyPlan, start: &RapierPose, place: &RapierPose) -> bool {
         let way = place.translation - start.translation;
         !self.is_barred(plan.bounds(start).center(), way)
@@ -189,7 +189,7 @@ impl StartResolver<'_> {
         )
     }
 
-    /// Where a body goes from `start`, and where the others go that it overlaps there, each out of the way of those before.
+    /// Returns where a body goes from `start`, and where the others go that it overlaps there, each out of the way of those before.
     fn ways(
         &self,
         index: usize,
@@ -230,7 +230,7 @@ impl StartResolver<'_> {
         })
     }
 
-    /// Whether a wall, floor or ceiling is in the way.
+    /// Returns whether a wall, floor or ceiling is in the way.
     fn is_barred(&self, from: Vec3, way: Vec3) -> bool {
         let is_structure = |_, collider: &Collider| {
             matches!(self.owner(entry_index(collider)), PieceOwner::Structure(_))

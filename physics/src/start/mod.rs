@@ -106,7 +106,7 @@ impl StartResolver<'_> {
         resolved
     }
 
-    /// Whether a body is in so many others that no way out of them is looked for.
+    /// Returns whether a body is in so many others that no way out of them is looked for.
     fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
         let near = placed.near(&plan.bounds(place));
         let found = near

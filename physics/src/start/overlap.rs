@@ -108,7 +108,7 @@ fn deepest(overlaps: impl Iterator<Item = Penetration>) -> Option<Penetration> {
     })
 }
 
-/// How deep a piece is in an obstacle.
+/// Returns how deep a piece is in an obstacle.
 pub(super) fn depth(
     there: &RapierPose,
     obstacle: &dyn rapier3d::geometry::Shape,

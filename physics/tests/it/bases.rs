@@ -39,7 +39,7 @@ fn wheels(left: f32, right: f32) -> AgentControl {
     }
 }
 
-/// Where a planar pose is in the world for an agent that started at `at` with `yaw`.
+/// Returns where a planar pose is in the world for an agent that started at `at` with `yaw`.
 fn in_world(pose: &PlanarPose, at: Vec3, yaw: f32) -> Vec3 {
     let turn = glam::Quat::from_rotation_y(yaw);
     at + turn * Vec3::new(-pose.y_m as f32, 0.0, -pose.x_m as f32)

@@ -28,7 +28,7 @@ fn doorway(half: Vec3, grasp: Grasp) -> (Run, AgentId, ObjectId) {
     (run, agent, thing)
 }
 
-/// Whether a step from `a` to `b` goes through the wall beside the doorway.
+/// Returns whether a step from `a` to `b` goes through the wall beside the doorway.
 fn crosses(a: Vec3, b: Vec3) -> bool {
     if (a.z - 3.0).signum() == (b.z - 3.0).signum() {
         return false;

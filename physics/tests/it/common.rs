@@ -293,7 +293,7 @@ impl Run {
             .unwrap()
     }
 
-    /// Where an agent can stand and walk about, the nearest to `point` first.
+    /// Returns where an agent can stand and walk about, the nearest to `point` first.
     pub(crate) fn places_by(&self, point: Vec3) -> Vec<Vec3> {
         let grid = NavGrid::build(&self.house, &self.state, &NavConfig::default()).unwrap();
         let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));

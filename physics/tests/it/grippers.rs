@@ -138,7 +138,7 @@ impl Gantry {
         self.run.steps(20);
     }
 
-    /// Where the cube is to the palm, m.
+    /// Returns where the cube is to the palm, m.
     fn in_hand(&self) -> Vec3 {
         let palm = self.run.house.joints[self.shift].child;
         let palm = self.run.state.part_pose[palm];

@@ -14,7 +14,7 @@ fn cube(at: Vec3) -> Piece {
     Piece::cuboid(Vec3::splat(HALF_M), at)
 }
 
-/// What is said of a house that is too much.
+/// Returns what is said of a house that is too much.
 fn refusal(house: Arc<House>) -> String {
     let mut state = State::new(&house);
     let made = PhysicsWorld::new(house, PhysicsConfig::default(), &mut state);

@@ -124,7 +124,7 @@ fn action(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Action {
     }
 }
 
-/// Whether a step goes through the wall at z = 3 beside the doorway.
+/// Returns whether a step goes through the wall at z = 3 beside the doorway.
 fn crosses(a: Vec3, b: Vec3) -> bool {
     if (a.z - 3.0).signum() == (b.z - 3.0).signum() {
         return false;

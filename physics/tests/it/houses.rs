@@ -42,7 +42,7 @@ fn say(name: &str, run: &Run) {
     );
 }
 
-/// How far the object has gone that went furthest, and its name.
+/// Returns how far the object has gone that went furthest, and its name.
 fn drift(run: &Run, before: &[Vec3]) -> Vec<(String, f32)> {
     let mut all: Vec<_> = run
         .house
@@ -112,7 +112,7 @@ fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     }
 }
 
-/// How far each movable thing has tipped from how it stood, degrees, the furthest first.
+/// Returns how far each movable thing has tipped from how it stood, degrees, the furthest first.
 fn tilts(run: &Run, upright: &[Vec3]) -> Vec<(f32, String)> {
     let mut tilts: Vec<(f32, String)> = run
         .house

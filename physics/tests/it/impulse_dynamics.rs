@@ -55,7 +55,7 @@ struct Meeting {
 }
 
 impl Meeting {
-    /// How fast ball and leaf part, m/s.
+    /// Returns how fast ball and leaf part, m/s.
     fn parts(&self, seen: &Seen) -> f64 {
         seen.velocity.dot(self.normal) + seen.speed * self.lever
     }
@@ -146,7 +146,7 @@ impl Blow {
         ball_kg() * ball + seen.turning
     }
 
-    /// Where they meet that move on like this.
+    /// Returns where they meet that move on like this.
     fn meeting(&self, seen: &Seen) -> Meeting {
         if self.kind == JointKind::Slide {
             return Meeting {

@@ -388,7 +388,7 @@ fn of_what_is_in_the_way() -> Vec<Case> {
     cases
 }
 
-/// What somebody stands on stays; what is caught slips from the hand.
+/// Returns what somebody stands on stays; what is caught slips from the hand.
 fn of_feet_and_slips() -> Vec<Case> {
     use ActionCode as C;
     let mut build = room();

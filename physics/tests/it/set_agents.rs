@@ -219,7 +219,7 @@ fn any_pose_and_velocity_of_a_urdf_robot_reads_back() {
     assert!(by_poses[0] <= 5e-6 && by_poses[1] <= 2e-5, "{by_poses:?}");
 }
 
-/// Where a joint stands and how it moves by the poses and velocities of its two parts, rad or m and per second.
+/// Returns where a joint stands and how it moves by the poses and velocities of its two parts, rad or m and per second.
 fn by_parts(run: &Run, joint: JointId) -> [f64; 2] {
     let joint = &run.house.joints[joint];
     let parent = joint.parent.unwrap();

@@ -51,7 +51,7 @@ pub(super) fn phrase(scene: &SemanticScene<'_>, object: ObjectId) -> String {
     described(&adjectives(scene, object), &scene.facts(object).noun)
 }
 
-/// How many things in a room may be called as `object` is; as if there were several outside of all rooms.
+/// Returns how many things in a room may be called as `object` is; as if there were several outside of all rooms.
 pub(super) fn alike(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
     let noun = &scene.facts(object).noun;
     room.map_or(2, |room| {
@@ -102,7 +102,7 @@ fn between(scene: &SemanticScene<'_>, door: ObjectId, room: Option<RoomId>) -> O
     }
 }
 
-/// Where it is beside something else: " on the table"; empty when nothing is near.
+/// Returns where it is beside something else: " on the table"; empty when nothing is near.
 fn place(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
     for (name, words) in [("in", "in"), ("on", "on")] {
         if let Some(other) = first_related(scene, object, name) {

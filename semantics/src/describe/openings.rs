@@ -114,7 +114,7 @@ fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
     texts
 }
 
-/// What the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
+/// Returns what the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
 pub(super) fn openings(scene: &SemanticScene<'_>, room: RoomId) -> Option<String> {
     let windows = scene.windows_in(room);
     let mut parts = Vec::new();

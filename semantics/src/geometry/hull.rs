@@ -79,7 +79,7 @@ impl Hull {
             * 0.5
     }
 
-    /// Whether `point` lies inside or on the border.
+    /// Returns whether `point` lies inside or on the border.
     pub fn contains(&self, point: Vec2) -> bool {
         self.points.len() > 2
             && self

@@ -124,7 +124,7 @@ impl Instruction {
         vocabulary::tokenize(&self.text)
     }
 
-    /// Whether the agent has fulfilled it in this scene: it stands in the room; or it stands within the goal's radius of the
+    /// Returns whether the agent has fulfilled it in this scene: it stands in the room; or it stands within the goal's radius of the
     /// thing's outline and sees it at most 45 degrees from where it looks, or holds it.
     ///
     /// `rays` must be up to date with the scene's state. [`InstructionProgress::Failure`] when the agent does not exist.

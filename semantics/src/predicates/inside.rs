@@ -14,7 +14,7 @@ const BESIDE_M: f32 = 0.025;
 /// than 32 things are around it, those about its middle count.
 pub(super) struct Inside;
 
-/// What `thing` is in, rising.
+/// Returns what `thing` is in, rising.
 pub(crate) fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {

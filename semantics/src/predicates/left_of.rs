@@ -11,7 +11,7 @@ const LEAST_DEPTH_M: f32 = 0.05;
 /// The largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
 
-/// Where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
+/// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
 /// front of the viewer.
 pub(super) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
     let point = viewer.upright_from_world(scene.center(term)?);
@@ -20,7 +20,7 @@ pub(super) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) 
     (depth >= LEAST_DEPTH_M && x.abs() <= WIDEST_TANGENT).then_some(x)
 }
 
-/// Whether a thing's middle is in front of a viewer.
+/// Returns whether a thing's middle is in front of a viewer.
 pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> bool {
     picture_x(scene, viewer, term).is_some()
 }

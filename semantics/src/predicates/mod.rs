@@ -50,15 +50,15 @@ pub trait Predicate: Sync {
     /// The words between subject and object: "the cup is **on** the table".
     fn words(&self) -> &'static str;
 
-    /// What always holds of it.
+    /// Returns what always holds of it.
     fn properties(&self) -> RelationProperties;
 
-    /// Whether it means anything only from somebody's point of view.
+    /// Returns whether it means anything only from somebody's point of view.
     fn needs_viewer(&self) -> bool {
         false
     }
 
-    /// Whether it holds. `false` for kinds of things it says nothing about, and without the viewer it needs.
+    /// Returns whether it holds. `false` for kinds of things it says nothing about, and without the viewer it needs.
     fn holds(
         &self,
         scene: &SemanticScene<'_>,

@@ -29,7 +29,7 @@ fn is_cloth(scene: &SemanticScene<'_>, thing: ObjectId) -> bool {
     row.is_some_and(|row| ["curtain", "blinds"].contains(&row.name))
 }
 
-/// Whether a thing with surfaces below it hangs all the same, and those only touch it or lie close under it.
+/// Returns whether a thing with surfaces below it hangs all the same, and those only touch it or lie close under it.
 ///
 /// So it is with upright cloth, and with what the table calls mounted where a wall or a ceiling is near: when it ends a
 /// centimetre or more above them; when it is fixed in its place and of a kind that never stands; or when it is fixed and
@@ -72,7 +72,7 @@ fn pieces_at(scene: &SemanticScene<'_>, thing: ObjectId) -> impl Iterator<Item =
     pieces.filter(move |piece| is_at(scene, thing, *piece))
 }
 
-/// Whether a thing is so near to a wall, at its height, or so close under a ceiling, that it may hang there.
+/// Returns whether a thing is so near to a wall, at its height, or so close under a ceiling, that it may hang there.
 fn is_at(scene: &SemanticScene<'_>, thing: ObjectId, piece: StructureId) -> bool {
     let extent = scene.extent(thing);
     let bounds = scene.semantics.structure_bounds(piece);
@@ -96,7 +96,7 @@ fn is_at(scene: &SemanticScene<'_>, thing: ObjectId, piece: StructureId) -> bool
     }
 }
 
-/// Whether cloth hangs before a window: in its room, at its height, at most 0.3 m away from above.
+/// Returns whether cloth hangs before a window: in its room, at its height, at most 0.3 m away from above.
 fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bool {
     let is_window = |row: &crate::category::SemanticCategory| row.name == "window";
     if cloth == window
@@ -114,7 +114,7 @@ fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bo
         && (room.is_none() || room == scene.room_of(cloth))
 }
 
-/// Whether `thing` hangs on `mount`: see [`super::hangs_on::HangsOn`].
+/// Returns whether `thing` hangs on `mount`: see [`super::hangs_on::HangsOn`].
 pub(super) fn hangs_on(scene: &SemanticScene<'_>, thing: ObjectId, mount: Term) -> bool {
     let near = match mount {
         Term::Structure(piece) => is_at(scene, thing, piece),
@@ -141,7 +141,7 @@ pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
         .collect()
 }
 
-/// What `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
+/// Returns what `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
 /// and windows are part of their walls and hang on nothing.
 pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
     if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {

@@ -14,13 +14,13 @@ const NEIGHBOUR_GAP_M: f32 = 0.5;
 /// than 128 things are so near, those about the middle count, and only if it is so both ways.
 pub(super) struct NextTo;
 
-/// How much of their heights two boxes share, m, and how much that must be.
+/// Returns how much of their heights two boxes share, m, and how much that must be.
 fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
     let shared = p.max.y.min(q.max.y) - p.min.y.max(q.min.y);
     (shared, 0.5 * p.size().y.min(q.size().y))
 }
 
-/// What may be next to `object`, rising.
+/// Returns what may be next to `object`, rising.
 pub(crate) fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
     scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
@@ -29,7 +29,7 @@ pub(crate) fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) 
     })
 }
 
-/// What is next to `object`, rising.
+/// Returns what is next to `object`, rising.
 pub(crate) fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
     let holds = |other: &ObjectId| {
@@ -40,7 +40,7 @@ pub(crate) fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<Obj
     near.filter(holds).collect()
 }
 
-/// Whether `other` is among what may be next to `object`, where that is more than counts.
+/// Returns whether `other` is among what may be next to `object`, where that is more than counts.
 fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
     let near = scene.neighbour_candidates(object);
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()

@@ -60,7 +60,7 @@ impl SupportSearch {
     }
 }
 
-/// What `object` rests on, the largest share first; empty when it is held, hangs or floats.
+/// Returns what `object` rests on, the largest share first; empty when it is held, hangs or floats.
 ///
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they

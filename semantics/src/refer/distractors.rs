@@ -90,7 +90,7 @@ impl DistractorSet {
         }
     }
 
-    /// How many of them each room holds, where it holds some.
+    /// Returns how many of them each room holds, where it holds some.
     pub(crate) fn in_rooms(&self) -> &BTreeMap<RoomId, usize> {
         &self.in_rooms
     }

@@ -62,7 +62,7 @@ impl ReferringExpression {
             && self.size.is_none_or(|size| facts.size == size)
     }
 
-    /// Whether `object` fits the description in this scene. A relation fits when some landmark fits.
+    /// Returns whether `object` fits the description in this scene. A relation fits when some landmark fits.
     pub fn fits_object(&self, scene: &SemanticScene<'_>, object: ObjectId) -> bool {
         let in_room = |name: &String| {
             scene

@@ -35,7 +35,7 @@ fn row(what: &str, [mean, least, median, largest]: [f64; 4], suncg: &str) {
     println!("| {what} | {mean:.1} | {least:.0} | {median:.0} | {largest:.0} | {suncg} |");
 }
 
-/// How many values fall into each bin of `width`, by the bin's lower end.
+/// Returns how many values fall into each bin of `width`, by the bin's lower end.
 fn histogram(values: impl Iterator<Item = f64>, width: f64) -> Bars {
     let mut bins = BTreeMap::<i64, f64>::new();
     for value in values {

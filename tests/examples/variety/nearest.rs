@@ -64,7 +64,7 @@ fn edits(a: &Facts, b: &Facts) -> usize {
     apart(&kinds(a), &kinds(b)) + apart(&a.links, &b.links)
 }
 
-/// How many elements two sorted lists share.
+/// Returns how many elements two sorted lists share.
 fn common<T: Ord>(a: &[T], b: &[T]) -> usize {
     let (mut i, mut j, mut shared) = (0, 0, 0);
     while i < a.len() && j < b.len() {

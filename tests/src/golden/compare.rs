@@ -56,7 +56,7 @@ impl Difference {
         rough.count() as f64 / self.each.len().max(1) as f64
     }
 
-    /// Whether it is allowed.
+    /// Returns whether it is allowed.
     ///
     /// # Errors
     /// A sentence with what was found and what is allowed.
@@ -93,7 +93,7 @@ impl Difference {
     }
 }
 
-/// How far `found` is from `golden`.
+/// Returns how far `found` is from `golden`.
 pub(super) fn compare(
     golden: &StoredObservation,
     found: &StoredObservation,

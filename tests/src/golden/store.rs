@@ -58,7 +58,7 @@ fn ranges(sensor: &str) -> Option<&'static [(f64, f64)]> {
 }
 
 impl StoredObservation {
-    /// What a file can hold of an observation.
+    /// Returns what a file can hold of an observation.
     ///
     /// # Errors
     /// A sentence, for numbers without a range and for ids beyond 16 bits.
@@ -143,7 +143,7 @@ impl StoredObservation {
         }
     }
 
-    /// What a file holds, in the form of `self`.
+    /// Returns what a file holds, in the form of `self`.
     fn read(&self, path: &Path) -> Result<Self, String> {
         let fault = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         if let Self::List(_) = self {
@@ -233,7 +233,7 @@ impl Golden {
         }
     }
 
-    /// How far something is from the golden picture of that name.
+    /// Returns how far something is from the golden picture of that name.
     ///
     /// # Errors
     /// A sentence, where there is none or where it has another size.

@@ -138,7 +138,7 @@ pub fn company() -> World {
     world
 }
 
-/// What a sensor gives at a viewpoint.
+/// Returns what a sensor gives at a viewpoint.
 ///
 /// # Errors
 /// [`WorldError`] for a sensor that there is not.
@@ -162,7 +162,7 @@ pub fn look(
     )
 }
 
-/// What sensors give for a picture.
+/// Returns what sensors give for a picture.
 ///
 /// # Errors
 /// [`WorldError`] for a sensor that there is not.

@@ -26,12 +26,12 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// How many files it has.
+    /// Returns how many files it has.
     pub fn len(&self) -> usize {
         self.files.len()
     }
 
-    /// Whether it has none, which is never.
+    /// Returns whether it has none, which is never.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
     }

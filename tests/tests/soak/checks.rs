@@ -13,7 +13,7 @@ pub(crate) fn largest_snapshot(world: &World) -> usize {
     (256 + 2 * world.start_report().bodies) * 1024
 }
 
-/// Whether the way from one place to the next leads through a wall, floor or ceiling.
+/// Returns whether the way from one place to the next leads through a wall, floor or ceiling.
 fn passes_structure(world: &World, from: Vec3, to: Vec3) -> bool {
     let way = to - from;
     let ray = Ray {
@@ -30,7 +30,7 @@ fn passes_structure(world: &World, from: Vec3, to: Vec3) -> bool {
     })
 }
 
-/// Where every agent is.
+/// Returns where every agent is.
 pub(crate) fn places(world: &World) -> Vec<Vec3> {
     let agents = world.state().agents.iter();
     agents.map(|agent| agent.position).collect()

@@ -16,7 +16,7 @@ const GROWTH_BYTES: i64 = 1024 * 1024;
 /// Looks in a run.
 pub(crate) const LOOKS: usize = 100;
 
-/// What is allocated and not freed, bytes.
+/// Returns what is allocated and not freed, bytes.
 fn in_use() -> i64 {
     let stats = HEAP.stats();
     stats.bytes_allocated as i64 - stats.bytes_deallocated as i64
@@ -74,7 +74,7 @@ impl Watch {
     }
 }
 
-/// How far values that are noisy by themselves rise from the first to the last: the median of the slopes between any two of them
+/// Returns how far values that are noisy by themselves rise from the first to the last: the median of the slopes between any two of them
 /// (T. P. Theil 1950, P. K. Sen 1968), times the way.
 fn growth(values: &[i64]) -> i64 {
     let mut slopes: Vec<f64> = Vec::new();

@@ -4,7 +4,7 @@ use crate::manifests::Member;
 
 pub(crate) const PAGE: &str = "docs/architecture.md";
 
-/// What `text` misses or names in vain.
+/// Returns what `text` misses or names in vain.
 pub(crate) fn check(text: &str, members: &[Member]) -> Vec<String> {
     let mut findings = Vec::new();
     for member in members {

@@ -4,7 +4,7 @@ use super::rules::Rule;
 use crate::manifests::Member;
 use std::path::Path;
 
-/// What departs from `rules`; `root` is the folder the rules' folders are relative to.
+/// Returns what departs from `rules`; `root` is the folder the rules' folders are relative to.
 pub(crate) fn check(members: &[Member], rules: &[Rule], root: &Path) -> Vec<String> {
     let mut findings = Vec::new();
     for rule in rules {

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-/// Whether `allowed` licences are enough to use something under `expression`.
+/// Returns whether `allowed` licences are enough to use something under `expression`.
 pub(crate) fn satisfied(expression: &str, allowed: &BTreeSet<String>) -> Result<bool, String> {
     let spaced = expression
         .replace('/', " OR ")

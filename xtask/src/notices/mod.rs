@@ -118,7 +118,7 @@ fn of_siblings(
     Ok(Vec::new())
 }
 
-/// What zig, the wheel's linker, adds of its own.
+/// Returns what zig, the wheel's linker, adds of its own.
 fn of_zig(root: &Path) -> Result<Vec<IncludedWork>, String> {
     let folder = ziglang(root).ok_or(
         "ziglang, the wheel's linker, is not in .venv; `make wheel` installs it and calls this",

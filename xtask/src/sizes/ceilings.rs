@@ -57,7 +57,7 @@ pub(crate) fn wheel_mb(root: &Path) -> Option<f64> {
         .map(|bytes| f64::from(bytes) / 1e6)
 }
 
-/// What `make build` noted when it began with an empty target folder.
+/// Returns what `make build` noted when it began with an empty target folder.
 pub(crate) fn cold_build_minutes(root: &Path) -> Option<f64> {
     let folder =
         std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), Into::into);

@@ -84,7 +84,7 @@ impl Triangulation {
         Some(mesh)
     }
 
-    /// How many triangles there are.
+    /// Returns how many triangles there are.
     pub(super) fn len(&self) -> usize {
         self.triangles.len()
     }

@@ -26,7 +26,7 @@ impl OnsetDetector {
         }
     }
 
-    /// How long after its first sample a response begins, s, to a fraction of a sample: by how much it is later than the response
+    /// Returns how long after its first sample a response begins, s, to a fraction of a sample: by how much it is later than the response
     /// of minimum phase with the same levels, which begins at once.
     ///
     /// # Source

@@ -200,7 +200,7 @@ fn angle(value: &Complex<f32>) -> f32 {
     libm::atan2f(value.im, value.re)
 }
 
-/// How fast the phase against the common one turns from [`BASS_HZ`] to [`DELAY_HZ`], rad/Hz: the least squares of a line through 0.
+/// Returns how fast the phase against the common one turns from [`BASS_HZ`] to [`DELAY_HZ`], rad/Hz: the least squares of a line through 0.
 fn slope(rest: &[Complex<f32>], common: &[f32], frequencies: &[f64]) -> f64 {
     let (mut sum, mut all) = (0.0, 0.0);
     for ((value, common), frequency_hz) in rest.iter().zip(common).zip(frequencies) {

@@ -267,7 +267,7 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
         Ok((outcome, found))
     }
 
-    /// What the other folds choose.
+    /// Returns what the other folds choose.
     fn fitted(
         &self,
         fold: usize,

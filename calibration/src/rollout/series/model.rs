@@ -76,10 +76,10 @@ pub trait ModelledSubject: RolloutSubject {
     /// Episodes of one group are held out together.
     fn group(&self, episode: usize) -> &str;
 
-    /// What kind of episode it is: what tables are ordered by.
+    /// Returns what kind of episode it is: what tables are ordered by.
     fn kind(&self, episode: usize) -> &str;
 
-    /// How far from its centre a turn moves the body, m: what turns angles into distances; 0: turns were not measured.
+    /// Returns how far from its centre a turn moves the body, m: what turns angles into distances; 0: turns were not measured.
     fn lever_m(&self) -> f64;
 
     /// The simulation, with `finer` as many steps between two samples.
@@ -93,6 +93,6 @@ pub trait ModelledSubject: RolloutSubject {
         finer: u32,
     ) -> Result<Self::Rig, CalibrationError>;
 
-    /// What goes into the simulator.
+    /// Returns what goes into the simulator.
     fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects;
 }

@@ -109,7 +109,7 @@ pub(super) fn error<S: ModelledSubject>(
     })
 }
 
-/// What a fit makes small: each episode counts as one, whatever its length. mm.
+/// Returns what a fit makes small: each episode counts as one, whatever its length. mm.
 pub(super) fn residuals<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
@@ -159,7 +159,7 @@ pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
         .collect()
 }
 
-/// What `after` gains over `before`. Groups are drawn, not episodes: those of one session are alike.
+/// Returns what `after` gains over `before`. Groups are drawn, not episodes: those of one session are alike.
 pub(super) fn gained<S: ModelledSubject>(
     subject: &S,
     before: &ModelOutcome,
@@ -185,7 +185,7 @@ pub(super) fn gained<S: ModelledSubject>(
     }
 }
 
-/// What came out.
+/// Returns what came out.
 pub(super) fn sentence(best: &ModelOutcome, all: &[ModelOutcome]) -> String {
     let ends = |outcome: &ModelOutcome| {
         outcome.kinds.first().map_or_else(String::new, |all| {

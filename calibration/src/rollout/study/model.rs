@@ -132,7 +132,7 @@ impl ContactParameter {
 }
 
 impl ContactModel {
-    /// What a rig is set to for these values, one for each parameter.
+    /// Returns what a rig is set to for these values, one for each parameter.
     pub fn settings(&self, values: &[f64], nominal: NominalContact) -> RigSettings {
         let value = |name: &str| {
             let mut pairs = self.parameters.iter().zip(values);

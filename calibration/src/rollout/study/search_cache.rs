@@ -34,7 +34,7 @@ struct SearchResult {
     chosen: Vec<f64>,
 }
 
-/// What a model's search in a fold chose: from `folder` where it was answered before, else by `search`, kept there.
+/// Returns what a model's search in a fold chose: from `folder` where it was answered before, else by `search`, kept there.
 ///
 /// # Errors
 /// [`CalibrationError::Write`], and those of `search`.

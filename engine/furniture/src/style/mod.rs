@@ -104,7 +104,7 @@ impl Style {
         }
     }
 
-    /// What legs are made of.
+    /// Returns what legs are made of.
     pub fn leg_finish(&self) -> &Finish {
         match self.leg {
             LegStyle::Metal => &self.metal,
@@ -142,12 +142,12 @@ impl Style {
         }
     }
 
-    /// How doors and drawers of furniture look.
+    /// Returns how doors and drawers of furniture look.
     pub fn doors(&self) -> FrontPanel {
         self.fronts(&self.front)
     }
 
-    /// How doors and drawers of the kitchen look.
+    /// Returns how doors and drawers of the kitchen look.
     pub fn kitchen_doors(&self) -> FrontPanel {
         self.fronts(&self.kitchen_front)
     }

@@ -4,7 +4,7 @@ use dwell_scene::{Aabb, Collider, Mesh};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// How many edges of the mesh are not met by as many faces from one side as from the other, vertices at exactly the same
+/// Returns how many edges of the mesh are not met by as many faces from one side as from the other, vertices at exactly the same
 /// place counting as one.
 pub fn open_edges(mesh: &Mesh) -> usize {
     let key = |p: Vec3| (p + Vec3::ZERO).to_array().map(f32::to_bits);

@@ -113,7 +113,7 @@ impl ConvexPiece {
     }
 }
 
-/// How far two pieces reach into each other, m; negative: the gap between them. Never less than the truth: a direction
+/// Returns how far two pieces reach into each other, m; negative: the gap between them. Never less than the truth: a direction
 /// that separates the pieces is a proof, and the search for the best one stops at `enough`.
 pub fn depth(a: &ConvexPiece, b: &ConvexPiece, enough: f32) -> f32 {
     let mut best = (f32::MAX, Vec3::Y);

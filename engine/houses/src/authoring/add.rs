@@ -121,7 +121,7 @@ pub fn kinds() -> BTreeMap<&'static str, &'static str> {
     entries.map(|entry| (entry.kind, entry.category)).collect()
 }
 
-/// Who asks for a cup is offered what is one: mugs; then what is spelled alike.
+/// Returns who asks for a cup is offered what is one: mugs; then what is spelled alike.
 fn unknown_kind(kind: &str) -> HousesError {
     let kinds = kinds();
     let is_one = kinds.iter().filter(|(_, category)| **category == kind);

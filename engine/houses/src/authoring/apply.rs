@@ -106,7 +106,7 @@ fn put(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
     new.map(|(id, _)| id).collect()
 }
 
-/// Whether a thing is where no room is, in a house that has rooms.
+/// Returns whether a thing is where no room is, in a house that has rooms.
 fn is_outside(house: &House, state: &State, id: ObjectId) -> bool {
     let bounds = house.object_bounds(state, id);
     !house.rooms.is_empty() && !bounds.is_empty() && house.room_at(bounds.center()).is_none()

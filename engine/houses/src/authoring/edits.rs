@@ -32,7 +32,7 @@ pub enum Edit {
 }
 
 impl Edit {
-    /// What it is called in JSON.
+    /// Returns what it is called in JSON.
     pub(super) fn word(&self) -> &'static str {
         match self {
             Self::Add(_) => "add",

@@ -79,7 +79,7 @@ impl<'a> PlacementSearch<'a> {
         even.or_else(|| self.places().next())
     }
 
-    /// Where the thing meets nothing, the nearest to the carrier's middle first.
+    /// Returns where the thing meets nothing, the nearest to the carrier's middle first.
     fn places(&self) -> impl Iterator<Item = Vec3> {
         let (middle, size) = (self.bounds.center(), self.bounds.size());
         let step = |size: f32| (size / MOST_STEPS).max(STEP_M);

@@ -382,7 +382,7 @@ fn letters(text: &str) -> Vec<char> {
     text.chars().flat_map(char::to_lowercase).collect()
 }
 
-/// Whether a name fits a pattern: `*` stands for any letters, `?` for one.
+/// Returns whether a name fits a pattern: `*` stands for any letters, `?` for one.
 fn fits(pattern: &[char], name: &[char]) -> bool {
     let (mut p, mut n) = (0, 0);
     // After the last star: where the pattern goes on, and what of the name the star has taken.

@@ -140,7 +140,7 @@ fn build_with(
     Ok((house, report))
 }
 
-/// Whether `path` names a plan.
+/// Returns whether `path` names a plan.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.file_name().is_some_and(|name| {
         name.to_string_lossy()

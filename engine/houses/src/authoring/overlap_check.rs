@@ -69,7 +69,7 @@ fn is_around_rooms(house: &House, bounds: &Aabb) -> bool {
     rooms.any(|middle| bounds.contains(middle))
 }
 
-/// Whether a point of `one`, a little inside of it, is inside of `other`.
+/// Returns whether a point of `one`, a little inside of it, is inside of `other`.
 fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
     let data = house.data();
     let middle = world_box(data, one).center();
@@ -91,7 +91,7 @@ fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
     })
 }
 
-/// How many triangles a ray meets.
+/// Returns how many triangles a ray meets.
 ///
 /// # Source
 /// T. Moeller, B. Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 2(1), 21 (1997).
@@ -112,7 +112,7 @@ fn crossings(triangles: &[[Vec3; 3]], from: Vec3, way: Vec3) -> usize {
     triangles.iter().filter(meets).count()
 }
 
-/// Whether a corner of what a thing stands on is in no room, though its middle is: in a wall, or through it.
+/// Returns whether a corner of what a thing stands on is in no room, though its middle is: in a wall, or through it.
 pub(super) fn reaches_into_a_wall(house: &House, object: ObjectId) -> bool {
     let bounds = world_box(house.data(), object);
     let middle = bounds.center();

@@ -51,7 +51,7 @@ fn upright(yaw_rad: f32) -> Quat {
     space::rotation_from_yaw_pitch(yaw_rad, 0.0)
 }
 
-/// Where a pose faces, rad.
+/// Returns where a pose faces, rad.
 fn yaw_of(pose: &Pose) -> f32 {
     space::yaw_from_forward(pose.rotation * Vec3::NEG_Z)
 }
@@ -77,7 +77,7 @@ fn anchor(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     }
 }
 
-/// Where an object's anchor is, m.
+/// Returns where an object's anchor is, m.
 pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     let root = data.parts[data.objects[object].first_part].world_from_part;
     root.position + upright(yaw_of(&root)) * anchor(data, object, which)
@@ -134,7 +134,7 @@ pub(super) fn movement(
     Ok(Pose::new(target - turn * old, turn))
 }
 
-/// Where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
+/// Returns where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
 fn target(
     desk: &mut EditSession<'_>,
     object: ObjectId,
@@ -239,7 +239,7 @@ pub(super) fn with_things(
     Err(fault("with_things", found, possible))
 }
 
-/// Whether the foot of a box is above the foot of another, and no higher than its top.
+/// Returns whether the foot of a box is above the foot of another, and no higher than its top.
 fn is_over(own: &Aabb, below: &Aabb) -> bool {
     let foot = own.center();
     !below.is_empty()
@@ -249,7 +249,7 @@ fn is_over(own: &Aabb, below: &Aabb) -> bool {
         && own.min.y < below.max.y + GAP_M
 }
 
-/// Whether a carrier has a surface under some of what stands in a box over it.
+/// Returns whether a carrier has a surface under some of what stands in a box over it.
 fn touches(data: &HouseData, carrier: ObjectId, own: &Aabb) -> bool {
     let (foot, size) = (own.center(), own.size());
     let mut down = [0.0_f32, 0.25, -0.25]
@@ -261,7 +261,7 @@ fn touches(data: &HouseData, carrier: ObjectId, own: &Aabb) -> bool {
     })
 }
 
-/// Whether an object has a surface at about this height on an upright line.
+/// Returns whether an object has a surface at about this height on an upright line.
 fn surface_near(data: &HouseData, object: ObjectId, xz: Vec2, height_m: f32) -> bool {
     let mut heights = triangles(data, object)
         .into_iter()

@@ -139,7 +139,7 @@ fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError>
     Err(fault("substance", "nothing", possible))
 }
 
-/// What materials become.
+/// Returns what materials become.
 fn repainted(
     data: &mut HouseData,
     old: &[MaterialId],
@@ -234,7 +234,7 @@ fn paint_room(
     Ok(())
 }
 
-/// Whether a face looks into a room, as its floor, wall or ceiling does.
+/// Returns whether a face looks into a room, as its floor, wall or ceiling does.
 fn looks_into(data: &HouseData, id: RoomId, side: RoomSide, [a, b, c]: [Vec3; 3]) -> bool {
     let room = &data.rooms[id];
     let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -34,7 +34,7 @@ pub struct UnmappedNames {
     pub rooms: Vec<UnmappedName>,
 }
 
-/// What stayed unmapped of a house: materials of the default substance and those that its reader reported, objects without a
+/// Returns what stayed unmapped of a house: materials of the default substance and those that its reader reported, objects without a
 /// category, and rooms that nobody has a word for.
 pub fn unmapped(house: &House, report: &LoadReport) -> UnmappedNames {
     let reported = |what: UnmappedKind| {

@@ -79,7 +79,7 @@ impl ShellWall {
             .any(|hole| within(along, hole.along) && within(up, hole.up))
     }
 
-    /// Where the back and the front stand across the wall.
+    /// Returns where the back and the front stand across the wall.
     fn depth(&self) -> [f32; 2] {
         let [x0, z0, x1, z1] = self.rect;
         if self.along == WallAxis::X {

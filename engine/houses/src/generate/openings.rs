@@ -120,7 +120,7 @@ impl WallHole {
         })
     }
 
-    /// Where its leaf stands when open.
+    /// Returns where its leaf stands when open.
     pub(crate) fn open_leaf(&self) -> Option<ZoneXz> {
         let HoleContents::Door { hinge_right, .. } = self.filling else {
             return None;
@@ -139,7 +139,7 @@ impl WallHole {
         Some(leaf)
     }
 
-    /// Whether hinges on the right mean hinges at the smaller coordinate along the wall. The model's +Z looks into the
+    /// Returns whether hinges on the right mean hinges at the smaller coordinate along the wall. The model's +Z looks into the
     /// room and its right is +X: with the room at larger z, right is the larger x; at larger x, the smaller z.
     fn hinge_at_low_end(&self, hinge_right: bool) -> bool {
         let right_is_high = if self.along_x {
@@ -161,7 +161,7 @@ impl WallHole {
     }
 }
 
-/// Whether two zones share some floor.
+/// Returns whether two zones share some floor.
 pub(crate) fn overlap(a: &ZoneXz, b: &ZoneXz) -> bool {
     a[0] < b[2] - 1e-4 && b[0] < a[2] - 1e-4 && a[1] < b[3] - 1e-4 && b[1] < a[3] - 1e-4
 }
@@ -247,7 +247,7 @@ fn deal(
 /// Depth of a room in which a leaf may stand free, m: one passes behind it.
 const FREE_LEAF_M: f32 = 1.75;
 
-/// Whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
+/// Returns whether one can pass the open leaf: it lies against a wall of a corner, or the room is deep.
 fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHole) -> bool {
     let HoleContents::Door { hinge_right, .. } = hole.filling else {
         return true;
@@ -286,7 +286,7 @@ fn leaves_passage(storey: &GeneratedStorey, runs: &[RoomBoundary], hole: &WallHo
     })
 }
 
-/// Whether two doors of a storey leave each other alone.
+/// Returns whether two doors of a storey leave each other alone.
 fn apart(a: &WallHole, b: &WallHole) -> bool {
     let meet = |p: Option<ZoneXz>, q: Option<ZoneXz>| match (p, q) {
         (Some(p), Some(q)) => overlap(&p, &q),
@@ -304,7 +304,7 @@ fn apart(a: &WallHole, b: &WallHole) -> bool {
     !same && !meet(a.sweep(), b.sweep()) && !blocked(a, b) && !blocked(b, a)
 }
 
-/// Where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
+/// Returns where a door between two rooms can be: at both ends and in the middle of every stretch that is long enough.
 fn candidates(
     storey: &GeneratedStorey,
     runs: &[RoomBoundary],
@@ -444,7 +444,7 @@ fn windows(
     }
 }
 
-/// Whether a window keeps clear of other holes, of open leaves and of the stairs.
+/// Returns whether a window keeps clear of other holes, of open leaves and of the stairs.
 fn is_clear(hole: &WallHole, holes: &[WallHole], stairs: Option<GridRect>) -> bool {
     let before = hole.front(1.0, 0.5 * OUTER_M + 0.12, 0.02);
     let free = |other: &WallHole| {

@@ -69,7 +69,7 @@ pub(super) fn unreached(
     all
 }
 
-/// How many rooms of a storey are not reached while nothing stands in them.
+/// Returns how many rooms of a storey are not reached while nothing stands in them.
 pub(super) fn unreached_when_empty(
     storey: &GeneratedStorey,
     holes: &[WallHole],
@@ -79,7 +79,7 @@ pub(super) fn unreached_when_empty(
     reached.into_iter().filter(|reached| !reached).count()
 }
 
-/// Where one stands before the flights that start or end on a storey.
+/// Returns where one stands before the flights that start or end on a storey.
 fn stairs_at(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 2]> {
     let [x0, z0, x1, z1] = stairs.area.map(metres);
     let size = [x1 - x0, z1 - z0];
@@ -207,7 +207,7 @@ impl OccupancyMap {
         }
     }
 
-    /// Where one can stand: all cells around are floor and free.
+    /// Returns where one can stand: all cells around are floor and free.
     fn walkable(&self) -> Vec<bool> {
         // How many cells in a row (then in a column) up to here are free without a break.
         let free = |cell: usize| self.room[cell] != WALL && !self.blocked[cell];
@@ -290,7 +290,7 @@ impl OccupancyMap {
         counts.into_iter().map(is_reached).collect()
     }
 
-    /// Whether one gets to within a step of a place.
+    /// Returns whether one gets to within a step of a place.
     fn is_near(&self, [x, z]: [f32; 2], walk: &[CellReach]) -> bool {
         let near_m = 0.25;
         let at = |value: f32, axis: usize| (value - self.corner[axis]) / CELL_M;

@@ -31,7 +31,7 @@ fn paint(name: &'static str, srgb: Srgb) -> Finish {
     )
 }
 
-/// What the insides of openings show.
+/// Returns what the insides of openings show.
 pub(crate) fn reveal() -> Finish {
     paint("reveal_white", [240, 238, 232])
 }

@@ -182,7 +182,7 @@ impl GeneratedRoomKind {
         }
     }
 
-    /// Whether it lies outside.
+    /// Returns whether it lies outside.
     pub(crate) const fn is_outside(self) -> bool {
         matches!(self, Self::Balcony | Self::Terrace)
     }

@@ -87,7 +87,7 @@ pub(crate) fn free_floor(
     rectangles.collect()
 }
 
-/// Whether a rectangle lies over a floor entirely.
+/// Returns whether a rectangle lies over a floor entirely.
 pub(crate) fn covers(floor: &[ZoneXz], rect: &ZoneXz) -> bool {
     let area = |r: &ZoneXz| (r[2] - r[0]).max(0.0) * (r[3] - r[1]).max(0.0);
     let common = |z: &ZoneXz| {
@@ -497,7 +497,7 @@ impl ShellBuilder<'_> {
     }
 }
 
-/// Whether a stretch parts a balcony from the open air.
+/// Returns whether a stretch parts a balcony from the open air.
 fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
     let outside = |room: &GeneratedRoom| room.kind.is_outside();
     match run.sides {
@@ -516,7 +516,7 @@ fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
     }
 }
 
-/// How far a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
+/// Returns how far a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
 /// a gap and without lying in each other: what goes straight on goes through, and at a corner the wall along z does.
 fn reach(storey: &GeneratedStorey, runs: &[RoomBoundary], run: &RoomBoundary, end: bool) -> f32 {
     let at = if end { run.to } else { run.from };

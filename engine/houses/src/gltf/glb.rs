@@ -56,7 +56,7 @@ impl Default for BinaryChunk {
 }
 
 impl BinaryChunk {
-    /// What `write` appends goes into the chunk, or `apart` into a file of its own in `folder`, named by its content.
+    /// Returns what `write` appends goes into the chunk, or `apart` into a file of its own in `folder`, named by its content.
     pub(crate) fn part<T>(
         &mut self,
         folder: &str,

@@ -28,7 +28,7 @@ use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// Whether `path` names a glTF file.
+/// Returns whether `path` names a glTF file.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.extension().is_some_and(|ending| {
         ending.eq_ignore_ascii_case("glb") || ending.eq_ignore_ascii_case("gltf")
@@ -122,7 +122,7 @@ fn read(
     convert::convert(&json, &buffers, root, name, trusted, threads, report)
 }
 
-/// Whether the asset is one of glTF 2: by the version that it asks of readers, else by its own.
+/// Returns whether the asset is one of glTF 2: by the version that it asks of readers, else by its own.
 fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), HousesError> {
     let (field, found) = match &asset.min_version {
         Some(needed) => ("asset.minVersion", needed),
@@ -147,7 +147,7 @@ fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), H
     })
 }
 
-/// Whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which
+/// Returns whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which
 /// panics.
 fn check_positions(json: &::gltf::json::Root, at: &FileLocation) -> Result<(), HousesError> {
     use ::gltf::json::mesh::Semantic;

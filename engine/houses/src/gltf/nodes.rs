@@ -264,7 +264,7 @@ pub(super) fn tree(
     found
 }
 
-/// What a node says of an object or part; what cannot be read is reported and counts for nothing.
+/// Returns what a node says of an object or part; what cannot be read is reported and counts for nothing.
 fn given<T: DeserializeOwned>(
     node: &Node,
     at: &FileLocation,
@@ -283,7 +283,7 @@ fn given<T: DeserializeOwned>(
         .ok()
 }
 
-/// What a node says of itself in our words; nothing where `extras` are not ours.
+/// Returns what a node says of itself in our words; nothing where `extras` are not ours.
 fn known(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
     let Some(text) = node.extras.as_ref().map(|extras| extras.get()) else {
         return DwellNodeExtras::default();

@@ -28,7 +28,7 @@ use assets::Assets;
 use dataset::{Dataset, ResolvedTemplate, SCENE_ENDING, TemplateKind};
 use file::{SceneFile, SceneInstance, Template};
 
-/// Whether `path` names a scene of Habitat.
+/// Returns whether `path` names a scene of Habitat.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.file_name()
         .is_some_and(|name| name.to_string_lossy().ends_with(SCENE_ENDING))

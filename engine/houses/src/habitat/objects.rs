@@ -147,7 +147,7 @@ impl HabitatReader<'_> {
         self.assets.shape(root, &path, threads, self.report)
     }
 
-    /// Whether the place of an instance is that of its centre of mass.
+    /// Returns whether the place of an instance is that of its centre of mass.
     pub(super) fn counts_from_centre(&self, instance: &SceneInstance) -> bool {
         let own = instance.translation_origin.as_deref();
         own.or(self.origin.as_deref())

@@ -113,7 +113,7 @@ pub(super) fn structure(
     }
 }
 
-/// What a triangle of an unnamed piece belongs to.
+/// Returns what a triangle of an unnamed piece belongs to.
 fn faces(mesh: &Mesh, triangle: usize, floors: &[f32]) -> StructureKind {
     let [a, b, c] = mesh.corners(triangle);
     let up = (b - a).cross(c - a).normalize_or_zero().y;

@@ -123,7 +123,7 @@ struct AnnotatedEmitter {
     start_s: f32,
 }
 
-/// What loops is the rule.
+/// Returns what loops is the rule.
 const fn yes() -> bool {
     true
 }
@@ -155,7 +155,7 @@ pub(super) struct ImportedObject {
 }
 
 impl AnnotatedPart {
-    /// Where it stands, and its mesh on it. A node that an editor moved or turned takes the part along; `None` when it was
+    /// Returns where it stands, and its mesh on it. A node that an editor moved or turned takes the part along; `None` when it was
     /// scaled, which joints, masses and collision shapes do not follow.
     fn place(&self) -> Option<(Pose, Affine3A)> {
         let was = self.world_from_part;
@@ -229,7 +229,7 @@ impl ImportedObject {
         &self.object.name
     }
 
-    /// Where it stood among the objects.
+    /// Returns where it stood among the objects.
     pub(super) fn order(&self) -> u32 {
         self.object.index
     }

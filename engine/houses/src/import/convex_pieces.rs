@@ -95,7 +95,7 @@ fn directions() -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// Whether four of the points make a tetrahedron of at least 1e-9 m³ (a cube of 1 mm).
+/// Returns whether four of the points make a tetrahedron of at least 1e-9 m³ (a cube of 1 mm).
 fn spans_volume(points: &[Vec3]) -> bool {
     let Some(&origin) = points.first() else {
         return false;

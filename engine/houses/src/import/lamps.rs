@@ -21,7 +21,7 @@ pub(crate) struct ImportedLamp {
     pub(crate) on: bool,
 }
 
-/// Whether `name` is that of a thing or of one of its parts: `fridge_1.door` is of `fridge_1`.
+/// Returns whether `name` is that of a thing or of one of its parts: `fridge_1.door` is of `fridge_1`.
 fn is_of(name: &str, thing: &str) -> bool {
     let rest = name.strip_prefix(thing);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))

@@ -197,7 +197,7 @@ fn given_objects(
     (ready, left)
 }
 
-/// What part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
+/// Returns what part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
 pub(crate) fn structure_kind(name: &str) -> Option<StructureKind> {
     let lower = name.to_ascii_lowercase();
     let words = lower.split(|c: char| !c.is_ascii_alphabetic());

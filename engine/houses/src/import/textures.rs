@@ -70,7 +70,7 @@ pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
     ))
 }
 
-/// Whether a JPEG image ends before its end marker: the decoder makes grey of what is missing.
+/// Returns whether a JPEG image ends before its end marker: the decoder makes grey of what is missing.
 pub(crate) fn is_cut(bytes: &[u8]) -> bool {
     const START: [u8; 2] = [0xff, 0xd8];
     if !bytes.starts_with(&START) {

@@ -15,7 +15,7 @@ use dwell_scene::House;
 use file::MeasuredRoomFile;
 use std::path::Path;
 
-/// Whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
+/// Returns whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
 pub(crate) fn recognizes(path: &Path) -> bool {
     is_json_with(path, &["\"absorption\"", "\"materials\""])
 }

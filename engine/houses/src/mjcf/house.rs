@@ -32,7 +32,7 @@ const HANDY_M: f32 = 0.6;
 /// The most joints whose object counts as furniture; more are a robot.
 const MOST_JOINTS: usize = 40;
 
-/// Whether the file is a house: more than one body stands in the world, or one beside geoms that are called walls or floors.
+/// Returns whether the file is a house: more than one body stands in the world, or one beside geoms that are called walls or floors.
 pub(super) fn is_house(source: &MjcfSource) -> bool {
     let world = &source.model.bodies[0].body;
     let built = world

@@ -36,7 +36,7 @@ struct IncludeResolver<'a> {
 }
 
 impl IncludeResolver<'_> {
-    /// How many elements a file stands for, with all that it includes and attaches.
+    /// Returns how many elements a file stands for, with all that it includes and attaches.
     fn file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
         self.seen += 1;
         let at = FileLocation::file(name);

@@ -24,7 +24,7 @@ pub(crate) use read::read;
 /// How much of a file is looked at to tell MuJoCo's XML from another's, bytes.
 const HEAD: u64 = 4096;
 
-/// Whether `path` names an XML file whose root is `<mujoco>`.
+/// Returns whether `path` names an XML file whose root is `<mujoco>`.
 pub(crate) fn recognizes(path: &Path) -> bool {
     let is_xml = path
         .extension()

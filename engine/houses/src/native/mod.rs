@@ -20,7 +20,7 @@ const TABLES: &str = "house.json";
 /// Meshes and textures.
 const GEOMETRY: &str = "house.glb";
 
-/// Whether `path` names a native house.
+/// Returns whether `path` names a native house.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("dwell"))

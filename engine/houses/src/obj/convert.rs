@@ -22,7 +22,7 @@ use crate::import::{
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
 
-/// Whether `path` names an OBJ file.
+/// Returns whether `path` names an OBJ file.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))

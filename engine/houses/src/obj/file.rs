@@ -59,12 +59,12 @@ impl ObjFile {
         &self.corners[start..self.face_ends[face] as usize]
     }
 
-    /// How many faces there are.
+    /// Returns how many faces there are.
     pub fn face_count(&self) -> usize {
         self.face_ends.len()
     }
 
-    /// How many triangles the faces make when fanned.
+    /// Returns how many triangles the faces make when fanned.
     pub fn triangle_count(&self) -> usize {
         self.corners.len() - 2 * self.face_ends.len()
     }

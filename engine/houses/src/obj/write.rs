@@ -78,7 +78,7 @@ impl ObjWriter {
         };
     }
 
-    /// What was written so far.
+    /// Returns what was written so far.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }

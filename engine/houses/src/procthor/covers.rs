@@ -36,7 +36,7 @@ const COVERS: &[(&str, &str, &str, Srgb)] = &[
 /// Of a name that says nothing, or none.
 const PLAIN: Finish = Finish::plain("paint", "painted_plaster", [226, 222, 212]);
 
-/// What a material of the file is: a name, or an object with a `name` and a `color`. The name is returned beside it
+/// Returns what a material of the file is: a name, or an object with a `name` and a `color`. The name is returned beside it
 /// where it says nothing.
 pub(super) fn cover(material: &Value) -> (Finish, Option<String>) {
     let name = material

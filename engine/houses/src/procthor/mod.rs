@@ -23,7 +23,7 @@ use crate::warning_kind::WarningKind;
 use file::{ObjectFile, ProcThorHouse, Vector3};
 use sizes::AssetSizes;
 
-/// Whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
+/// Returns whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
 pub(crate) fn recognizes(path: &Path) -> bool {
     is_json_with(path, &["\"proceduralParameters\"", "\"walls\""])
 }
@@ -161,7 +161,7 @@ fn rotation(degrees: Vector3) -> Quat {
     turn(Vec3::Y, -degrees.y) * turn(Vec3::X, -degrees.x) * turn(Vec3::Z, degrees.z)
 }
 
-/// Whether numbers can be a place in a house.
+/// Returns whether numbers can be a place in a house.
 fn is_place(p: Vec3) -> bool {
     p.is_finite() && Aabb::new(Vec3::splat(-1e4), Vec3::splat(1e4)).contains(p)
 }

@@ -231,7 +231,7 @@ fn positive(m: &DMat3) -> bool {
     a.x > 0.0 && a.x * b.y - a.y * b.x > 0.0 && m.determinant() > 0.0
 }
 
-/// What moves must have a mass.
+/// Returns what moves must have a mass.
 fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
     let fixed = FixedLinks::new(robot);
     for joint in robot

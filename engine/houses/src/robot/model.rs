@@ -109,7 +109,7 @@ impl Robot {
         self.links.iter().map(|link| link.name.as_str())
     }
 
-    /// Whether no joint of it has a motor.
+    /// Returns whether no joint of it has a motor.
     pub(crate) fn is_passive(&self) -> bool {
         self.joints.iter().all(|joint| joint.servo.is_none())
     }
@@ -123,7 +123,7 @@ impl Robot {
         moving.map(|joint| joint.name.as_str())
     }
 
-    /// Whether its file holds the base for good: in MJCF a root without a free joint; URDF does not say, so `true`.
+    /// Returns whether its file holds the base for good: in MJCF a root without a free joint; URDF does not say, so `true`.
     pub fn has_fixed_base(&self) -> bool {
         self.fixed_base
     }

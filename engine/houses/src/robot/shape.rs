@@ -30,7 +30,7 @@ impl ShapeGeometry {
         }
     }
 
-    /// Whether its sizes are those of a body.
+    /// Returns whether its sizes are those of a body.
     pub(super) fn is_sound(&self) -> bool {
         self.numbers().iter().all(|x| (1e-6..=1000.0).contains(x))
     }

@@ -20,7 +20,7 @@ pub struct VoxelGrid {
 }
 
 impl VoxelGrid {
-    /// How many voxels are solid.
+    /// Returns how many voxels are solid.
     pub fn count(&self) -> u64 {
         self.solid.iter().filter(|solid| **solid).count() as u64
     }

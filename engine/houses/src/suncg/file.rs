@@ -219,7 +219,7 @@ impl Serialize for BinaryFlag {
 }
 
 impl NodeFile {
-    /// Whether the node is to be used.
+    /// Returns whether the node is to be used.
     pub fn is_valid(&self) -> bool {
         self.valid != Some(BinaryFlag(false))
     }

@@ -9,7 +9,7 @@ use super::{SuncgFiles, convert, locate};
 use crate::error::HousesError;
 use crate::report::LoadReport;
 
-/// Whether `path` is a SUNCG house: a JSON file, a house's folder, or a data root.
+/// Returns whether `path` is a SUNCG house: a JSON file, a house's folder, or a data root.
 pub(crate) fn recognizes(path: &Path) -> bool {
     let is_json = path
         .extension()

@@ -47,7 +47,7 @@ pub struct SuncgFiles {
 pub(super) mod paths {
     use super::NodeFile;
 
-    /// Whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
+    /// Returns whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
     pub(in super::super) fn is_plain(id: &str) -> bool {
         !id.is_empty() && id != "." && id != ".." && !id.contains(['/', '\\', ':', '\0'])
     }

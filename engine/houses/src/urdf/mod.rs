@@ -15,7 +15,7 @@ use crate::robot;
 
 pub(crate) use read::read;
 
-/// Whether `path` names a URDF file.
+/// Returns whether `path` names a URDF file.
 pub(crate) fn recognizes(path: &Path) -> bool {
     path.extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("urdf"))

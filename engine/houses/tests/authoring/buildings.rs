@@ -144,7 +144,7 @@ fn walls_are_closed_and_rooms_have_their_coverings() {
     );
 }
 
-/// Whether every edge belongs to as many triangles in one sense as in the other.
+/// Returns whether every edge belongs to as many triangles in one sense as in the other.
 fn is_closed(mesh: &Mesh) -> bool {
     use std::collections::BTreeMap;
     let mut edges: BTreeMap<[[u32; 3]; 2], i32> = BTreeMap::new();

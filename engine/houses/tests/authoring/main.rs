@@ -31,7 +31,7 @@ fn edited(house: &House, list: Value) -> House {
     edit(house, &edits(list), &FileAccess::Anywhere).unwrap().0
 }
 
-/// What is said about edits that cannot be.
+/// Returns what is said about edits that cannot be.
 fn refused(house: &House, list: Value) -> String {
     match serde_json::from_value::<Vec<Edit>>(list.clone()) {
         Err(error) => error.to_string(),

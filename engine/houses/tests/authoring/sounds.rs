@@ -5,7 +5,7 @@ use dwell_houses::{native, open};
 use serde_json::{Value, json};
 use std::fs;
 
-/// What begins as a WAV file; a house carries it as it is.
+/// Returns what begins as a WAV file; a house carries it as it is.
 fn write(folder: &tempfile::TempDir, name: &str, more: &str) -> String {
     let path = folder.path().join(name);
     fs::create_dir_all(path.parent().unwrap()).unwrap();

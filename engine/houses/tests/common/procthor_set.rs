@@ -89,7 +89,7 @@ pub(crate) fn file() -> Value {
     })
 }
 
-/// What `asset-database.json` says of the house's assets.
+/// Returns what `asset-database.json` says of the house's assets.
 pub(crate) fn database() -> Value {
     let row = |id: &str, x: f64, y: f64, z: f64| json!([{"assetId": id, "boundingBox": xyz(x, y, z), "split": "train"}]);
     json!({

@@ -77,7 +77,7 @@ pub(super) fn direction(at: Vec2, k: [f32; 4], half_angle: f32) -> Vec3 {
     Vec3::new((x * across) as f32, (-y * across) as f32, -cosine)
 }
 
-/// Where a point in the camera's frame appears, focal lengths from the principal point, y down.
+/// Returns where a point in the camera's frame appears, focal lengths from the principal point, y down.
 pub(super) fn project(point: Vec3, k: [f32; 4], half_angle: f32) -> Option<Vec2> {
     let across = point.truncate().length();
     let angle = math::atan2(across, -point.z);

@@ -12,7 +12,7 @@ const RINGS: u8 = 24;
 /// Radial k1, k2, k3 and tangential p1, p2.
 pub(super) type Lens = [f32; 5];
 
-/// Where the lens puts a point of the plane at depth 1, y down, with the derivatives by x and by y.
+/// Returns where the lens puts a point of the plane at depth 1, y down, with the derivatives by x and by y.
 fn bend(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
     let [k1, k2, k3, p1, p2] = lens.map(f64::from);
     let DVec2 { x, y } = p;
@@ -36,7 +36,7 @@ fn bend(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
     (bent, by_x, by_y)
 }
 
-/// Whether the picture still grows outwards everywhere up to a point: further out the lens folds it back.
+/// Returns whether the picture still grows outwards everywhere up to a point: further out the lens folds it back.
 fn is_before_fold(lens: Lens, p: DVec2) -> bool {
     (1..=RINGS).all(|ring| {
         let (_, by_x, by_y) = bend(lens, p * (f64::from(ring) / f64::from(RINGS)));
@@ -44,7 +44,7 @@ fn is_before_fold(lens: Lens, p: DVec2) -> bool {
     })
 }
 
-/// Where the lens puts a point of the plane at depth 1; nothing beyond its fold.
+/// Returns where the lens puts a point of the plane at depth 1; nothing beyond its fold.
 pub(super) fn distort(lens: Lens, p: Vec2) -> Option<Vec2> {
     let p = p.as_dvec2();
     is_before_fold(lens, p).then(|| bend(lens, p).0.as_vec2())

@@ -218,7 +218,7 @@ impl Camera {
         self.width as usize * self.height as usize
     }
 
-    /// Where pixels look.
+    /// Returns where pixels look.
     pub fn projection(&self) -> Projection {
         self.projection
     }
@@ -314,7 +314,7 @@ impl Camera {
         }
     }
 
-    /// Where a point in camera space appears, pixels from the top left corner, and its depth, m; nothing for a point that
+    /// Returns where a point in camera space appears, pixels from the top left corner, and its depth, m; nothing for a point that
     /// the camera cannot see wherever its image ends, such as one beside or behind a pinhole. The image may end before.
     pub fn project(&self, point_in_camera: Vec3) -> Option<(Vec2, f32)> {
         let depth = -point_in_camera.z;

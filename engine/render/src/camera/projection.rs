@@ -106,7 +106,7 @@ fn right_angle_deg() -> f32 {
 }
 
 impl Projection {
-    /// Whether depth is the distance from the camera, and not along its axis.
+    /// Returns whether depth is the distance from the camera, and not along its axis.
     pub fn depth_is_range(&self) -> bool {
         matches!(
             self,
@@ -114,7 +114,7 @@ impl Projection {
         )
     }
 
-    /// Whether straight lines appear straight.
+    /// Returns whether straight lines appear straight.
     pub fn keeps_lines(&self) -> bool {
         matches!(self, Self::Pinhole { .. } | Self::Orthographic { .. })
     }

@@ -85,7 +85,7 @@ impl CameraPacket {
         Vec3::new(x[lane], y[lane], z[lane])
     }
 
-    /// What a pixel sees.
+    /// Returns what a pixel sees.
     #[inline]
     pub(super) fn sight(&self, lane: usize) -> Option<PrimaryHit> {
         let direction = self.direction(lane);
@@ -126,7 +126,7 @@ impl CameraPacket {
         })
     }
 
-    /// What pixels see, and along which rays, where those start at one point.
+    /// Returns what pixels see, and along which rays, where those start at one point.
     #[inline]
     pub(super) fn packet_view(&self) -> Option<PacketView<'_>> {
         let seen = PacketView {
@@ -137,7 +137,7 @@ impl CameraPacket {
         self.beam.is_none().then_some(seen)
     }
 
-    /// Whether a pixel sees anything.
+    /// Returns whether a pixel sees anything.
     pub(super) fn sees(&self, lane: usize) -> bool {
         match &self.beam {
             None => self.hits.is_hit(lane),
@@ -335,17 +335,17 @@ impl CameraRays {
         Some((ray, 1.0 / length))
     }
 
-    /// Whether the picture shows no light.
+    /// Returns whether the picture shows no light.
     pub(super) fn is_flat(&self) -> bool {
         self.view.preset == Preset::Flat
     }
 
-    /// Whether the picture has all light.
+    /// Returns whether the picture has all light.
     pub(super) fn is_full(&self) -> bool {
         self.view.preset == Preset::Full
     }
 
-    /// What the camera does not see.
+    /// Returns what the camera does not see.
     pub(super) fn hidden(&self) -> i32 {
         self.hidden.0
     }

@@ -7,7 +7,7 @@ use crate::frame::PreviousFrame;
 use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
-/// How a point that is seen at `image` has moved there, pixels; it was at `was` in the world.
+/// Returns how a point that is seen at `image` has moved there, pixels; it was at `was` in the world.
 pub(super) fn flow(
     camera: &Camera,
     before: &PreviousFrame<'_>,
@@ -55,7 +55,7 @@ fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
 }
 
 impl CpuRenderer {
-    /// Where in the world the point that is seen was before.
+    /// Returns where in the world the point that is seen was before.
     pub(super) fn point_before(
         &self,
         sight: &PrimaryHit,

@@ -101,7 +101,7 @@ impl ImageTile<'_> {
 }
 
 impl PathTracer<'_> {
-    /// What comes along a ray, in units of display white.
+    /// Returns what comes along a ray, in units of display white.
     fn light_along(&self, mut ray: Ray, path: PathState, dice: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
@@ -134,7 +134,7 @@ impl PathTracer<'_> {
         light + sky(ray.direction, Some((fixed, self.exposure))) * rest
     }
 
-    /// What a surface sends back along the ray that met it, and how much of what lies behind it hides.
+    /// Returns what a surface sends back along the ray that met it, and how much of what lies behind it hides.
     fn surface(
         &self,
         (sight, distance_m): (&PrimaryHit, f32),
@@ -226,7 +226,7 @@ impl PathTracer<'_> {
         self.light_along(Ray::new(off, direction), path, dice)
     }
 
-    /// What other surfaces throw on one of reflectance 1.
+    /// Returns what other surfaces throw on one of reflectance 1.
     fn indirect_light(
         &self,
         off: Vec3,
@@ -249,7 +249,7 @@ impl PathTracer<'_> {
         sum / GATHERED as f32
     }
 
-    /// Whether light arrives from a place in its source.
+    /// Returns whether light arrives from a place in its source.
     fn arrives(
         &self,
         source: LightSource,
@@ -296,12 +296,12 @@ struct Microfacet {
     facing: Vec3,
 }
 
-/// Whether a surface reflects more than rays can show.
+/// Returns whether a surface reflects more than rays can show.
 fn reflects(look: &ShadingMaterial) -> bool {
     look.metallic > 0.0 || look.roughness < DULL
 }
 
-/// What a surface of a colour reflects, by the cosine between the viewer and the facet: metals by their colour, others the less the
+/// Returns what a surface of a colour reflects, by the cosine between the viewer and the facet: metals by their colour, others the less the
 /// rougher they are.
 fn reflectance(look: &ShadingMaterial, color: Vec3, cosine: f32) -> Vec3 {
     let left = 1.0 - cosine.clamp(0.0, 1.0);

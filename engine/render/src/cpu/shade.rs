@@ -155,7 +155,7 @@ impl ShadeScratch {
 }
 
 impl CpuRenderer {
-    /// What is seen of a surface without light.
+    /// Returns what is seen of a surface without light.
     pub(super) fn surface_at_hit<'a>(
         &'a self,
         rays: &CameraRays,
@@ -390,7 +390,7 @@ impl ImageTile<'_> {
         (light, sent.opacity)
     }
 
-    /// What a surface sends to the camera.
+    /// Returns what a surface sends to the camera.
     ///
     /// `mirrors`: how many more of them light meets. `weights`: of the second and third corner.
     #[inline]
@@ -432,7 +432,7 @@ impl ImageTile<'_> {
         }
     }
 
-    /// What a mirror shows: the light that comes from where the ray goes on.
+    /// Returns what a mirror shows: the light that comes from where the ray goes on.
     #[cold]
     fn reflected(
         &self,

@@ -16,7 +16,7 @@ const PANES: usize = 8;
 const GLASS: f32 = 0.5;
 
 impl CpuRenderer {
-    /// Whether nothing but glass stands on a ray, apart from a thing.
+    /// Returns whether nothing but glass stands on a ray, apart from a thing.
     pub(super) fn passes(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
         let mut ray = *ray;
         for _ in 0..PANES {
@@ -37,12 +37,12 @@ impl CpuRenderer {
         self.looks[material as usize].opacity <= GLASS
     }
 
-    /// Whether the middle of the sun shines on a point.
+    /// Returns whether the middle of the sun shines on a point.
     pub(super) fn sun_reaches(&self, scene: SceneBvh<'_>, point: Vec3) -> bool {
         self.sky_reaches(scene, point, self.house_light().sun.0)
     }
 
-    /// Whether light comes to a point from far away. `direction`: unit length, towards it.
+    /// Returns whether light comes to a point from far away. `direction`: unit length, towards it.
     pub(super) fn sky_reaches(&self, scene: SceneBvh<'_>, point: Vec3, direction: Vec3) -> bool {
         let ray = Ray {
             origin: point,
@@ -53,7 +53,7 @@ impl CpuRenderer {
         self.passes(scene, &ray, EntityId::VOID.0)
     }
 
-    /// Whether light of a source arrives at a point off a surface, whose flat normal is `facing`.
+    /// Returns whether light of a source arrives at a point off a surface, whose flat normal is `facing`.
     pub(super) fn arrives(
         &self,
         scene: SceneBvh<'_>,

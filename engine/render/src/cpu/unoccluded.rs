@@ -12,7 +12,7 @@ use std::sync::{Arc, LazyLock};
 static NOTHING: LazyLock<TriangleBvh> = LazyLock::new(TriangleBvh::default);
 
 impl CpuRenderer {
-    /// How many pixels of a view would show a thing if nothing else were there: those whose middle's ray meets it within
+    /// Returns how many pixels of a view would show a thing if nothing else were there: those whose middle's ray meets it within
     /// the camera's range. 0 for what is neither an object nor an agent.
     pub fn unoccluded_pixels(
         &self,

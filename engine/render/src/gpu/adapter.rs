@@ -185,7 +185,7 @@ fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(A
 /// The process that found adapters behind GL first; 0 as long as none has. Forked ones inherit it.
 static GL_USED_BY: AtomicU32 = AtomicU32::new(0);
 
-/// Whether a process may ask GL. Its drivers keep one display for a whole process, whose threads are not there in a forked one:
+/// Returns whether a process may ask GL. Its drivers keep one display for a whole process, whose threads are not there in a forked one:
 /// whoever draws there waits for them for ever.
 fn may_ask_gl(used_by: &AtomicU32, process: u32) -> bool {
     [0, process].contains(&used_by.load(Ordering::Relaxed))
@@ -227,7 +227,7 @@ pub fn adapters() -> Vec<Adapter> {
 /// Where GL was used before a fork.
 const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
 
-/// What a process is told that was forked from one that has opened an adapter.
+/// Returns what a process is told that was forked from one that has opened an adapter.
 pub(super) fn forked(adapter: &Adapter) -> RenderError {
     let instead = if adapter.interface == "gl" {
         NOT_GL

@@ -137,7 +137,7 @@ pub(super) struct GpuBatch {
     pub(super) describes: bool,
 }
 
-/// Whether a view needs light: colours alone show it.
+/// Returns whether a view needs light: colours alone show it.
 fn is_lit(job: &RenderJob<'_>) -> bool {
     job.view.preset == Preset::Lit && job.frame.rgb.is_some()
 }
@@ -310,7 +310,7 @@ impl GpuBatch {
         }
     }
 
-    /// Where each instance was; returns the first row.
+    /// Returns where each instance was; returns the first row.
     fn add_before(&mut self, job: &RenderJob<'_>, before: &PreviousFrame<'_>) -> u32 {
         let first = self.rows.len() as u32;
         for part in &job.scene.house().geometry().movable {

@@ -204,7 +204,7 @@ impl BatchBuffers {
         self.group.as_ref()
     }
 
-    /// Where kernels write images, and where they come back to.
+    /// Returns where kernels write images, and where they come back to.
     pub(super) fn ways(&self, gpu: &Gpu) -> Result<(&wgpu::Buffer, &wgpu::Buffer), RenderError> {
         Ok((self.images.held(gpu)?, self.back.held(gpu)?))
     }

@@ -85,7 +85,7 @@ impl CullingView {
 }
 
 impl VisibilityQuery<'_> {
-    /// Whether something in a box may be seen.
+    /// Returns whether something in a box may be seen.
     pub(super) fn sees(&self, bounds: &Aabb) -> bool {
         self.eye.shows(bounds) && !self.shadows.iter().any(|shadow| shadow.hides(bounds))
     }
@@ -127,7 +127,7 @@ impl Culler {
         }
     }
 
-    /// What can be seen from an eye.
+    /// Returns what can be seen from an eye.
     pub(super) fn sightline<'a>(
         &self,
         eye: &'a CullingView,

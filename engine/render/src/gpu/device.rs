@@ -211,7 +211,7 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Whether this process opened the adapter.
+    /// Returns whether this process opened the adapter.
     pub(super) fn check_process(&self) -> Result<(), RenderError> {
         if self.process == std::process::id() {
             return Ok(());
@@ -224,7 +224,7 @@ impl Gpu {
         &self.adapter
     }
 
-    /// How quick both paths are on this adapter; measured over the first house that asks, then known.
+    /// Returns how quick both paths are on this adapter; measured over the first house that asks, then known.
     ///
     /// # Errors
     /// As [`VisibilityPathSpeeds::measure`].
@@ -260,7 +260,7 @@ impl Gpu {
         self.buffers_made.load(Ordering::Relaxed)
     }
 
-    /// What the driver said since the last time, as an error.
+    /// Returns what the driver said since the last time, as an error.
     pub(super) fn check(&self, doing: &'static str) -> Result<(), RenderError> {
         match lock(&self.fault).take() {
             None => Ok(()),

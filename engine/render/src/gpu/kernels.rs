@@ -125,7 +125,7 @@ impl Kernels {
         })
     }
 
-    /// What each pixel of drawn pictures sees first.
+    /// Returns what each pixel of drawn pictures sees first.
     pub(super) fn settle(
         &self,
         device: &wgpu::Device,

@@ -35,7 +35,7 @@ pub(super) struct OcclusionVolume {
 }
 
 impl OcclusionVolume {
-    /// Whether a box lies in the shadow as a whole.
+    /// Returns whether a box lies in the shadow as a whole.
     pub(super) fn hides(&self, bounds: &Aabb) -> bool {
         let (center, half) = (bounds.center(), bounds.size() * 0.5);
         self.planes[..self.count]
@@ -83,7 +83,7 @@ impl Occluder {
         self.area_m2 * (self.normal.dot(way).abs() / squared.sqrt()) / squared
     }
 
-    /// What it hides from a point; nothing where parts of it may be nearer than `near_m`, where they are not seen.
+    /// Returns what it hides from a point; nothing where parts of it may be nearer than `near_m`, where they are not seen.
     pub(super) fn shadow(&self, eye: Vec3, near_m: f32) -> Option<OcclusionVolume> {
         let height = self.normal.dot(self.corners[0] - eye);
         if height.abs() < near_m.max(0.01) {

@@ -81,7 +81,7 @@ struct DrawListJob<'a, 'b, 'c> {
 }
 
 impl DrawBatch {
-    /// Whether the raster path takes a view: straight lines must stay straight, and pixels need neighbours above and below.
+    /// Returns whether the raster path takes a view: straight lines must stay straight, and pixels need neighbours above and below.
     fn supports_view(job: &RenderJob<'_>) -> bool {
         let camera = &job.view.camera;
         let is_whole = job.row_range() == (0, camera.height() as usize);
@@ -173,7 +173,7 @@ impl DrawBatch {
         places
     }
 
-    /// How often [`Self::draw`] calls the adapter.
+    /// Returns how often [`Self::draw`] calls the adapter.
     pub(super) fn calls(&self) -> usize {
         let sheets = self.sheets.iter();
         sheets.filter(|sheet| !sheet.pieces.is_empty()).count()

@@ -89,7 +89,7 @@ impl GpuRenderer {
         &self.gpu
     }
 
-    /// How it finds what pixels see first.
+    /// Returns how it finds what pixels see first.
     pub fn path(&self) -> VisibilityPath {
         self.path
     }
@@ -185,7 +185,7 @@ impl GpuRenderer {
         interrupt::uninterruptible(|| self.deliver(submitted, frames.iter_mut(), threads))
     }
 
-    /// How many of the first jobs fit into one submission as far as their images go; at least one.
+    /// Returns how many of the first jobs fit into one submission as far as their images go; at least one.
     fn fitting(&self, jobs: &[RenderJob<'_>]) -> usize {
         let (most, most_groups) = (self.gpu.most_bytes(), self.gpu.most_groups());
         let (mut seen, mut words, mut groups) = (0, 0, 0);
@@ -346,7 +346,7 @@ impl GpuRenderer {
     }
 }
 
-/// Whether a view is one for the adapter.
+/// Returns whether a view is one for the adapter.
 fn is_ours(job: &RenderJob<'_>) -> bool {
     matches!(job.view.preset, Preset::Flat | Preset::Lit)
 }

@@ -13,7 +13,7 @@ pub(super) struct WorldRows {
     lists: Vec<Vec<PackedRow>>,
 }
 
-/// Whether two views are of one world.
+/// Returns whether two views are of one world.
 fn is_same(a: &RenderJob<'_>, b: &RenderJob<'_>) -> bool {
     std::ptr::eq(a.scene, b.scene) && std::ptr::eq(a.state, b.state)
 }

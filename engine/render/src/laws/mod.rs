@@ -64,7 +64,7 @@ static LAWS: &[RenderLaw] = &[
     depth_scale_bias::LAW,
 ];
 
-/// What is known about each law of cameras.
+/// Returns what is known about each law of cameras.
 ///
 /// ```
 /// let law = dwell_render::laws::all().iter().find(|law| law.id == "redwood_depth").unwrap();
@@ -113,7 +113,7 @@ pub struct Shutter {
 }
 
 impl Shutter {
-    /// Whether all rows are taken at one moment.
+    /// Returns whether all rows are taken at one moment.
     pub fn is_still(&self) -> bool {
         self.line_s == 0.0 && self.exposure_s == 0.0
     }
@@ -186,7 +186,7 @@ impl<'a> Optics<'a> {
         camera
     }
 
-    /// When rows are taken.
+    /// Returns when rows are taken.
     pub fn shutter(&self) -> Shutter {
         let mut shutter = Shutter::default();
         for (values, acts, _) in &self.laws {
@@ -197,7 +197,7 @@ impl<'a> Optics<'a> {
         shutter
     }
 
-    /// Whether [`Self::depth`] looks at normals.
+    /// Returns whether [`Self::depth`] looks at normals.
     pub fn needs_normals(&self) -> bool {
         let by_normals = |acts: &RenderStage| matches!(acts, RenderStage::DepthByNormals(_));
         self.laws.iter().any(|(_, acts, _)| by_normals(acts))

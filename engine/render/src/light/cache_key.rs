@@ -56,12 +56,12 @@ pub(crate) struct LightingCacheKey {
 }
 
 impl LightingCacheKey {
-    /// Whether inputs of this hash may be the ones.
+    /// Returns whether inputs of this hash may be the ones.
     pub(crate) fn has(&self, hash: u64) -> bool {
         self.hash == Some(hash)
     }
 
-    /// Whether these are the ones, to the bit; notes them otherwise. `hash`: theirs.
+    /// Returns whether these are the ones, to the bit; notes them otherwise. `hash`: theirs.
     pub(crate) fn renew(&mut self, inputs: &LightingInputs<'_>, hash: u64) -> bool {
         if self.has(hash) {
             let (mut is_same, mut known) = (true, self.words.iter());
@@ -86,7 +86,7 @@ mod tests {
     use std::cell::Cell;
     use std::sync::Arc;
 
-    /// How many rays the light of a world takes; none when it is kept.
+    /// Returns how many rays the light of a world takes; none when it is kept.
     fn rays(lighting: &mut Lighting, cpu: &CpuRenderer, scene: &RayScene, state: &State) -> usize {
         let asked = Cell::new(0);
         let ask = || {

@@ -111,7 +111,7 @@ impl HouseLight {
         &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
-    /// How far what closes each passage between rooms is open, 0 to 1.
+    /// Returns how far what closes each passage between rooms is open, 0 to 1.
     pub(super) fn openness(&self, house: &House, state: &State) -> impl Iterator<Item = f32> {
         let passages = self.passages.iter();
         passages.map(|passage| state.openness(house, passage.door).unwrap_or(1.0))

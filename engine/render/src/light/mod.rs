@@ -69,7 +69,7 @@ pub(crate) struct Exposure {
 }
 
 impl Lighting {
-    /// Whether it may have been made from inputs of this hash.
+    /// Returns whether it may have been made from inputs of this hash.
     pub(crate) fn has(&self, hash: u64) -> bool {
         self.cache_key.has(hash)
     }
@@ -137,7 +137,7 @@ impl Lighting {
         );
     }
 
-    /// How a camera at `eye` is exposed: by the mean light of its room, not quite to the full, so that dim rooms look
+    /// Returns how a camera at `eye` is exposed: by the mean light of its room, not quite to the full, so that dim rooms look
     /// dimmer than bright ones.
     pub(crate) fn exposure(&self, fixed: &HouseLight, eye: Vec3) -> Exposure {
         let mean = if let Some(room) = fixed.grid.room(eye) {
@@ -153,7 +153,7 @@ impl Lighting {
         }
     }
 
-    /// What casts the shadows of a source.
+    /// Returns what casts the shadows of a source.
     pub(crate) fn caster(&self, position: u32) -> &LampCluster {
         &self.casters[position as usize]
     }
@@ -185,7 +185,7 @@ impl Lighting {
         lamp.position + lamp.half * (2.0 * pick.1 - 1.0) + seen * BULB_M
     }
 
-    /// What a surface of reflectance 1 shows, for red, green and blue: of its strongest sources apart, before shadows.
+    /// Returns what a surface of reflectance 1 shows, for red, green and blue: of its strongest sources apart, before shadows.
     #[inline]
     pub(crate) fn incoming<const N: usize>(
         &self,
@@ -297,7 +297,7 @@ pub(crate) fn room_lookup_point(point: Vec3, facing: Vec3, direction: Vec3) -> V
     point + facing * off - direction * back
 }
 
-/// How much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and
+/// Returns how much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and
 /// ceilings, and walls that meet in a corner differ a little.
 fn fill(normal: Vec3) -> f32 {
     0.95 + 0.08 * normal.y + 0.07 * normal.x + 0.03 * normal.z
@@ -332,7 +332,7 @@ fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (V
     (sky, on_surface * inside[0] * inside[1])
 }
 
-/// How much of a window the sun reaches, by points on it.
+/// Returns how much of a window the sun reaches, by points on it.
 fn sunlit(
     window: &WindowLight,
     (to_sun, lx): (Vec3, Vec3),
@@ -351,14 +351,14 @@ fn sunlit(
     count as f32 / (SUN_POINTS * SUN_POINTS) as f32
 }
 
-/// What white shows in the open air of a house that knows no sky, in units of display white.
+/// Returns what white shows in the open air of a house that knows no sky, in units of display white.
 fn open_air(normal: Vec3) -> Vec3 {
     let sky = 0.35 + 0.25 * normal.y;
     let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
     Vec3::splat((sky + sun) * OPEN_AIR)
 }
 
-/// What is seen where nothing is, in units of display white, along a unit direction. `light`: nothing on a flat picture.
+/// Returns what is seen where nothing is, in units of display white, along a unit direction. `light`: nothing on a flat picture.
 pub(crate) fn sky(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
     match light {
         None => plain_sky(direction),

@@ -85,7 +85,7 @@ pub(crate) fn openings(
     (windows, passages)
 }
 
-/// Whether light passes some of an object's surfaces.
+/// Returns whether light passes some of an object's surfaces.
 fn is_glazed(house: &House, id: ObjectId) -> bool {
     let parts = house.objects[id].parts().map(|part| &house.parts[part]);
     let mut materials = parts.flat_map(|part| &part.materials);

@@ -93,13 +93,13 @@ impl OutdoorLight {
         self.ground_lx * (0.5 - 0.5 * normal.y)
     }
 
-    /// How the open air is exposed beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
+    /// Returns how the open air is exposed beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
     /// rooms by night.
     pub(crate) fn per_lx(&self, camera_per_lx: f32) -> f32 {
         self.per_lx.min(camera_per_lx)
     }
 
-    /// What is seen where nothing is, cd/m² times pi.
+    /// Returns what is seen where nothing is, cd/m² times pi.
     pub(crate) fn background_luminance(&self, direction: Vec3) -> Vec3 {
         if direction.y >= 0.0 {
             self.dome.luminance(direction) * PI

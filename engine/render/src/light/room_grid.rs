@@ -165,7 +165,7 @@ impl RoomGrid {
     }
 }
 
-/// Whether a room is one to light: balconies and terraces lie in the open where there is a sky.
+/// Returns whether a room is one to light: balconies and terraces lie in the open where there is a sky.
 fn is_roofed(house: &House, id: RoomId) -> bool {
     let is_ceiling =
         |piece: &Structure| piece.kind == StructureKind::Ceiling && piece.room == Some(id);

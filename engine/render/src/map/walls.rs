@@ -27,7 +27,7 @@ impl StoreyMap {
         }
     }
 
-    /// Where triangles cross the cut, as points of the map from its corner, m. With the front of its triangle a line has the
+    /// Returns where triangles cross the cut, as points of the map from its corner, m. With the front of its triangle a line has the
     /// same side as all others.
     fn cut(&self, mesh: &Mesh) -> Vec<[Vec2; 2]> {
         let mut lines = Vec::new();

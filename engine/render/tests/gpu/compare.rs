@@ -72,7 +72,7 @@ impl Compared<'_> {
         &image[pixel * parts..(pixel + 1) * parts]
     }
 
-    /// Whether all values of the gpu's image lie among the cpu's around, give or take `slack` and `share` of them.
+    /// Returns whether all values of the gpu's image lie among the cpu's around, give or take `slack` and `share` of them.
     fn is_among(&self, cpu: &[f32], gpu: &[f32], slack: f32, share: f32) -> bool {
         let found = self.of(gpu, self.pixel).iter().enumerate();
         found.into_iter().all(|(part, found)| {

@@ -45,7 +45,7 @@ pub(crate) fn suncg() -> Option<Arc<House>> {
     Some(Arc::new(dwell_houses::open(root.to_str()?).unwrap().0))
 }
 
-/// Whether tests take all their views (`make test-all`).
+/// Returns whether tests take all their views (`make test-all`).
 fn tests_all() -> bool {
     std::env::var_os("DWELL_TEST_ALL").is_some()
 }

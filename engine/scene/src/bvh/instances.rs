@@ -130,12 +130,12 @@ impl InstanceSet {
         set
     }
 
-    /// How many there are.
+    /// Returns how many there are.
     pub fn len(&self) -> usize {
         self.placed.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     pub fn is_empty(&self) -> bool {
         self.placed.is_empty()
     }
@@ -209,7 +209,7 @@ impl InstanceSet {
 }
 
 impl PreparedInstance {
-    /// Whether its pose or its mesh is such that no ray can meet it.
+    /// Returns whether its pose or its mesh is such that no ray can meet it.
     #[inline(always)]
     pub(super) fn is_hidden(&self) -> bool {
         self.mesh_from_world.longest == 0.0

@@ -33,7 +33,7 @@ impl NodeLink {
         self.0
     }
 
-    /// Whether it is a leaf, and its position.
+    /// Returns whether it is a leaf, and its position.
     #[inline(always)]
     pub(super) fn parts(self) -> (bool, usize) {
         (self.0 & Self::LEAF != 0, (self.0 & !Self::LEAF) as usize)

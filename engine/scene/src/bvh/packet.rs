@@ -109,13 +109,13 @@ impl<const N: usize> PacketHits<N> {
         }
     }
 
-    /// Whether a ray met something.
+    /// Returns whether a ray met something.
     #[inline]
     pub fn is_hit(&self, k: usize) -> bool {
         self.slot[k] != u32::MAX
     }
 
-    /// Which rays met the same triangle of the same thing as a ray, as bits.
+    /// Returns which rays met the same triangle of the same thing as a ray, as bits.
     #[inline]
     pub fn same(&self, k: usize) -> u64 {
         let (source, slot) = (self.source[k], self.slot[k]);
@@ -131,7 +131,7 @@ impl<const N: usize> PacketHits<N> {
         bits
     }
 
-    /// Which instance a ray met; nothing for static geometry.
+    /// Returns which instance a ray met; nothing for static geometry.
     #[inline]
     pub fn instance(&self, k: usize) -> Option<u32> {
         self.source[k].checked_sub(1)

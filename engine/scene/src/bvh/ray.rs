@@ -20,7 +20,7 @@ impl RayMask {
     /// No ray.
     pub const NONE: Self = Self(0);
 
-    /// Whether a ray and a surface have a bit in common.
+    /// Returns whether a ray and a surface have a bit in common.
     #[inline]
     pub fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
@@ -80,7 +80,7 @@ impl Ray {
         self.origin + self.direction * distance_m
     }
 
-    /// Whether the ray can meet anything at all.
+    /// Returns whether the ray can meet anything at all.
     #[inline]
     pub(super) fn is_usable(&self) -> bool {
         self.origin.is_finite()

@@ -45,7 +45,7 @@ impl SceneBvh<'_> {
         self.closest_filtered(ray, &HitFilter::new(mask, Some(hidden)))
     }
 
-    /// Whether a surface that `mask` meets lies on the ray.
+    /// Returns whether a surface that `mask` meets lies on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
         self.occluded_filtered(ray, &HitFilter::new(mask, None))
     }
@@ -84,7 +84,7 @@ impl SceneBvh<'_> {
         self.closest_packet_at_level(SimdLevel::best(), rays, &HitFilter::new(mask, hidden), hits);
     }
 
-    /// Which rays of a packet meet anything, as bits; the same as [`Self::occluded`] for each.
+    /// Returns which rays of a packet meet anything, as bits; the same as [`Self::occluded`] for each.
     pub fn occluded_packet<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -210,7 +210,7 @@ impl SceneBvh<'_> {
         }
     }
 
-    /// What decides for a hit among coincident ones.
+    /// Returns what decides for a hit among coincident ones.
     pub(super) fn claim(&self, origin: [f32; 3], direction: [f32; 3], place: HitIndex) -> TieBreak {
         let LocalRay {
             bvh,

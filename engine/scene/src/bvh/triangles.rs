@@ -116,7 +116,7 @@ impl TriangleBvh {
         self.count
     }
 
-    /// Whether no ray can hit anything.
+    /// Returns whether no ray can hit anything.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }

@@ -35,7 +35,7 @@ pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     FloatLayout::ByteShuffled
 }
 
-/// What [`write`] wrote: so many floats.
+/// Returns what [`write`] wrote: so many floats.
 pub(super) fn read(
     layout: FloatLayout,
     count: usize,
@@ -182,7 +182,7 @@ fn read_rows(
     Ok(floats)
 }
 
-/// Which part of a row is the largest (2 bits), its sign, and by how many steps it is more than the others say, in one byte; 0
+/// Returns which part of a row is the largest (2 bits), its sign, and by how many steps it is more than the others say, in one byte; 0
 /// for what is not of unit length.
 fn unit_code(row: &[u32]) -> u8 {
     let size = |k: usize| f32::from_bits(row[k]).abs();
@@ -235,7 +235,7 @@ fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, Colum
         .into_iter())
 }
 
-/// How large the last part of a unit row is by its others.
+/// Returns how large the last part of a unit row is by its others.
 fn last_part(others: impl Iterator<Item = u32>) -> Option<f32> {
     let squares = others
         .map(f32::from_bits)

@@ -142,7 +142,7 @@ fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     bytes.push(number as u8);
 }
 
-/// What [`push_varint`] put.
+/// Returns what [`push_varint`] put.
 fn read_varint(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use serde::de::value::U32Deserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 
-/// What [`to_bytes`](super::to_bytes) made of the same type.
+/// Returns what [`to_bytes`](super::to_bytes) made of the same type.
 ///
 /// # Errors
 /// [`ColumnsError`] for bytes that hold something else.

@@ -235,7 +235,7 @@ pub struct Inertial {
 }
 
 impl Inertial {
-    /// Whether a body can have it: finite, moments above 0, none above the sum of the other two (by more than 1 in
+    /// Returns whether a body can have it: finite, moments above 0, none above the sum of the other two (by more than 1 in
     /// 1000, which rounded files exceed).
     pub fn is_valid(&self) -> bool {
         let m = self.moments;

@@ -16,7 +16,7 @@ impl Room {
             .sum()
     }
 
-    /// Whether the point (x, z) lies over the floor, border included. Triangles without area hold nothing.
+    /// Returns whether the point (x, z) lies over the floor, border included. Triangles without area hold nothing.
     pub fn contains_xz(&self, point: Vec2) -> bool {
         let flat = |[a, b, c]: &[Vec2; 3]| (b - a).perp_dot(c - a) == 0.0;
         let mut triangles = self.footprint.iter().filter(|triangle| !flat(triangle));
@@ -49,7 +49,7 @@ impl House {
         EntityId((1 + self.structure.len() + self.objects.len() + id.index()) as i32)
     }
 
-    /// What an id names; `None` for a negative one. Ids beyond the objects are agents.
+    /// Returns what an id names; `None` for a negative one. Ids beyond the objects are agents.
     pub fn entity(&self, id: EntityId) -> Option<Entity> {
         let index = usize::try_from(id.0).ok()?;
         let (structure, objects) = (self.structure.len(), self.objects.len());

@@ -230,7 +230,7 @@ impl Library {
         self.get(name).unwrap_or_else(|| self.default_substance())
     }
 
-    /// What a thing is made of when nothing is known.
+    /// Returns what a thing is made of when nothing is known.
     pub fn default_substance(&self) -> &Substance {
         &self.substances[&self.default_name]
     }

@@ -54,7 +54,7 @@ impl NavGrid {
         }
     }
 
-    /// Whether a walker on `cell` is as high as the door's leaf.
+    /// Returns whether a walker on `cell` is as high as the door's leaf.
     fn is_beside(&self, passage: usize, cell: NavCell) -> bool {
         let y = self.layers.height[cell.0 as usize];
         let leaf = &self.ground.passages[passage].shut;

@@ -240,12 +240,12 @@ impl NavGrid {
         self.island.len()
     }
 
-    /// Whether the grid has no cell.
+    /// Returns whether the grid has no cell.
     pub fn is_empty(&self) -> bool {
         self.island.is_empty()
     }
 
-    /// Whether someone can stand in the middle of a cell.
+    /// Returns whether someone can stand in the middle of a cell.
     pub fn is_walkable(&self, cell: NavCell) -> bool {
         self.island(cell).is_some()
     }

@@ -202,12 +202,12 @@ impl Heightfield {
         Self { first, spans }
     }
 
-    /// What fills a column, from below.
+    /// Returns what fills a column, from below.
     pub(super) fn at(&self, column: usize) -> &[HeightSpan] {
         &self.spans[self.first[column] as usize..self.first[column + 1] as usize]
     }
 
-    /// Whether nothing fills any column.
+    /// Returns whether nothing fills any column.
     pub(super) fn is_empty(&self) -> bool {
         self.spans.is_empty()
     }

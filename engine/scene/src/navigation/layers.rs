@@ -58,7 +58,7 @@ impl Layers {
             .take_while(|cell| !self.height[*cell].is_nan())
     }
 
-    /// Whether a surface is free.
+    /// Returns whether a surface is free.
     pub(super) fn is_free(&self, cell: usize) -> bool {
         self.flags[cell] & FREE != 0
     }
@@ -100,7 +100,7 @@ impl Layers {
         self.links.truncate(len);
     }
 
-    /// Whether the walker has room on a surface: within its radius nothing stands between a step and its height above it,
+    /// Returns whether the walker has room on a surface: within its radius nothing stands between a step and its height above it,
     /// unless it gets up there step by step within that radius, as on stairs and slopes.
     pub(super) fn has_room<'a>(
         &self,
@@ -129,7 +129,7 @@ impl Layers {
         above.is_empty() || self.reaches_all(cell, frame, config, above)
     }
 
-    /// Whether one gets from `cell` to all of `goals` by steps within the radius.
+    /// Returns whether one gets from `cell` to all of `goals` by steps within the radius.
     fn reaches_all(
         &self,
         cell: usize,

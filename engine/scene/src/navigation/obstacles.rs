@@ -56,7 +56,7 @@ impl Obstacles {
         }
     }
 
-    /// How many parts there are.
+    /// Returns how many parts there are.
     pub(super) fn len(&self) -> usize {
         self.parts.len()
     }
@@ -112,18 +112,18 @@ impl Obstacles {
     }
 }
 
-/// How far a passage's door is open in `state`, 0 to 1.
+/// Returns how far a passage's door is open in `state`, 0 to 1.
 pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passage: usize) -> f32 {
     let id = ground.passages[passage].joint;
     house.joints[id].openness(state.joint_position[id])
 }
 
-/// Whether a door of this openness lets a walker pass.
+/// Returns whether a door of this openness lets a walker pass.
 pub(super) fn stands_open(openness: f32) -> bool {
     openness >= STANDS_OPEN
 }
 
-/// Where a part counts as standing; `None` while it is held.
+/// Returns where a part counts as standing; `None` while it is held.
 fn place_of(
     house: &House,
     state: &State,

@@ -84,7 +84,7 @@ impl StaticGrid {
         storey.map(|(level, _)| *level)
     }
 
-    /// Whether the storey exists.
+    /// Returns whether the storey exists.
     pub(super) fn has_level(&self, level: LevelId) -> bool {
         self.tops.iter().any(|(id, _)| *id == level)
     }
@@ -119,14 +119,14 @@ impl StaticGrid {
         }
     }
 
-    /// Whether no fixed thing stands within the radius between a step and the walker's height above `y`.
+    /// Returns whether no fixed thing stands within the radius between a step and the walker's height above `y`.
     fn has_room(&self, column: usize, y: f32, config: &NavConfig) -> bool {
         around(&self.frame, column, config.radius_m)
             .all(|(beside, _)| !blocks(self.fixed.at(beside), y, config))
     }
 }
 
-/// Whether something stands between a step and the walker's height above `y`.
+/// Returns whether something stands between a step and the walker's height above `y`.
 pub(super) fn blocks(spans: &[HeightSpan], y: f32, config: &NavConfig) -> bool {
     let (low, high) = (y + config.step_m, y + config.height_m);
     spans.iter().any(|span| span.high > low && span.low < high)
@@ -162,14 +162,14 @@ pub(super) fn around(
     })
 }
 
-/// Where the part that a joint hangs on stands at the start.
+/// Returns where the part that a joint hangs on stands at the start.
 fn start_of_parent(house: &House, joint: &Articulation) -> Pose {
     joint
         .parent
         .map_or(Pose::IDENTITY, |parent| house.parts[parent].world_from_part)
 }
 
-/// Where a door's leaf stands at a position of its joint.
+/// Returns where a door's leaf stands at a position of its joint.
 pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Affine3A {
     let parent = joint
         .parent

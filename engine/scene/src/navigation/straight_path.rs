@@ -91,7 +91,7 @@ impl NavGrid {
             .filter(|crossing| crossing.to == to)
     }
 
-    /// How many columns along x and z `to` is away from `from`.
+    /// Returns how many columns along x and z `to` is away from `from`.
     pub(super) fn offset(&self, from: NavCell, to: NavCell) -> (isize, isize) {
         let width = self.ground.frame.width;
         let place = |cell: NavCell| {
@@ -108,13 +108,13 @@ impl NavGrid {
         f64::from(self.config.cell_m) * (squared as f64).sqrt()
     }
 
-    /// Whether the straight way between the middles of two cells stays on walkable cells without a step too high: decided
+    /// Returns whether the straight way between the middles of two cells stays on walkable cells without a step too high: decided
     /// exactly, for every cell that the line touches.
     pub fn is_straight_free(&self, from: NavCell, to: NavCell) -> bool {
         self.straight_between(from, to).is_some()
     }
 
-    /// What a straight way costs: its length over the ground, and half a door's price at each threshold, m.
+    /// Returns what a straight way costs: its length over the ground, and half a door's price at each threshold, m.
     pub(super) fn cost_m(&self, crossing: &StraightPath) -> f64 {
         let price = 0.5 * f64::from(self.config.door_price_m);
         crossing.length_m + price * f64::from(crossing.door_crossings)

@@ -32,7 +32,7 @@ pub fn machine_threads() -> Option<usize> {
     (count > 0).then_some(count)
 }
 
-/// What `DWELL_THREADS` says; `None` where it is not set.
+/// Returns what `DWELL_THREADS` says; `None` where it is not set.
 ///
 /// # Errors
 /// [`SceneError::Threads`] for what is no number, or out of range.

@@ -87,7 +87,7 @@ pub fn body_trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
     &SHAPES.trees
 }
 
-/// Where an agent's pieces stand: a capsule of its radius from its feet to its height, as it is now.
+/// Returns where an agent's pieces stand: a capsule of its radius from its feet to its height, as it is now.
 pub(super) fn places(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
     let radius = agent.body.radius_m;
     let middle = (agent.height_m() - 2.0 * radius).max(0.0);

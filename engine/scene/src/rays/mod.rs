@@ -88,7 +88,7 @@ impl RayScene {
         }
     }
 
-    /// Where an instance's mesh stands, if there are that many.
+    /// Returns where an instance's mesh stands, if there are that many.
     pub fn world_from_mesh(&self, instance: usize) -> Option<&Affine3A> {
         self.world_from_mesh.get(instance)
     }
@@ -108,7 +108,7 @@ impl RayScene {
         self.bvh().closest_excluding(ray, mask, hidden.0)
     }
 
-    /// Whether anything that `mask` meets stands on the ray.
+    /// Returns whether anything that `mask` meets stands on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
         self.bvh().occluded(ray, mask)
     }
@@ -184,7 +184,7 @@ impl RayScene {
         }
     }
 
-    /// What the hit lies on.
+    /// Returns what the hit lies on.
     pub fn surface(&self, hit: &Hit) -> SurfaceHit {
         let (placed, triangle, world_from_mesh) = self.placed(hit);
         let mesh = &self.house.meshes[placed.mesh];

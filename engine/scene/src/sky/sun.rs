@@ -26,7 +26,7 @@ pub(super) fn declination_rad(day: f32) -> f32 {
         + 0.001_48 * s3
 }
 
-/// How far the sun has turned since noon.
+/// Returns how far the sun has turned since noon.
 pub(super) fn hour_angle_rad(hour_h: f32) -> f32 {
     (hour_h - 12.0) * (PI / 12.0)
 }

@@ -77,7 +77,7 @@ impl AgentState {
         (self.body.eye_height_m - self.crouched_by_m).max(0.0)
     }
 
-    /// Where its eyes are and look: a camera at this pose sees what it sees.
+    /// Returns where its eyes are and look: a camera at this pose sees what it sees.
     pub fn world_from_eye(&self) -> Pose {
         Pose::new(
             self.eye_position(),
@@ -90,7 +90,7 @@ impl AgentState {
         Pose::from_position_yaw(self.eye_position(), self.yaw_rad)
     }
 
-    /// Where its eyes are, m.
+    /// Returns where its eyes are, m.
     pub fn eye_position(&self) -> Vec3 {
         self.position + Vec3::Y * self.eye_height_m()
     }

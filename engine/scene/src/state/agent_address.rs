@@ -18,7 +18,7 @@ impl State {
         })
     }
 
-    /// How an agent gets about in this world: its body's numbers with overrides.
+    /// Returns how an agent gets about in this world: its body's numbers with overrides.
     ///
     /// # Panics
     /// For an agent that does not exist.
@@ -44,7 +44,7 @@ impl State {
         self.overridden_fov_deg(agent).unwrap_or(own)
     }
 
-    /// What stands at `agent/N/WORDS`.
+    /// Returns what stands at `agent/N/WORDS`.
     pub(super) fn agent_parameter(
         &self,
         address: &Address,

@@ -190,7 +190,7 @@ impl State {
         }
     }
 
-    /// What is in force at a joint.
+    /// Returns what is in force at a joint.
     pub fn joint_values(&self, house: &House, id: JointId) -> JointParameters {
         let joint = &house.joints[id];
         let mut values = JointParameters {
@@ -261,7 +261,7 @@ impl State {
         values
     }
 
-    /// Where a joint's child stands when the parent stands at `world_from_parent` and the joint at `position`.
+    /// Returns where a joint's child stands when the parent stands at `world_from_parent` and the joint at `position`.
     pub fn world_from_child(
         &self,
         house: &House,

@@ -21,7 +21,7 @@ struct LawParameterRef<'a> {
 }
 
 impl Address {
-    /// Whether it names a law's parameter: then [`State::law_parameter`] reads it.
+    /// Returns whether it names a law's parameter: then [`State::law_parameter`] reads it.
     pub fn is_law(&self) -> bool {
         self.as_str().starts_with("law/")
     }
@@ -112,7 +112,7 @@ impl State {
         })
     }
 
-    /// What stands at the address of a law's parameter; its default where the law is not installed. `known`: the laws of
+    /// Returns what stands at the address of a law's parameter; its default where the law is not installed. `known`: the laws of
     /// all engines.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ impl LawSpec {
         found.unwrap_or_else(|| target.to_owned())
     }
 
-    /// Whether two targets of a law name the same: in two spellings, or as a pair of substances in two orders.
+    /// Returns whether two targets of a law name the same: in two spellings, or as a pair of substances in two orders.
     pub fn is_same_target(house: &House, info: &LawInfo, a: &str, b: &str) -> bool {
         let [a, b] = [a, b].map(|target| Self::canonical_target(house, info, target));
         let turned = || {

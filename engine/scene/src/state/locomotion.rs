@@ -146,7 +146,7 @@ impl Locomotion {
         self
     }
 
-    /// What a person calls it.
+    /// Returns what a person calls it.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Walking(_) => "walking",

@@ -13,7 +13,7 @@ impl State {
         ))
     }
 
-    /// What the parts of an object weigh together, kg; parts that state no mass are left out.
+    /// Returns what the parts of an object weigh together, kg; parts that state no mass are left out.
     pub fn mass_of_parts_kg(&self, house: &House, object: ObjectId) -> f32 {
         let parts = house.objects[object].parts();
         let masses = parts.filter_map(|id| {
@@ -24,7 +24,7 @@ impl State {
         masses.sum::<f32>() + 0.0
     }
 
-    /// What a part's mass is multiplied with: 1 without overrides.
+    /// Returns what a part's mass is multiplied with: 1 without overrides.
     ///
     /// A part whose mass is overridden has that mass. Else its mass follows the densities of its materials
     /// (`material/NAME/density_kg_m3`), of which each has the share that its surface has: a house does not say how much of a

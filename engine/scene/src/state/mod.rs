@@ -116,7 +116,7 @@ impl State {
         }
     }
 
-    /// How far an object is open: the largest openness of its joints that open; `None` when it has none.
+    /// Returns how far an object is open: the largest openness of its joints that open; `None` when it has none.
     pub fn openness(&self, house: &House, object: ObjectId) -> Option<f32> {
         house
             .joints_of(object)
@@ -136,7 +136,7 @@ impl State {
         }
     }
 
-    /// Whether an object is switched on and has a switch, or has none and cannot be off.
+    /// Returns whether an object is switched on and has a switch, or has none and cannot be off.
     pub fn is_on(&self, house: &House, object: ObjectId) -> bool {
         house.objects[object].switch.is_none() || self.switched_on[object]
     }

@@ -28,14 +28,14 @@ pub struct Parameter {
 }
 
 impl Parameter {
-    /// Whether a value is within the bounds, as far as an f32 tells: bounds and values may come from f32s.
+    /// Returns whether a value is within the bounds, as far as an f32 tells: bounds and values may come from f32s.
     pub(super) fn admits(&self, value: f64) -> bool {
         (self.low as f32..=self.high as f32).contains(&(value as f32))
     }
 }
 
 impl State {
-    /// What stands at `address`.
+    /// Returns what stands at `address`.
     ///
     /// # Errors
     /// [`SceneError::Address`] says which word is wrong and what is allowed there.

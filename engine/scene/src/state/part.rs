@@ -21,7 +21,7 @@ const FURTHEST_M: f64 = 100.0;
 const MOMENTS_KG_M2: [f64; 2] = [1e-12, 1e6];
 
 impl State {
-    /// Where a part's mass sits in this world; `None` for a part that does not state it.
+    /// Returns where a part's mass sits in this world; `None` for a part that does not state it.
     pub fn part_inertial(&self, house: &House, part: PartId) -> Option<Inertial> {
         let mut inertial = house.parts[part].inertial?;
         if self.overrides.is_empty() {
@@ -38,7 +38,7 @@ impl State {
         Some(inertial)
     }
 
-    /// What stands at `part/N/FIELD` for a field of the inertia.
+    /// Returns what stands at `part/N/FIELD` for a field of the inertia.
     pub(super) fn inertial_parameter(
         &self,
         house: &House,

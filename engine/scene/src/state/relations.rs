@@ -44,7 +44,7 @@ pub struct Contact {
 }
 
 impl State {
-    /// What carries an object: objects in order, `None` for the building. Empty while it is held, flies, or never moves
+    /// Returns what carries an object: objects in order, `None` for the building. Empty while it is held, flies, or never moves
     /// (physics finds no contacts between things that cannot move).
     pub fn rests_on(&self, house: &House, object: ObjectId) -> Vec<Option<ObjectId>> {
         if self.held_by[object].is_some() {
@@ -59,7 +59,7 @@ impl State {
         carriers
     }
 
-    /// What carries each object, as [`State::rests_on`] says of one: of all at once, each contact looked at once. Shape
+    /// Returns what carries each object, as [`State::rests_on`] says of one: of all at once, each contact looked at once. Shape
     /// (object,).
     pub fn carriers(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
         let mut all = vec![Vec::new(); house.objects.len()];
@@ -113,7 +113,7 @@ impl State {
 }
 
 impl House {
-    /// Whether the box `inner` (m, world space) lies in an object whose box is `outer`.
+    /// Returns whether the box `inner` (m, world space) lies in an object whose box is `outer`.
     ///
     /// Four fifths of it lie in the object's box (grown by 2 cm), it is the smaller of the two, and either its middle
     /// lies in a space of the object that is marked as holding things inside, or the object is around it: of the five
@@ -126,7 +126,7 @@ impl House {
         encloses(self.data(), &pose, spaces, (container, outer), inner)
     }
 
-    /// Whether [`Self::encloses`] can hold between the boxes: four fifths of `inner` lie in `outer`, the larger one, grown by
+    /// Returns whether [`Self::encloses`] can hold between the boxes: four fifths of `inner` lie in `outer`, the larger one, grown by
     /// 2 cm.
     pub fn fits_in(outer: &Aabb, inner: &Aabb) -> bool {
         // The smaller volume is the content; this keeps the relation one way.
@@ -205,7 +205,7 @@ fn share_inside(inner: &Aabb, outer: &Aabb) -> f32 {
         .element_product()
 }
 
-/// Whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
+/// Returns whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
 ///
 /// # Source
 /// T. Möller, B. Trumbore, J. Graphics Tools 2, 21 (1997).

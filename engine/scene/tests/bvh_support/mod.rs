@@ -73,7 +73,7 @@ impl Soup {
         tree(&self.corners, |k| TriangleTag::new(self.ids[k]))
     }
 
-    /// Where the instances of [`Self::split`] stand.
+    /// Returns where the instances of [`Self::split`] stand.
     pub(crate) fn poses(key: RandomKey, count: usize) -> Vec<Affine3A> {
         let mut stream = key.stream();
         let pose = |_| {
@@ -117,7 +117,7 @@ impl Soup {
         (fixed, InstanceSet::new(instances))
     }
 
-    /// What [`Self::split`] makes, as plain triangles.
+    /// Returns what [`Self::split`] makes, as plain triangles.
     pub(crate) fn baked(&self, key: RandomKey) -> Self {
         let poses = Self::poses(key, 7);
         let mut baked = Self {

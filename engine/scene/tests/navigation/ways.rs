@@ -7,7 +7,7 @@ use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use proptest::prelude::*;
 
-/// Whether the straight way between the middles of two columns touches free columns only: each closed square that the
+/// Returns whether the straight way between the middles of two columns touches free columns only: each closed square that the
 /// segment meets, found one by one by separating axes, in whole numbers (half columns).
 fn touches_free_only(map: &Occupancy, from: [i64; 2], to: [i64; 2]) -> bool {
     let [dx, dz] = [2 * (to[0] - from[0]), 2 * (to[1] - from[1])];

@@ -159,7 +159,7 @@ impl WalkFigure {
         )
     }
 
-    /// Where a listener is at the end of block `k`, who walks to and fro at 1 m/s and turns, and a radio that is carried about as
+    /// Returns where a listener is at the end of block `k`, who walks to and fro at 1 m/s and turns, and a radio that is carried about as
     /// fast.
     fn place(&self, k: usize) -> (Vec3, Pose) {
         let way_m = (0.05 * k as f32 + Self::REACH_M).rem_euclid(4.0 * Self::REACH_M);
@@ -169,7 +169,7 @@ impl WalkFigure {
     }
 }
 
-/// What the reference has for the end of the walk.
+/// Returns what the reference has for the end of the walk.
 fn wanted(
     engines: &Engines,
     rays: &RayScene,

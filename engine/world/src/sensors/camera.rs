@@ -106,7 +106,7 @@ impl EyeCamera {
     }
 }
 
-/// Where a camera is against the eyes, from its settings.
+/// Returns where a camera is against the eyes, from its settings.
 pub(crate) fn mount(position_m: [f32; 3], [yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Pose {
     let turned = rotation_from_yaw_pitch(yaw_deg.to_radians(), pitch_deg.to_radians());
     let (sine, cosine) = math::sin_cos(0.5 * roll_deg.to_radians());

@@ -164,7 +164,7 @@ pub struct Observation {
 }
 
 impl World {
-    /// What sensors of pictures, by name, give for a camera: one picture for all of them.
+    /// Returns what sensors of pictures, by name, give for a camera: one picture for all of them.
     ///
     /// `max_objects`: rows of those that list things, 1 to 4,096.
     ///

@@ -78,7 +78,7 @@ impl SensorSpec {
         self.shape.iter().product()
     }
 
-    /// Whether the observation has no elements.
+    /// Returns whether the observation has no elements.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -126,7 +126,7 @@ pub trait Sensor: Debug + Send + Sync {
     /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>);
 
-    /// How many samples of the latest observation were beyond its range and are cut off there.
+    /// Returns how many samples of the latest observation were beyond its range and are cut off there.
     fn clipped(&self) -> u64 {
         0
     }
@@ -157,7 +157,7 @@ pub struct SensorKind {
 }
 
 impl SensorKind {
-    /// Whether it is one of pictures: [`World::look`] knows it.
+    /// Returns whether it is one of pictures: [`World::look`] knows it.
     pub fn shows_pictures(&self) -> bool {
         self.image.is_some()
     }

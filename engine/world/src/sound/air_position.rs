@@ -35,7 +35,7 @@ const TURNS_A_LOOK: f32 = 0.618_034;
 /// A place is as open as the least open one so far beside it, m: on a surface a rounding decides on which side of it one is.
 const GRAZE_M: f32 = 1e-3;
 
-/// How open it is at `place` and around it.
+/// Returns how open it is at `place` and around it.
 fn openness(rays: &RayScene, place: Vec3) -> usize {
     let open = openness_at(rays, place);
     if open < ENOUGH {

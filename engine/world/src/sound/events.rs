@@ -320,7 +320,7 @@ fn hardest<'a>(
     events.into_iter().take(most)
 }
 
-/// How near to its closed position a door is closed, rad or m; as physics has it.
+/// Returns how near to its closed position a door is closed, rad or m; as physics has it.
 fn closed_within(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge => 0.02,
@@ -412,7 +412,7 @@ fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
     state.part_pose[id].transform_point(middle)
 }
 
-/// What is under a foot.
+/// Returns what is under a foot.
 fn floor_at(step: &StepContext<'_>, foot: Vec3) -> Option<ContactPartner> {
     let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;

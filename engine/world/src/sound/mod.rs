@@ -195,7 +195,7 @@ impl WorldSound {
         Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
     }
 
-    /// What sounds in the block that has just ended or ends now: emitters, what plays, and what touched.
+    /// Returns what sounds in the block that has just ended or ends now: emitters, what plays, and what touched.
     fn sources(
         &self,
         engines: &Engines,

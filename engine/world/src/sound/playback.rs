@@ -176,7 +176,7 @@ impl Playback {
         }
     }
 
-    /// Whether nothing of it can be heard any more in blocks from `start` on.
+    /// Returns whether nothing of it can be heard any more in blocks from `start` on.
     pub(super) fn is_over(&self, start: u64) -> bool {
         let end = self.told.start + self.signal.samples().len() as u64;
         (!self.told.request.loops && end <= start)
@@ -196,7 +196,7 @@ impl Playback {
         bounds.center().with_y(bounds.max.y)
     }
 
-    /// Where it sounds now, m.
+    /// Returns where it sounds now, m.
     pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
         match self.told.request.place {
             SoundPlace::Point(point) => point,

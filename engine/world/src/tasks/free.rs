@@ -68,7 +68,7 @@ struct FreeTask {
 }
 
 impl FreeTask {
-    /// Where an episode starts: the place, and where to look, rad.
+    /// Returns where an episode starts: the place, and where to look, rad.
     fn start(
         &self,
         world: &World,

@@ -26,7 +26,7 @@ pub trait Task: Debug + Send + Sync {
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;
 
-    /// What a scripted expert, who knows the house, would do now.
+    /// Returns what a scripted expert, who knows the house, would do now.
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 

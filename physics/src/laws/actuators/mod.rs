@@ -166,7 +166,7 @@ fn pack(command: JointCommand) -> [f32; 2] {
     [kind, number(command).unwrap_or(0.0)]
 }
 
-/// What [`pack`] packed.
+/// Returns what [`pack`] packed.
 fn unpack(kind: f32, value: f32) -> JointCommand {
     match kind as u32 {
         1 => JointCommand::Position(value),

@@ -29,7 +29,7 @@ pub(super) const AIR_DENSITY: ParamInfo = ParamInfo {
     plausible: [1.0, 1.4],
 };
 
-/// What [`in_air`] found for a body, kg/m; `None` for one that is not acted on.
+/// Returns what [`in_air`] found for a body, kg/m; `None` for one that is not acted on.
 pub(super) fn gain_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
     let place = bodies.binary_search_by_key(&body, |(index, _)| *index);
     place.ok().map(|place| bodies[place].1.into())

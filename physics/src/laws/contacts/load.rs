@@ -112,7 +112,7 @@ impl ContactLoad {
             .sum()
     }
 
-    /// How fast gravity turns the first about the contact against the second, were nothing to slip, rad/s2.
+    /// Returns how fast gravity turns the first about the contact against the second, were nothing to slip, rad/s2.
     pub(super) fn gravity_turn(&self, stage: &LawContext<'_>) -> Vec3 {
         let gravity = stage.engine.gravity;
         self.each(stage)

@@ -477,7 +477,7 @@ impl StoreyBuilder<'_> {
     }
 }
 
-/// What people call a room.
+/// Returns what people call a room.
 fn kind_of(room: &RoomPlan) -> String {
     let told = room.kind.as_deref().unwrap_or(&room.name);
     let known = room_kind(told);

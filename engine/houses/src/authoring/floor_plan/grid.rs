@@ -123,7 +123,7 @@ impl PlanGrid {
         self.zs.len().saturating_sub(1)
     }
 
-    /// What lies at column and row; air beyond the grid.
+    /// Returns what lies at column and row; air beyond the grid.
     pub(super) fn cell(&self, i: usize, j: usize) -> PlanCell {
         if i >= self.columns() || j >= self.rows() {
             return PlanCell::Air;
@@ -322,7 +322,7 @@ fn outline(room: &RoomPlan) -> Result<Vec<[Millimetres; 2]>, HousesError> {
     Ok(corners)
 }
 
-/// Whether two edges along the axes have a point in common.
+/// Returns whether two edges along the axes have a point in common.
 fn meet(a: [[Millimetres; 2]; 2], b: [[Millimetres; 2]; 2]) -> bool {
     (0..2).all(|axis| {
         let span = |edge: [[Millimetres; 2]; 2]| {
@@ -336,7 +336,7 @@ fn meet(a: [[Millimetres; 2]; 2], b: [[Millimetres; 2]; 2]) -> bool {
     })
 }
 
-/// Where an outline is crossed by the row of cells that begins at `z`: pairs of x with the room between.
+/// Returns where an outline is crossed by the row of cells that begins at `z`: pairs of x with the room between.
 fn crossings(outline: &[[Millimetres; 2]], z: Millimetres) -> Vec<Millimetres> {
     let mut found: Vec<Millimetres> = (0..outline.len())
         .filter_map(|k| {
@@ -349,7 +349,7 @@ fn crossings(outline: &[[Millimetres; 2]], z: Millimetres) -> Vec<Millimetres> {
     found
 }
 
-/// What of the row of cells from `z` to `z` lies within `outer` of the outline's edges: pairs of x.
+/// Returns what of the row of cells from `z` to `z` lies within `outer` of the outline's edges: pairs of x.
 fn grown(
     outline: &[[Millimetres; 2]],
     [z0, z1]: [Millimetres; 2],

@@ -157,7 +157,7 @@ fn of_window<'a>(
     })
 }
 
-/// Whether a stretch parts a room from something else, on a side of the room.
+/// Returns whether a stretch parts a room from something else, on a side of the room.
 fn lies(
     stretch: &WallSegment,
     own: usize,

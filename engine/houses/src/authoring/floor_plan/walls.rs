@@ -28,7 +28,7 @@ impl WallSegment {
         if self.along_x { [z0, z1] } else { [x0, x1] }
     }
 
-    /// Whether it parts these two.
+    /// Returns whether it parts these two.
     pub(super) fn parts(&self, a: PlanCell, b: PlanCell) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }
@@ -122,7 +122,7 @@ pub(super) fn stretches(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegme
     found
 }
 
-/// Whether one rectangle ends where the other begins, along x or along z.
+/// Returns whether one rectangle ends where the other begins, along x or along z.
 fn touches(a: &[Millimetres; 4], b: &[Millimetres; 4], along_x: bool) -> bool {
     let axis = usize::from(!along_x);
     a[axis + 2] == b[axis]
@@ -150,7 +150,7 @@ fn run_of(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallRun
     }
 }
 
-/// What lies on both sides of the wall at a place of a line of cells, and how far they are apart.
+/// Returns what lies on both sides of the wall at a place of a line of cells, and how far they are apart.
 fn across(
     lines: &[Millimetres],
     at: usize,

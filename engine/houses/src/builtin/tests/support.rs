@@ -44,7 +44,7 @@ fn solid_boxes(mesh: &Mesh) -> Vec<Aabb> {
     boxes
 }
 
-/// Whether an odd number of faces lies above a point.
+/// Returns whether an odd number of faces lies above a point.
 fn is_inside(mesh: &Mesh, point: Vec3) -> bool {
     let above = mesh.triangles.iter().filter(|triangle| {
         let corners = triangle.map(|k| mesh.positions[k as usize] - point);

@@ -68,7 +68,7 @@ impl Cells {
         0..self.columns * self.rows
     }
 
-    /// Which cells the middle of a body of `radius_m` can reach from the hallway.
+    /// Returns which cells the middle of a body of `radius_m` can reach from the hallway.
     fn reachable(&self, house: &House, radius_m: f32) -> Vec<bool> {
         let boxes = obstacles();
         let within = |room: &Room, p: Vec2| room.contains_xz(p);

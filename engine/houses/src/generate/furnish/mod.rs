@@ -222,7 +222,7 @@ impl RoomFurnisher<'_> {
         false
     }
 
-    /// Whether a picture in the room shows this already.
+    /// Returns whether a picture in the room shows this already.
     fn shows(&self, picture_id: Option<&'static str>) -> bool {
         let mut pieces = self.space.pieces.iter();
         picture_id.is_some() && pieces.any(|piece| piece.stock.picture_id == picture_id)
@@ -299,7 +299,7 @@ impl RoomFurnisher<'_> {
     }
 }
 
-/// What rooms of a kind have that nobody could find a place for, and nothing of the kind at all.
+/// Returns what rooms of a kind have that nobody could find a place for, and nothing of the kind at all.
 pub(crate) fn missing(rooms: &[Vec<RoomFurniture>]) -> Vec<String> {
     rooms
         .iter()

@@ -333,7 +333,7 @@ fn above(space: &RoomLayout, anchor: &PlacedFurniture, height_m: f32) -> Vec<Can
 /// The gap that a row leaves where its rule says so, m.
 const ROW_GAP_M: f32 = 0.09;
 
-/// How long a row of fitted units is, gaps (`None`) among them, m.
+/// Returns how long a row of fitted units is, gaps (`None`) among them, m.
 pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
     let length = |stock: &Option<Arc<CachedModel>>| {
         stock.as_ref().map_or(ROW_GAP_M, |stock| {

@@ -289,17 +289,17 @@ impl RoomLayout {
         self.grid = grid;
     }
 
-    /// Whether all doors of the room are joined by paths of the chosen width.
+    /// Returns whether all doors of the room are joined by paths of the chosen width.
     pub(crate) fn is_joined(&self) -> bool {
         !self.grid.shut && self.grid.is_joined(&[])
     }
 
-    /// Whether a rectangle lies over the floor entirely.
+    /// Returns whether a rectangle lies over the floor entirely.
     pub(crate) fn covers(&self, rect: &ZoneXz) -> bool {
         covers(&self.floor, rect)
     }
 
-    /// Whether a thing can stand there without touching anything or standing in anyone's way.
+    /// Returns whether a thing can stand there without touching anything or standing in anyone's way.
     pub(crate) fn fits(&self, piece: &PlacedFurniture) -> bool {
         let own = zone(&piece.bounds);
         if !self.covers(&own) {
@@ -351,7 +351,7 @@ impl RoomLayout {
         blocking.is_empty() || (!self.grid.shut && self.grid.is_joined(&blocking))
     }
 
-    /// Whether a small thing can lie there, on or (`inside`) in its host.
+    /// Returns whether a small thing can lie there, on or (`inside`) in its host.
     pub(crate) fn rests(&self, piece: &PlacedFurniture, host: usize, inside: bool) -> bool {
         self.pieces.iter().enumerate().all(|(k, other)| {
             let boxes = meets(&piece.bounds, &other.bounds)
@@ -403,7 +403,7 @@ impl RoomLayout {
     }
 }
 
-/// Whether two things leave each other alone; those that belong together may share free floor.
+/// Returns whether two things leave each other alone; those that belong together may share free floor.
 fn apart(a: &PlacedFurniture, b: &PlacedFurniture, together: bool) -> bool {
     let touch = |p: &[Aabb], around_p: &Aabb, q: &[Aabb], around_q: &Aabb| {
         meets(around_p, around_q)
@@ -471,7 +471,7 @@ impl ClearanceGrid {
             .filter(|cell| far(cell) <= within_m)
     }
 
-    /// Whether all doors are on one free island when `zones` are blocked, too, and half of the free floor is on it.
+    /// Returns whether all doors are on one free island when `zones` are blocked, too, and half of the free floor is on it.
     fn is_joined(&self, zones: &[ZoneXz]) -> bool {
         let mut free = self.free.clone();
         for zone in zones {

@@ -16,7 +16,7 @@ pub(crate) struct RoomBoundary {
 }
 
 impl RoomBoundary {
-    /// Whether it parts these two.
+    /// Returns whether it parts these two.
     pub(crate) fn parts(&self, a: Option<usize>, b: Option<usize>) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }

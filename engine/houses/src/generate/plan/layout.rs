@@ -209,7 +209,7 @@ fn frame(
     (metres(frame.width) <= 30.0).then_some(frame)
 }
 
-/// How far rooms are from what is wanted; `None` when one cannot be used.
+/// Returns how far rooms are from what is wanted; `None` when one cannot be used.
 fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
     let mut score = 0.0;
     let mut open: Vec<&RoomRequirement> = wanted.iter().collect();

@@ -29,7 +29,7 @@ impl StoreyFrame {
         self.strips[0] + self.corridor + self.strips[1]
     }
 
-    /// Where the corridor begins and ends from north to south.
+    /// Returns where the corridor begins and ends from north to south.
     fn aisle(&self) -> [GridSteps; 2] {
         [self.strips[0], self.strips[0] + self.corridor]
     }
@@ -54,7 +54,7 @@ impl StripLayout {
         rooms.map(|room| room.area_m2).sum()
     }
 
-    /// How wide a strip wants to be.
+    /// Returns how wide a strip wants to be.
     pub(super) fn wish(&self, strip: usize, depth: GridSteps) -> GridSteps {
         let rooms = self.strips[strip].iter();
         rooms.map(|room| width_of(room, depth)).sum()

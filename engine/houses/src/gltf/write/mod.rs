@@ -53,7 +53,7 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError>
     Ok(losses(house))
 }
 
-/// What viewers do not get to know: they may pass over `extras`, which our own reader reads.
+/// Returns what viewers do not get to know: they may pass over `extras`, which our own reader reads.
 fn losses(house: &HouseData) -> Vec<ExportLoss> {
     let mut losses = ExportLosses::default();
     losses.add(

@@ -37,7 +37,7 @@ impl Converter<'_> {
         !lights.is_empty()
     }
 
-    /// What a model sounds like while it is on; returns whether it sounds at all.
+    /// Returns what a model sounds like while it is on; returns whether it sounds at all.
     ///
     /// Sounds of a moment (a ring, a bark) have no start in the tables and are reported as left out.
     pub(super) fn sounds(
@@ -112,7 +112,7 @@ fn convert_light(
     })
 }
 
-/// Whether an event lasts while a thing is on: `on`, `on_2`, and SUNCG's own words for it.
+/// Returns whether an event lasts while a thing is on: `on`, `on_2`, and SUNCG's own words for it.
 fn lasts(event: &str) -> bool {
     event.starts_with("on") || ["music", "exhaust", "drop"].contains(&event)
 }

@@ -105,7 +105,7 @@ fn points<'a>(mesh: &'a Mesh, triangles: &'a [u32]) -> impl Iterator<Item = Vec3
     triangles.iter().flat_map(|&k| mesh.corners(k as usize))
 }
 
-/// What a turn about +Y does to (x, z).
+/// Returns what a turn about +Y does to (x, z).
 fn rotation(turn_rad: f64) -> DMat2 {
     let (s, c) = turn_rad.sin_cos();
     DMat2::from_cols(DVec2::new(c, -s), DVec2::new(s, c))

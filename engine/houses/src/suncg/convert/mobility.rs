@@ -13,7 +13,7 @@ const HAND_SIDE_M: f32 = 0.6;
 /// Largest box of a thing that one hand takes, m³.
 const HAND_VOLUME_M3: f32 = 0.05;
 
-/// Whether this kind of thing moves at all.
+/// Returns whether this kind of thing moves at all.
 ///
 /// Things of unknown kind stay: a house without tables must not fall apart.
 pub(super) fn kind_moves(row: Option<&CategoryRow>, entry: Option<&CategoryEntry>) -> bool {
@@ -21,7 +21,7 @@ pub(super) fn kind_moves(row: Option<&CategoryRow>, entry: Option<&CategoryEntry
         && entry.is_none_or(|entry| entry.structure != 1)
 }
 
-/// Whether something with `bounds` stands on a floor or on another thing, so that it would stay where it is.
+/// Returns whether something with `bounds` stands on a floor or on another thing, so that it would stay where it is.
 pub(super) fn is_supported(
     bounds: &Aabb,
     rooms: &[Room],
@@ -39,7 +39,7 @@ pub(super) fn is_supported(
     rooms.iter().any(on_floor) || stands.into_iter().any(on_thing)
 }
 
-/// Whether a hand can take a thing of this size.
+/// Returns whether a hand can take a thing of this size.
 pub(super) fn is_handy(bounds: &Aabb) -> bool {
     bounds.size().max_element() <= HAND_SIDE_M && bounds.volume() <= HAND_VOLUME_M3
 }

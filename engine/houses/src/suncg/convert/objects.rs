@@ -99,7 +99,7 @@ impl<'a> Converter<'a> {
         self.model_object(&plan, &path, node);
     }
 
-    /// Where a node stands: a rigid pose, and the scale and mirror that its mesh keeps.
+    /// Returns where a node stands: a rigid pose, and the scale and mirror that its mesh keeps.
     fn placement(&mut self, node: &NodeFile, at: &FileLocation) -> Option<(Pose, Affine3A)> {
         let at = at.field("transform");
         let matrix = match place::transform(node.transform.as_deref()) {

@@ -206,7 +206,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// What a piece is, by the name of its group.
+    /// Returns what a piece is, by the name of its group.
     fn piece_kind(
         &mut self,
         group: &str,

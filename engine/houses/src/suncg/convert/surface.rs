@@ -161,7 +161,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// What a surface is made of: by its names, by its transparency, else as usual for the kind of thing.
+    /// Returns what a surface is made of: by its names, by its transparency, else as usual for the kind of thing.
     fn substance(
         &mut self,
         surface: &SlotSurface<'_>,
@@ -229,7 +229,7 @@ impl<'a> Converter<'a> {
     }
 }
 
-/// What walls, floors and ceilings are usually made of.
+/// Returns what walls, floors and ceilings are usually made of.
 fn usual_of_structure(kind: StructureKind) -> &'static Substance {
     let name = match kind {
         StructureKind::Floor => "floor",

@@ -15,7 +15,7 @@ pub struct AcceptabilityVotes {
 }
 
 impl AcceptabilityVotes {
-    /// Whether all votes are positive.
+    /// Returns whether all votes are positive.
     pub fn is_realistic(self) -> bool {
         self.positive > 0 && self.negative == 0
     }
@@ -58,12 +58,12 @@ impl VoteTable {
         self.rows.get(&(house.to_owned(), level)).copied()
     }
 
-    /// How many storeys were voted on.
+    /// Returns how many storeys were voted on.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there is no row.
+    /// Returns whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

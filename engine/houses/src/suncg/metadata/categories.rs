@@ -74,12 +74,12 @@ impl CategoryTable {
         self.rows.iter().map(|(id, row)| (id.as_str(), row))
     }
 
-    /// How many rows there are.
+    /// Returns how many rows there are.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
 
-    /// Whether there is no row.
+    /// Returns whether there is no row.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }

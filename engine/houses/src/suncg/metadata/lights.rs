@@ -127,12 +127,12 @@ impl LightTable {
             .map(|(id, lights)| (id.as_str(), lights.as_slice()))
     }
 
-    /// How many models have lights.
+    /// Returns how many models have lights.
     pub fn len(&self) -> usize {
         self.lights.len()
     }
 
-    /// Whether no model has lights.
+    /// Returns whether no model has lights.
     pub fn is_empty(&self) -> bool {
         self.lights.is_empty()
     }

@@ -307,7 +307,7 @@ fn model_name(name: &str) -> String {
     plain
 }
 
-/// What tells content from other content in names: 64 bits of its hash.
+/// Returns what tells content from other content in names: 64 bits of its hash.
 fn short_name(bytes: &[u8]) -> String {
     format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes))
 }

@@ -107,7 +107,7 @@ impl SuncgWriter<'_> {
         })
     }
 
-    /// What the tables must say about the model of `object`.
+    /// Returns what the tables must say about the model of `object`.
     fn model_row(
         &self,
         id: ObjectId,
@@ -284,7 +284,7 @@ fn model_key(house: &House, id: ObjectId, row: &ModelRow, materials: &[MaterialI
     )
 }
 
-/// What the tables say of a model, apart from what follows from its shape.
+/// Returns what the tables say of a model, apart from what follows from its shape.
 fn key_of_row(row: &ModelRow) -> String {
     format!("{:?}{:?}{:?}", row.category, row.lights, row.signals)
 }

@@ -8,7 +8,7 @@ use super::{SuncgWriter, bounds};
 use crate::error::HousesError;
 use crate::obj::ObjWriter;
 
-/// Whether a piece of `level` needs a room of its own: it stands in none and is no ground.
+/// Returns whether a piece of `level` needs a room of its own: it stands in none and is no ground.
 pub(super) fn is_homeless(piece: &Structure, level: LevelId) -> bool {
     piece.level == level && piece.room.is_none() && piece.kind != StructureKind::Ground
 }

@@ -99,7 +99,7 @@ pub(crate) fn columns() -> [&'static Column; 12] {
 }
 
 impl Column {
-    /// How the inputs of a row end.
+    /// Returns how the inputs of a row end.
     fn ends(&self, row: Row) -> &Cell {
         let mut own = self.cells.iter().filter(|(of, _)| *of == row);
         let found = own.next().map(|(_, cell)| cell);

@@ -89,7 +89,7 @@ impl ClosestHit {
         again
     }
 
-    /// Whether [`Self::best`] must be found by a second run from [`Self::second_pass`], which is always sure.
+    /// Returns whether [`Self::best`] must be found by a second run from [`Self::second_pass`], which is always sure.
     #[inline(always)]
     pub(in super::super) fn is_ambiguous(&self) -> bool {
         self.ambiguous_at < f32::INFINITY && self.ambiguous_at <= horizon(self.distance)

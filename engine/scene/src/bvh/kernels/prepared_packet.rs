@@ -118,7 +118,7 @@ impl<const N: usize> PreparedPacket<N> {
         self.wide = PaddedOrigin::new(self.origin, self.margin);
     }
 
-    /// Whether no ray is in use.
+    /// Returns whether no ray is in use.
     #[inline(always)]
     pub(in super::super) fn is_done(&self) -> bool {
         self.furthest == f32::NEG_INFINITY
@@ -130,7 +130,7 @@ impl<const N: usize> PreparedPacket<N> {
         self.furthest = highest_of(self.limit);
     }
 
-    /// Where each ray is inside a box, within its own range.
+    /// Returns where each ray is inside a box, within its own range.
     #[inline(always)]
     pub(in super::super) fn range_in(&self, bounds: &Aabb) -> ([f32; N], [f32; N]) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
@@ -177,7 +177,7 @@ impl<const N: usize> PreparedPacket<N> {
         (bits, enter)
     }
 
-    /// Whether some ray enters a box before its limit. `first`, `last`: its planes as seen from the origin, in the order in
+    /// Returns whether some ray enters a box before its limit. `first`, `last`: its planes as seen from the origin, in the order in
     /// which the rays meet them.
     #[inline(always)]
     fn any_enters(&self, first: &[f32; 3], last: &[f32; 3]) -> bool {

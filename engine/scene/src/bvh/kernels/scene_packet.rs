@@ -53,7 +53,7 @@ pub(super) fn closest<const N: usize>(
     }
 }
 
-/// Which rays of a packet meet anything, as bits.
+/// Returns which rays of a packet meet anything, as bits.
 #[inline(always)]
 pub(super) fn occluded<const N: usize>(
     scene: &SceneBvh<'_>,

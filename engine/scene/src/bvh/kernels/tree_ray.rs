@@ -50,14 +50,14 @@ impl PreparedRay {
         }
     }
 
-    /// Whether origin and direction survived a transform.
+    /// Returns whether origin and direction survived a transform.
     #[inline(always)]
     pub(super) fn is_usable(&self) -> bool {
         let finite = |v: &[f32; 3]| v[0].is_finite() && v[1].is_finite() && v[2].is_finite();
         finite(&self.origin) && finite(&self.direction)
     }
 
-    /// Where the ray is inside a box, within its own range.
+    /// Returns where the ray is inside a box, within its own range.
     #[inline(always)]
     pub(super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
@@ -80,7 +80,7 @@ impl PreparedRay {
         )
     }
 
-    /// Where the ray meets a triangle of a block that it may pass inside, or NaN.
+    /// Returns where the ray meets a triangle of a block that it may pass inside, or NaN.
     #[inline(always)]
     fn distance(&self, triangles: &TriangleBlock, lane: usize) -> f32 {
         let [x, y, z] = self.direction;

@@ -170,7 +170,7 @@ pub(in super::super) fn height_of(block: &TriangleBlock, lane: usize, origin: [f
     dot(block.normal_of(lane), x, y, z)
 }
 
-/// Whether edge functions say that the ray may pass inside, from either side.
+/// Returns whether edge functions say that the ray may pass inside, from either side.
 #[inline(always)]
 pub(in super::super) fn inside([u, v, w]: [f32; 3], [tu, tv, tw]: [f32; 3]) -> bool {
     let lowest = least(least(u + tu, v + tv), w + tw);
@@ -196,7 +196,7 @@ pub(in super::super) fn weights([u, v, w]: [f32; 3]) -> (f32, f32) {
     }
 }
 
-/// Where a ray meets a triangle, or NaN. `distance`: of the plane, along the ray; `slope`: its direction along the normal;
+/// Returns where a ray meets a triangle, or NaN. `distance`: of the plane, along the ray; `slope`: its direction along the normal;
 /// `margin`: of boxes.
 ///
 /// Rounding may put the plane's distance outside the range in which the ray crosses the triangle's box, most so at
