@@ -120,7 +120,7 @@ at. The details:
 {
         table(
             ("code", "what it says"),
-            ((code(one.name), one.about) for one in rust.items(_OUTCOME, "ActionCode")),
+            ((code(one.name), one.about) for one in rust.items(_OUTCOME, "OutcomeCode")),
         )
     }"""
 

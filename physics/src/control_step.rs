@@ -1,6 +1,6 @@
 //! One control step.
 
-use crate::actions::{ActionCode, ActionOutcome, DelayedOutcome};
+use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
 use crate::agents::{self, AgentControl, MovementRecord};
 use crate::body::BodyStatus;
 use crate::contact::rolling::RollingCylinder;
@@ -364,7 +364,7 @@ impl PhysicsWorld {
             self.notices.push(DelayedOutcome {
                 agent: Some(holder),
                 outcome: ActionOutcome::failed(
-                    ActionCode::Slipped,
+                    OutcomeCode::Slipped,
                     format!("The {name} was caught on something and slipped from your hand."),
                     Some(object),
                 ),

@@ -53,7 +53,7 @@ mod workspace;
 mod world;
 
 pub use actions::{
-    Action, ActionCode, ActionOutcome, DelayedOutcome, Grasp, PointedTarget, Target,
+    Action, ActionOutcome, DelayedOutcome, Grasp, OutcomeCode, PointedTarget, Target,
 };
 pub use agent_placement::AgentPlacement;
 pub use agents::AgentControl;

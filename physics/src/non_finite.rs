@@ -3,7 +3,7 @@
 //! rapier takes such a body out of its world for good, where it last was. Here it is put back there, at rest, and a notice says so:
 //! nothing falls out of a world for the rest of an episode.
 
-use crate::actions::{ActionCode, ActionOutcome, DelayedOutcome};
+use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
 use crate::engine::RapierWorld;
 use crate::world::PhysicsWorld;
 use glam::Vec3;
@@ -59,7 +59,7 @@ impl PhysicsWorld {
             self.notices.push(DelayedOutcome {
                 agent: None,
                 outcome: ActionOutcome::failed(
-                    ActionCode::Lost,
+                    OutcomeCode::Lost,
                     format!("The {name} moved beyond all numbers and was stopped where it was."),
                     Some(object),
                 ),
@@ -113,7 +113,7 @@ mod tests {
             .iter()
             .map(|notice| notice.outcome.code)
             .collect();
-        assert!(told.contains(&ActionCode::Lost), "{told:?}");
+        assert!(told.contains(&OutcomeCode::Lost), "{told:?}");
         let moved = state.part_pose[part].position - before.position;
         assert!(moved.length() < 0.01, "{moved}");
         assert!(

@@ -43,7 +43,7 @@ fn weld(point: Vec3) -> [i32; 3] {
 }
 
 /// A straight line at which one face ends.
-struct FaceBoundary {
+struct FaceRim {
     ends: [Vec3; 2],
     /// From the line into the face, unit length, square to the line.
     into: Vec3,
@@ -79,7 +79,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diffractio
         match into[..] {
             [] => {}
             // Its other faces may be cut elsewhere.
-            [into] => rims.push(FaceBoundary { ends, into }),
+            [into] => rims.push(FaceRim { ends, into }),
             _ => edges.extend(widest_gap(&ends, &into)),
         }
     }
@@ -105,7 +105,7 @@ fn two_of_each(corners: &[[Vec3; 3]]) -> Vec<usize> {
 }
 
 /// The edges that rims make together.
-fn join(rims: &[FaceBoundary]) -> Vec<DiffractionEdge> {
+fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
     let cells = |point: Vec3| {
         let corners = (0..8).map(move |k| {
             let side = |axis: i32| {
@@ -161,7 +161,7 @@ fn join(rims: &[FaceBoundary]) -> Vec<DiffractionEdge> {
     edges
 }
 
-impl FaceBoundary {
+impl FaceRim {
     fn length_m(&self) -> f32 {
         self.ends[0].distance(self.ends[1])
     }

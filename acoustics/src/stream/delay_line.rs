@@ -5,7 +5,7 @@
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
 
-use dwell_scene::simd::{SimdKernel, SimdLevel};
+use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use std::sync::LazyLock;
 
 /// Taps on either side of a place between samples, at most.
@@ -59,7 +59,7 @@ impl<'a> DelayedSegment<'a> {
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.met(response.len(), filtered.len());
-        SimdLevel::best().run(SegmentFilter {
+        SimdLevel::best().run(ConvolutionKernel {
             met: &met,
             response,
             amplitude,
@@ -104,7 +104,7 @@ impl<'a> DelayedSegment<'a> {
 }
 
 /// Convolves.
-struct SegmentFilter<'a> {
+struct ConvolutionKernel<'a> {
     /// As many samples before those of `out` as there are taps, and then as many as `out` has.
     met: &'a [f32],
     response: &'a [f32],
@@ -113,7 +113,7 @@ struct SegmentFilter<'a> {
     out: &'a mut [f32],
 }
 
-impl SimdKernel for SegmentFilter<'_> {
+impl SimdKernel for ConvolutionKernel<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -264,7 +264,7 @@ mod tests {
                 let parts = responses.each_ref().map(|response| {
                     let mut out = vec![0.0; passage.count.next_multiple_of(LANES)];
                     let met = passage.met(response.len(), out.len());
-                    level.run(SegmentFilter {
+                    level.run(ConvolutionKernel {
                         met: &met,
                         response,
                         amplitude: 0.5,

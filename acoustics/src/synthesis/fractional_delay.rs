@@ -5,7 +5,7 @@
     reason = "what is not inline does not use the wider instructions of the function around it"
 )]
 
-use dwell_scene::simd::{SimdKernel, SimdLevel};
+use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 
 /// Half of the longest interpolation filter, samples.
 const HALF: usize = 40;

@@ -4,7 +4,7 @@ use super::html::escape;
 use super::page::COLOURS;
 use super::svg::{self, AxisScale};
 use crate::format_number::number;
-use crate::rollout::Residuals;
+use crate::rollout::ResidualGroups;
 use std::fmt::Write as _;
 
 const LEFT: f64 = 56.0;
@@ -19,16 +19,16 @@ const STYLE: &str = "svg{--soft:#5f6b76;--line:#d8dee4;--before:#c2591a;--after:
     --after:#6cb2ee;--good:#5fcf95}}text{fill:var(--soft)}.grid{stroke:var(--line)}";
 
 /// The picture inside a page.
-pub(crate) fn picture(residuals: &Residuals) -> String {
+pub(crate) fn picture(residuals: &ResidualGroups) -> String {
     draw_boxes(residuals, "")
 }
 
 /// The picture as a file.
-pub(crate) fn to_svg_file(residuals: &Residuals) -> String {
+pub(crate) fn to_svg_file(residuals: &ResidualGroups) -> String {
     draw_boxes(residuals, &format!("<style>{STYLE}</style>"))
 }
 
-fn draw_boxes(residuals: &Residuals, style: &str) -> String {
+fn draw_boxes(residuals: &ResidualGroups, style: &str) -> String {
     let height = TOP + PLOT + BOTTOM;
     let full = svg::WIDTH.max(LEFT + GROUP * residuals.groups.len() as f64);
     let boxes = || residuals.groups.iter().flat_map(|group| &group.models);

@@ -1,6 +1,6 @@
 //! Parts of a page that every study of roll-outs has.
 
-use super::residuals::Residuals;
+use super::residuals::ResidualGroups;
 use super::{HORIZONS, Regime, WindowScore};
 use crate::format_number::number;
 use crate::report::page;
@@ -58,7 +58,7 @@ pub(crate) fn solver(out: &mut String, sentences: &[String]) {
 }
 
 /// The pictures.
-pub(crate) fn residuals(out: &mut String, residuals: &[Residuals]) {
+pub(crate) fn residuals(out: &mut String, residuals: &[ResidualGroups]) {
     out.push_str("<h2>Residuals</h2>");
     for one in residuals {
         let _ = write!(

@@ -27,7 +27,7 @@ pub use motion::{Deviation, MeasuredMotion};
 pub use pose_tracks::{NominalContact, PoseTrack, PoseTracks, TrackedBody};
 pub use refine::{FINER, Refinement, refinements};
 pub use regime::Regime;
-pub use residuals::{Quantiles, ResidualGroup, Residuals};
+pub use residuals::{Quantiles, ResidualGroup, ResidualGroups};
 pub use score::{Score, deviations, diverging, scores};
 pub use subject::RolloutSubject;
 pub use summary::{EpisodeSpread, ScoreSummary};

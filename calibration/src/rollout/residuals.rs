@@ -29,7 +29,7 @@ impl Residual {
 
 /// Residuals in groups, as they are drawn.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Residuals {
+pub struct ResidualGroups {
     /// The name of the picture's file, without its ending.
     pub name: String,
     /// What it shows.
@@ -70,7 +70,7 @@ pub(crate) fn all(
     horizon: usize,
     rotation: bool,
     kinds: &[&str],
-) -> Vec<Residuals> {
+) -> Vec<ResidualGroups> {
     // Every model has the same windows in the same order.
     let ahead: Vec<(&str, Vec<&WindowEnd>)> = rows
         .iter()
@@ -90,7 +90,7 @@ pub(crate) fn all(
     for (residual, word, unit) in which.into_iter().take(if rotation { 2 } else { 1 }) {
         let mut push = |by: &str, groups: Vec<ResidualGroup>| {
             if groups.len() > 1 {
-                found.push(Residuals {
+                found.push(ResidualGroups {
                     name: format!("{word}-by-{by}"),
                     title: format!("error of {word} {horizon} samples ahead, by {by}"),
                     unit,

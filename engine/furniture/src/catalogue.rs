@@ -3,8 +3,8 @@
 use super::entries::{bath, kitchen, living, sleeping, small, walls};
 use super::model::Model;
 use super::models::{
-    bath_more, beds, chairs, devices, games, hobby, machines, music, outdoor, room_parts, storage,
-    tables, tableware, wear,
+    bath_more, beds, chairs, devices, hobby, machines, music, outdoor, recreation, room_parts,
+    storage, tables, tableware, wear,
 };
 use super::style::Style;
 use dwell_scene::random::RandomKey;
@@ -86,7 +86,7 @@ pub fn entries() -> &'static [CatalogueEntry] {
         entry("nightstand", "stand", sleeping::nightstand),
         entry("home_bar", "drinkbar", tables::home_bar),
         entry("serving_cart", "cart", storage::cart),
-        entry("pool_table", "game_table", games::pool_table),
+        entry("pool_table", "game_table", recreation::pool_table),
         // Cupboards and shelves.
         entry("wardrobe", "wardrobe_cabinet", sleeping::wardrobe),
         entry("sideboard", "wardrobe_cabinet", living::sideboard),
@@ -235,7 +235,7 @@ pub fn entries() -> &'static [CatalogueEntry] {
         entry("guitar", "guitar", music::guitar),
         entry("drum_kit", "drumset", music::drum_kit),
         entry("chessboard", "chessboard", hobby::chessboard),
-        entry("aquarium", "fish_tank", games::aquarium),
+        entry("aquarium", "fish_tank", recreation::aquarium),
         entry("treadmill", "gym_equipment", machines::treadmill),
         entry("weight_bench", "gym_equipment", hobby::weight_bench),
         entry("bicycle", "bicycle", hobby::bicycle),

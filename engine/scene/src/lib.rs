@@ -24,7 +24,7 @@ pub mod packing;
 pub mod parallel;
 pub mod random;
 pub mod rays;
-pub mod simd;
+pub mod simd_dispatch;
 mod sky;
 pub mod space;
 mod state;

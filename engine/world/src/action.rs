@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::world::World;
-use dwell_physics::{Action, ActionCode, ActionOutcome, AgentControl};
+use dwell_physics::{Action, ActionOutcome, AgentControl, OutcomeCode};
 use dwell_scene::AgentId;
 use serde::{Deserialize, Serialize};
 
@@ -158,9 +158,9 @@ impl World {
         Ok(outcome.unwrap_or_else(|| {
             if self.state().agents[agent].collided {
                 let sentence = "Something is in the way. Turn or step aside.";
-                ActionOutcome::failed(ActionCode::Blocked, sentence, None)
+                ActionOutcome::failed(OutcomeCode::Blocked, sentence, None)
             } else {
-                ActionOutcome::done(ActionCode::Done, "", None)
+                ActionOutcome::done(OutcomeCode::Done, "", None)
             }
         }))
     }
@@ -180,7 +180,7 @@ impl World {
         } else {
             let sentence =
                 "You look at nothing that you could take, open or switch. Turn towards it.";
-            ActionOutcome::failed(ActionCode::NoTarget, sentence, None)
+            ActionOutcome::failed(OutcomeCode::NoTarget, sentence, None)
         })
     }
 }

@@ -396,7 +396,7 @@ impl World {
 mod tests {
     use super::*;
     use crate::{Engines, WorldConfig};
-    use dwell_physics::ActionCode;
+    use dwell_physics::OutcomeCode;
     use dwell_scene::ShoeboxMaterials;
     use std::sync::Arc;
 
@@ -469,7 +469,7 @@ mod tests {
         )
         .unwrap();
         let told = world.act_on(AgentId(0), &request).unwrap();
-        assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+        assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
         // Slopes of -1/2 left and -1/2 down from (3, 1.25, 5): the floor is met 2.5 m ahead.
         let pointed = told.pointed.unwrap();
         assert!(
@@ -478,6 +478,6 @@ mod tests {
             pointed.point
         );
         let told = world.act(AgentId(3), &Action::Drop);
-        assert_eq!(told.code, ActionCode::UnknownAgent);
+        assert_eq!(told.code, OutcomeCode::UnknownAgent);
     }
 }

@@ -1,8 +1,8 @@
 //! The pictures of a batch: the views of all worlds over one house in one submission.
 
+use crate::camera_capture::PictureRequest;
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::picture::PictureRequest;
 use crate::sensor_requests::Picture;
 use crate::shutter::PendingPicture;
 use crate::world::World;

@@ -1,11 +1,11 @@
 //! One agent's environment: a world, a task and sensors, stepped by discrete actions.
 
 use crate::action::{DiscreteAction, StepSizes};
+use crate::camera_capture::PictureRequest;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
-use crate::picture::PictureRequest;
 use crate::sensor_requests::{Requests, Results};
 use crate::sensors::{self, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec};
 use crate::tasks::{self, Task, TaskKind};

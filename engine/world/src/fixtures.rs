@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// What a house holds besides surfaces, in world space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Fixtures {
+pub struct SceneOverlay {
     /// Lamps' lights.
     pub lamps: Vec<LampFixture>,
     /// Sources of sound.
@@ -82,7 +82,7 @@ pub struct ObjectBox {
 }
 
 /// Lamps, sources of sound, joints and boxes as they stand.
-pub fn fixtures(world: &World) -> Fixtures {
+pub fn fixtures(world: &World) -> SceneOverlay {
     let (house, state) = (world.house(), world.state());
     let lamps = house.lights.iter().map(|light| {
         let middle = match light.shape {
@@ -140,7 +140,7 @@ pub fn fixtures(world: &World) -> Fixtures {
             rotation: found.world_from_box.rotation.to_array(),
         })
     });
-    Fixtures {
+    SceneOverlay {
         lamps: lamps.collect(),
         sources: sources.collect(),
         joints: joints.collect(),

@@ -1,6 +1,6 @@
 //! Opening and closing.
 
-use super::outcome::{ActionCode, DelayedOutcome, done, fail};
+use super::outcome::{DelayedOutcome, OutcomeCode, done, fail};
 use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionResult, Actor};
@@ -29,7 +29,7 @@ impl PhysicsWorld {
         if !(0.0..=1.0).contains(&fraction) {
             let sentence =
                 format!("Nothing opens to {fraction}; give a number from 0 (closed) to 1 (open).");
-            return refuse(ActionCode::BadNumber, sentence);
+            return refuse(OutcomeCode::BadNumber, sentence);
         }
         let house = self.model().house.clone();
         let ids = self.joints_meant(object, &aim);
@@ -37,29 +37,29 @@ impl PhysicsWorld {
         if ids.is_empty() {
             let sentence =
                 format!("The {name} has nothing to {verb}. Choose a door, drawer or lid.");
-            return refuse(ActionCode::NotOpenable, sentence);
+            return refuse(OutcomeCode::NotOpenable, sentence);
         }
         let openness = |id: &JointId| house.joints[*id].openness(state.joint_position[*id]);
         let all = |there: &dyn Fn(f32) -> bool| ids.iter().all(|id| there(openness(id)));
         if fraction >= OPEN && all(&|share| share >= OPEN) {
             let sentence = format!("The {name} is open already.");
-            return refuse(ActionCode::AlreadyOpen, sentence);
+            return refuse(OutcomeCode::AlreadyOpen, sentence);
         }
         if fraction <= CLOSED && all(&|share| share <= CLOSED) {
             let sentence = format!("The {name} is closed already.");
-            return refuse(ActionCode::AlreadyClosed, sentence);
+            return refuse(OutcomeCode::AlreadyClosed, sentence);
         }
         if all(&|share| (share - fraction).abs() <= THERE) {
             let percent = (fraction * 100.0).round();
             let sentence = format!("The {name} is {percent:.0} % open already.");
-            return refuse(ActionCode::AlreadyOpen, sentence);
+            return refuse(OutcomeCode::AlreadyOpen, sentence);
         }
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
         self.lead(state, actor, &ids, fraction);
         let sentence = format!("You {verb} the {name}; it takes a moment.");
-        Ok(done(ActionCode::Started, sentence, Some(object)))
+        Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }
 
     /// Lays the actor's hand on joints, to lead them to an openness (0 to 1) over the next steps.
@@ -140,14 +140,14 @@ impl PhysicsWorld {
             } else {
                 format!("The {name} is {share:.0} % open.")
             };
-            done(ActionCode::Done, sentence, Some(object))
+            done(OutcomeCode::Done, sentence, Some(object))
         } else {
             let what = self.in_the_way(state, joint).map_or_else(
                 || "something is in the way. Step aside or move it.".to_owned(),
                 |what| format!("the {what} is in the way. Move it."),
             );
             let sentence = format!("The {name} stopped {share:.0} % open: {what}");
-            fail(ActionCode::Blocked, sentence, Some(object))
+            fail(OutcomeCode::Blocked, sentence, Some(object))
         };
         self.notices.push(DelayedOutcome {
             agent: drive.agent,

@@ -1,6 +1,6 @@
 //! Taking and letting go.
 
-use super::outcome::{ActionCode, ActionOutcome, done, fail};
+use super::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use super::request::{Grasp, Target};
 use super::{ActionResult, Actor, DelayedOutcome};
 use crate::agents::{HeldObject, hand_pose, release};
@@ -31,23 +31,23 @@ impl PhysicsWorld {
             let sentence = format!(
                 "{grasp:?} cannot be; a spring's frequency is 0.5 to 20 Hz, its damping ratio 0.05 to 4."
             );
-            return refuse(ActionCode::BadNumber, sentence);
+            return refuse(OutcomeCode::BadNumber, sentence);
         }
         if let Some(held) = holder.holding {
             let held = self.call(held);
             let sentence = format!("You hold the {held} already. Drop it first.");
-            return refuse(ActionCode::HandFull, sentence);
+            return refuse(OutcomeCode::HandFull, sentence);
         }
         if let Some(other) = state.held_by[object] {
             let sentence = format!("Agent {} holds the {name}. Wait until it is free.", other.0);
-            return refuse(ActionCode::HeldByOther, sentence);
+            return refuse(OutcomeCode::HeldByOther, sentence);
         }
         let thing = &self.model().house.objects[object];
         let bodies: Vec<usize> = self.bodies_of(object);
         let whole = thing.mobility == Mobility::Movable && bodies.len() == 1;
         if !thing.pickable || !whole {
             let sentence = format!("The {name} is not a thing to take. Choose something that is.");
-            return refuse(ActionCode::NotPickable, sentence);
+            return refuse(OutcomeCode::NotPickable, sentence);
         }
         let body = bodies[0];
         if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
@@ -58,7 +58,7 @@ impl PhysicsWorld {
         }
         if self.holds[body] != BodyStatus::Free {
             let sentence = format!("The {name} is stuck where it stands. Choose something else.");
-            return refuse(ActionCode::Stuck, sentence);
+            return refuse(OutcomeCode::Stuck, sentence);
         }
         let rigid = &self.engine.bodies[self.bodies[body].handle];
         let (mass, lift) = (rigid.mass(), holder.body.lift_kg);
@@ -66,7 +66,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} weighs {mass:.1} kg; you lift {lift:.1} kg. Choose something lighter."
             );
-            return refuse(ActionCode::TooHeavy, sentence);
+            return refuse(OutcomeCode::TooHeavy, sentence);
         }
         let place = *rigid.position();
         let size = self.model().bodies[body]
@@ -78,7 +78,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} is {size:.1} m long; you carry up to {most:.1} m. Choose something smaller."
             );
-            return refuse(ActionCode::TooLarge, sentence);
+            return refuse(OutcomeCode::TooLarge, sentence);
         }
         // What stands on it or lies in it comes along if it is moved gently.
         let house = &self.model().house;
@@ -120,7 +120,7 @@ impl PhysicsWorld {
         self.flush();
         self.write_bodies(state);
         let sentence = format!("You hold the {name}.");
-        Ok(done(ActionCode::Done, sentence, Some(object)))
+        Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
 
     /// The first place on the straight way from `to` back to `from` where a body overlaps nothing solid and is not
@@ -146,7 +146,7 @@ impl PhysicsWorld {
     pub(super) fn let_go(&mut self, state: &mut State, agent: AgentId) -> ActionOutcome {
         let Some(place) = self.grips.iter().position(|grip| grip.agent == agent) else {
             return fail(
-                ActionCode::HandEmpty,
+                OutcomeCode::HandEmpty,
                 "You hold nothing. Pick something first.",
                 None,
             );
@@ -154,7 +154,7 @@ impl PhysicsWorld {
         let object = self.grips[place].object;
         self.ungrip(state, place);
         let sentence = format!("You let go of the {}.", self.call(object));
-        done(ActionCode::Done, sentence, Some(object))
+        done(OutcomeCode::Done, sentence, Some(object))
     }
 
     /// Opens hands that hold more than they lift: since they took it they have become weaker, or it heavier.
@@ -179,7 +179,7 @@ impl PhysicsWorld {
             self.notices.push(DelayedOutcome {
                 agent: Some(agent),
                 outcome: fail(
-                    ActionCode::TooHeavy,
+                    OutcomeCode::TooHeavy,
                     format!(
                         "The {name} weighs {mass:.1} kg and you lift {lift:.1} kg now: it fell from your hand."
                     ),

@@ -18,7 +18,7 @@ mod switch;
 mod target;
 mod throw;
 
-pub use outcome::{ActionCode, ActionOutcome, DelayedOutcome, PointedTarget};
+pub use outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, PointedTarget};
 pub(crate) use push::OngoingPush;
 pub use request::{Action, Grasp, Target};
 
@@ -50,11 +50,11 @@ impl PhysicsWorld {
         if agent.index() >= self.agents.len() || agent.index() >= state.agents.len() {
             let count = self.agents.len();
             let sentence = format!("There is no agent {}; there are {count}.", agent.0);
-            return fail(ActionCode::UnknownAgent, sentence, None);
+            return fail(OutcomeCode::UnknownAgent, sentence, None);
         }
         if let Err(error) = self.check_state(state) {
             return fail(
-                ActionCode::ForeignState,
+                OutcomeCode::ForeignState,
                 format!("Nothing was done: {error}."),
                 None,
             );

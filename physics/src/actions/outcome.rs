@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
-pub enum ActionCode {
+pub enum OutcomeCode {
     /// It is done.
     Done,
     /// It goes on over the next steps.
@@ -79,7 +79,7 @@ pub enum ActionCode {
     Lost,
 }
 
-impl ActionCode {
+impl OutcomeCode {
     /// All codes, in order.
     pub const ALL: [Self; 34] = [
         Self::Done,
@@ -136,7 +136,7 @@ pub struct ActionOutcome {
     /// Whether it worked, or began to.
     pub success: bool,
     /// Why.
-    pub code: ActionCode,
+    pub code: OutcomeCode,
     /// The same for a person, with what to do about it.
     pub sentence: String,
     /// The object it was about.
@@ -147,7 +147,7 @@ pub struct ActionOutcome {
 
 impl ActionOutcome {
     /// A success.
-    pub fn done(code: ActionCode, sentence: impl Into<String>, object: Option<ObjectId>) -> Self {
+    pub fn done(code: OutcomeCode, sentence: impl Into<String>, object: Option<ObjectId>) -> Self {
         Self {
             success: true,
             code,
@@ -158,7 +158,11 @@ impl ActionOutcome {
     }
 
     /// A failure.
-    pub fn failed(code: ActionCode, sentence: impl Into<String>, object: Option<ObjectId>) -> Self {
+    pub fn failed(
+        code: OutcomeCode,
+        sentence: impl Into<String>,
+        object: Option<ObjectId>,
+    ) -> Self {
         Self {
             success: false,
             ..Self::done(code, sentence, object)
@@ -176,7 +180,7 @@ pub struct DelayedOutcome {
 }
 
 pub(super) fn fail(
-    code: ActionCode,
+    code: OutcomeCode,
     sentence: impl Into<String>,
     object: Option<ObjectId>,
 ) -> ActionOutcome {
@@ -184,7 +188,7 @@ pub(super) fn fail(
 }
 
 pub(super) fn done(
-    code: ActionCode,
+    code: OutcomeCode,
     sentence: impl Into<String>,
     object: Option<ObjectId>,
 ) -> ActionOutcome {
@@ -198,9 +202,9 @@ mod tests {
     #[test]
     fn the_list_of_codes_is_whole_and_in_order() {
         // A new code at the end is missed here until the list has it.
-        let last = ActionCode::ALL.len() - 1;
-        assert_eq!(ActionCode::Lost as usize, last);
-        for (k, code) in ActionCode::ALL.into_iter().enumerate() {
+        let last = OutcomeCode::ALL.len() - 1;
+        assert_eq!(OutcomeCode::Lost as usize, last);
+        for (k, code) in OutcomeCode::ALL.into_iter().enumerate() {
             assert_eq!(code as usize, k);
         }
     }

@@ -1,7 +1,7 @@
 //! Putting what is held down on something.
 
 use super::clearance::SupportFilter;
-use super::outcome::{ActionCode, ActionOutcome, done, fail};
+use super::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::{ActionResult, Actor};
@@ -50,7 +50,7 @@ impl PhysicsWorld {
             self.call(grip.object),
             spot.name
         );
-        Ok(done(ActionCode::Done, sentence, spot.on))
+        Ok(done(OutcomeCode::Done, sentence, spot.on))
     }
 
     /// The agent's grip, or the refusal for an empty hand.
@@ -58,7 +58,7 @@ impl PhysicsWorld {
         let grip = self.grips.iter().find(|grip| grip.agent == actor.id);
         grip.copied().ok_or_else(|| {
             let sentence = "You hold nothing. Pick something first.";
-            Box::new(fail(ActionCode::HandEmpty, sentence, None))
+            Box::new(fail(OutcomeCode::HandEmpty, sentence, None))
         })
     }
 
@@ -92,7 +92,7 @@ impl PhysicsWorld {
         let (ground, on, name) = match aim.entity {
             Entity::Object(object) if object == grip.object => {
                 let sentence = "A thing cannot stand on itself. Choose something else.";
-                return refuse(ActionCode::NoSpace, sentence.to_owned(), Some(object));
+                return refuse(OutcomeCode::NoSpace, sentence.to_owned(), Some(object));
             }
             Entity::Object(object) => (
                 SupportFilter::Object(object),
@@ -105,7 +105,7 @@ impl PhysicsWorld {
             }
             _ => {
                 let sentence = "Nothing can be put on somebody. Choose a surface.".to_owned();
-                return refuse(ActionCode::NotAThing, sentence, None);
+                return refuse(OutcomeCode::NotAThing, sentence, None);
             }
         };
         let eye = actor.body.eye_position();
@@ -116,7 +116,7 @@ impl PhysicsWorld {
                     "Agent {} holds the {name}. Choose something else.",
                     holder.0
                 );
-                return refuse(ActionCode::HeldByOther, sentence, on);
+                return refuse(OutcomeCode::HeldByOther, sentence, on);
             }
             if let Some(refusal) = self.refuse_reach(state, actor, object) {
                 return Err(Box::new(refusal));
@@ -140,7 +140,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "There is no free space for the {held} on the {name} within your reach and sight. Clear it or walk around it."
             );
-            Box::new(fail(ActionCode::NoSpace, sentence, on))
+            Box::new(fail(OutcomeCode::NoSpace, sentence, on))
         })
     }
 
@@ -195,7 +195,7 @@ impl PhysicsWorld {
             "You see no free surface for the {} within your reach. Turn towards one.",
             self.call(grip.object)
         );
-        Err(Box::new(fail(ActionCode::NoSpace, sentence, None)))
+        Err(Box::new(fail(OutcomeCode::NoSpace, sentence, None)))
     }
 
     /// The first of `feet` on which the body can stand, within reach and sight; upright before lying.

@@ -1,7 +1,7 @@
 //! Putting what is held down at a point.
 
 use super::clearance::SupportFilter;
-use super::outcome::{ActionCode, done, fail};
+use super::outcome::{OutcomeCode, done, fail};
 use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::State;
@@ -22,7 +22,7 @@ impl PhysicsWorld {
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
         if !point.is_finite() {
             let sentence = format!("{point} is no place; give finite numbers.");
-            return refuse(ActionCode::BadNumber, sentence);
+            return refuse(OutcomeCode::BadNumber, sentence);
         }
         let eye = actor.body.eye_position();
         let (distance, reach) = ((point - eye).length(), actor.body.body.reach_m);
@@ -30,14 +30,14 @@ impl PhysicsWorld {
             let sentence = format!(
                 "That place is {distance:.2} m away; your reach is {reach:.2} m. Walk closer."
             );
-            return refuse(ActionCode::TooFar, sentence);
+            return refuse(OutcomeCode::TooFar, sentence);
         }
         let above = point + Vec3::Y * SURFACE_M;
         if let Some(blocker) = self.first_obstacle(eye, above) {
             let name = self.name_of_entry(blocker);
             let sentence =
                 format!("The {name} is between you and that place. Choose one in the open.");
-            return refuse(ActionCode::NotVisible, sentence);
+            return refuse(OutcomeCode::NotVisible, sentence);
         }
         let body = grip.body as usize;
         let levels = self.support_heights(body, SupportFilter::Any, above, 2.0 * SURFACE_M);
@@ -47,7 +47,7 @@ impl PhysicsWorld {
         else {
             let sentence =
                 format!("Nothing carries the {held} there. Choose a point on a level surface.");
-            return refuse(ActionCode::NoSupport, sentence);
+            return refuse(OutcomeCode::NoSupport, sentence);
         };
         let foot = point.with_y(height);
         let mut blocker = None;
@@ -56,20 +56,20 @@ impl PhysicsWorld {
                 Ok(pose) => {
                     self.put_down(state, actor, &pose);
                     let sentence = format!("You put the {held} down there.");
-                    return Ok(done(ActionCode::Done, sentence, Some(grip.object)));
+                    return Ok(done(OutcomeCode::Done, sentence, Some(grip.object)));
                 }
                 Err(found) => blocker = blocker.or(found),
             }
         }
         match blocker {
             Some(name) => refuse(
-                ActionCode::NoSpace,
+                OutcomeCode::NoSpace,
                 format!(
                     "The {held} does not fit there: the {name} is in the way. Choose another point."
                 ),
             ),
             None => refuse(
-                ActionCode::NoSupport,
+                OutcomeCode::NoSupport,
                 format!("The {held} would not stand there. Choose a level spot away from edges."),
             ),
         }

@@ -1,6 +1,6 @@
 //! Pointing.
 
-use super::outcome::{ActionCode, PointedTarget, done, fail};
+use super::outcome::{OutcomeCode, PointedTarget, done, fail};
 use super::request::Target;
 use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
@@ -31,7 +31,7 @@ impl PhysicsWorld {
             ),
             Entity::Agent(id) if id == actor.id => {
                 let sentence = "You cannot point at yourself. Point at something else.";
-                return Err(Box::new(fail(ActionCode::Oneself, sentence, None)));
+                return Err(Box::new(fail(OutcomeCode::Oneself, sentence, None)));
             }
             Entity::Agent(id) => (
                 house.entity_of_agent(id),
@@ -44,7 +44,7 @@ impl PhysicsWorld {
         let point = aim.point.unwrap_or(middle);
         let distance_m = (point - eye).length();
         let sentence = format!("You point at {name}, {distance_m:.1} m away.");
-        let mut outcome = done(ActionCode::Done, sentence, object);
+        let mut outcome = done(OutcomeCode::Done, sentence, object);
         outcome.pointed = Some(PointedTarget {
             entity,
             point,

@@ -1,6 +1,6 @@
 //! Pushing and pulling: a force for a short while, and then how far the thing went.
 
-use super::outcome::{ActionCode, ActionOutcome, DelayedOutcome, done, fail};
+use super::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, done, fail};
 use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionResult, Actor};
@@ -51,18 +51,18 @@ impl PhysicsWorld {
         let wanted = force_n.unwrap_or(most);
         if !wanted.is_finite() || wanted <= 0.0 {
             let sentence = format!("You cannot {verb} with {wanted} N; give a force above 0.");
-            return Ok(fail(ActionCode::BadNumber, sentence, Some(object)));
+            return Ok(fail(OutcomeCode::BadNumber, sentence, Some(object)));
         }
         if way < 0.0 && actor.body.holding.is_some() {
             let sentence = "Your hand is full. Drop what you hold before you pull.";
-            return Ok(fail(ActionCode::HandFull, sentence, Some(object)));
+            return Ok(fail(OutcomeCode::HandFull, sentence, Some(object)));
         }
         if let Some(holder) = state.held_by[object] {
             let sentence = format!(
                 "Agent {} holds the {name}. Choose something else.",
                 holder.0
             );
-            return Ok(fail(ActionCode::HeldByOther, sentence, Some(object)));
+            return Ok(fail(OutcomeCode::HeldByOther, sentence, Some(object)));
         }
         let body = self.body_to_push(object, &aim)?;
         if let Some(refusal) = self.refuse_stood_on(state, actor.id, object) {
@@ -74,7 +74,7 @@ impl PhysicsWorld {
         let handle = self.bodies[body].handle;
         let Some(rigid) = self.engine.bodies.get(handle) else {
             return Ok(fail(
-                ActionCode::NotMovable,
+                OutcomeCode::NotMovable,
                 "It does not move.",
                 Some(object),
             ));
@@ -114,7 +114,7 @@ impl PhysicsWorld {
         self.ongoing_pushes.sort_by_key(|shove| shove.agent);
         let limit = if force < wanted { ", all you have" } else { "" };
         let sentence = format!("You {verb} the {name} with {force:.0} N{limit}.");
-        Ok(done(ActionCode::Started, sentence, Some(object)))
+        Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }
 
     /// The body of an object that a push moves.
@@ -141,15 +141,15 @@ impl PhysicsWorld {
         }
         match bodies.first().map(|body| self.holds[*body]) {
             None => refuse(
-                ActionCode::NotMovable,
+                OutcomeCode::NotMovable,
                 format!("The {name} stands firm. Choose something loose."),
             ),
             Some(BodyStatus::Latched) => refuse(
-                ActionCode::Shut,
+                OutcomeCode::Shut,
                 format!("The {name} is shut and does not give way. Open it first."),
             ),
             Some(_) => refuse(
-                ActionCode::Stuck,
+                OutcomeCode::Stuck,
                 format!("The {name} is stuck where it stands. Choose something else."),
             ),
         }
@@ -194,16 +194,16 @@ impl PhysicsWorld {
                 let sentence = format!(
                     "You let go of the {name} and turned to something else; it had moved by {moved:.2} m."
                 );
-                fail(ActionCode::Blocked, sentence, Some(shove.object))
+                fail(OutcomeCode::Blocked, sentence, Some(shove.object))
             } else if moved >= MOVED_M {
                 let sentence = format!("The {name} moved by {moved:.2} m.");
-                done(ActionCode::Done, sentence, Some(shove.object))
+                done(OutcomeCode::Done, sentence, Some(shove.object))
             } else {
                 let mass = self.engine.bodies.get(handle).map_or(0.0, RigidBody::mass);
                 let sentence = format!(
                     "The {name} ({mass:.1} kg) did not move. Use more force, or clear what holds it."
                 );
-                fail(ActionCode::Blocked, sentence, Some(shove.object))
+                fail(OutcomeCode::Blocked, sentence, Some(shove.object))
             };
             self.notices.push(DelayedOutcome {
                 agent: Some(shove.agent),

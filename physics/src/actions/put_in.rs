@@ -1,7 +1,7 @@
 //! Putting what is held into a container.
 
 use super::clearance::SupportFilter;
-use super::outcome::{ActionCode, done, fail};
+use super::outcome::{OutcomeCode, done, fail};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::target::ResolvedTarget;
@@ -50,14 +50,14 @@ impl PhysicsWorld {
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if grip.object == object {
             let sentence = "A thing cannot be put into itself. Choose something else.";
-            return refuse(ActionCode::NoSpace, sentence.to_owned());
+            return refuse(OutcomeCode::NoSpace, sentence.to_owned());
         }
         if let Some(holder) = state.held_by[object] {
             let sentence = format!(
                 "Agent {} holds the {name}. Choose something else.",
                 holder.0
             );
-            return refuse(ActionCode::HeldByOther, sentence);
+            return refuse(OutcomeCode::HeldByOther, sentence);
         }
         let house = self.model().house.clone();
         let spaces: Vec<&Receptacle> = house
@@ -69,7 +69,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} holds nothing inside. Choose a drawer, cupboard, bowl, box or basin."
             );
-            return refuse(ActionCode::NotContainer, sentence);
+            return refuse(OutcomeCode::NotContainer, sentence);
         }
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
@@ -90,29 +90,29 @@ impl PhysicsWorld {
                 .any(|id| house.joints[id].openness(state.joint_position[id]) < OPEN);
             return match search {
                 InsertionSearch { fits: false, .. } => refuse(
-                    ActionCode::TooLarge,
+                    OutcomeCode::TooLarge,
                     format!("The {held} is too large for the {name}. Choose something roomier."),
                 ),
                 InsertionSearch {
                     in_reach: false, ..
                 } => refuse(
-                    ActionCode::TooFar,
+                    OutcomeCode::TooFar,
                     format!("You do not reach into the {name}. Walk closer."),
                 ),
                 InsertionSearch {
                     in_sight: false, ..
                 } if shut => refuse(
-                    ActionCode::Closed,
+                    OutcomeCode::Closed,
                     format!("The {name} is closed. Open it first."),
                 ),
                 InsertionSearch {
                     in_sight: false, ..
                 } => refuse(
-                    ActionCode::NotVisible,
+                    OutcomeCode::NotVisible,
                     format!("You cannot get into the {name} from here. Step in front of it."),
                 ),
                 _ => refuse(
-                    ActionCode::Full,
+                    OutcomeCode::Full,
                     format!(
                         "There is no room left for the {held} in the {name}. Take something out first."
                     ),
@@ -121,7 +121,7 @@ impl PhysicsWorld {
         };
         self.put_down(state, actor, &pose);
         let sentence = format!("You put the {held} in the {name}.");
-        Ok(done(ActionCode::Done, sentence, Some(object)))
+        Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
 
     /// Looks for a spot in one space.

@@ -1,7 +1,7 @@
 //! Whether a hand reaches a thing and its eye sees it.
 
 use super::Actor;
-use super::outcome::{ActionCode, ActionOutcome, fail};
+use super::outcome::{ActionOutcome, OutcomeCode, fail};
 use crate::body;
 use crate::contact::{ContactEntity, entry_index};
 use crate::model::PhysicsModel;
@@ -36,7 +36,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "The {name} is {distance:.2} m away; your reach is {reach:.2} m. Walk closer."
             );
-            return Some(fail(ActionCode::TooFar, sentence, Some(object)));
+            return Some(fail(OutcomeCode::TooFar, sentence, Some(object)));
         }
         let forward = dwell_scene::space::forward_from_yaw(agent.yaw_rad);
         let bounds = self.model().house.object_bounds(state, object);
@@ -46,7 +46,7 @@ impl PhysicsWorld {
             .any(|to| to.length() < AT_THE_FEET_M || to.dot(forward) > 0.0);
         if !ahead {
             let sentence = format!("The {name} is behind you. Turn around.");
-            return Some(fail(ActionCode::Behind, sentence, Some(object)));
+            return Some(fail(OutcomeCode::Behind, sentence, Some(object)));
         }
         if let Err(blocker) = self.sight(state, actor, object, nearest) {
             let sentence = match blocker {
@@ -57,7 +57,7 @@ impl PhysicsWorld {
                     format!("You cannot see the {name} from here. Look at it from another side.")
                 }
             };
-            return Some(fail(ActionCode::NotVisible, sentence, Some(object)));
+            return Some(fail(OutcomeCode::NotVisible, sentence, Some(object)));
         }
         None
     }
@@ -186,7 +186,7 @@ impl PhysicsWorld {
                 who.0
             )
         };
-        Some(fail(ActionCode::StoodOn, sentence, Some(object)))
+        Some(fail(OutcomeCode::StoodOn, sentence, Some(object)))
     }
 
     /// The object right under somebody's feet.

@@ -1,6 +1,6 @@
 //! Switching things on and off.
 
-use super::outcome::{ActionCode, done, fail};
+use super::outcome::{OutcomeCode, done, fail};
 use super::request::Target;
 use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
@@ -17,7 +17,7 @@ impl PhysicsWorld {
         let name = self.call(object);
         if self.model().house.objects[object].switch.is_none() {
             let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");
-            return Ok(fail(ActionCode::NoSwitch, sentence, Some(object)));
+            return Ok(fail(OutcomeCode::NoSwitch, sentence, Some(object)));
         }
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
@@ -37,11 +37,11 @@ impl PhysicsWorld {
             let share = if state.switched_on[object] { 0.0 } else { 1.0 };
             self.lead(state, actor, &levers, share);
             let sentence = format!("You turn the {name} {word}; it takes a moment.");
-            return Ok(done(ActionCode::Started, sentence, Some(object)));
+            return Ok(done(OutcomeCode::Started, sentence, Some(object)));
         }
         let on = !state.switched_on[object];
         state.switched_on[object] = on;
         let sentence = format!("You switch the {name} {word}.");
-        Ok(done(ActionCode::Done, sentence, Some(object)))
+        Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
 }

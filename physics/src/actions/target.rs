@@ -1,7 +1,7 @@
 //! What a target turns out to be: an object, a piece of the building, or somebody.
 
 use super::Actor;
-use super::outcome::{ActionCode, ActionOutcome, fail};
+use super::outcome::{ActionOutcome, OutcomeCode, fail};
 use super::request::Target;
 use crate::world::PhysicsWorld;
 use dwell_scene::bvh::{Ray, RayMask};
@@ -41,7 +41,7 @@ impl PhysicsWorld {
         };
         let unknown = |what: String, count: usize, kind: &str| {
             let sentence = format!("There is no {what}; there are {count} {kind}.");
-            Err(Box::new(fail(ActionCode::UnknownObject, sentence, None)))
+            Err(Box::new(fail(OutcomeCode::UnknownObject, sentence, None)))
         };
         match *target {
             Target::Object(id) if id.index() < house.objects.len() => {
@@ -75,7 +75,7 @@ impl PhysicsWorld {
                     let sentence = format!(
                         "A ray from {origin} along {direction} leads nowhere; give finite numbers and a direction that is not zero."
                     );
-                    return Err(Box::new(fail(ActionCode::BadNumber, sentence, None)));
+                    return Err(Box::new(fail(OutcomeCode::BadNumber, sentence, None)));
                 }
                 self.meet(state, actor, origin, direction)
             }
@@ -102,22 +102,22 @@ impl PhysicsWorld {
         let (code, sentence) = match aim.entity {
             Entity::Object(object) => return Ok((object, aim)),
             Entity::Agent(agent) if agent == actor.id => (
-                ActionCode::Oneself,
+                OutcomeCode::Oneself,
                 "That is you. Choose a thing.".to_owned(),
             ),
             Entity::Agent(agent) => (
-                ActionCode::NotAThing,
+                OutcomeCode::NotAThing,
                 format!("That is agent {}, not a thing. Choose a thing.", agent.0),
             ),
             Entity::Structure(id) => (
-                ActionCode::NotAThing,
+                OutcomeCode::NotAThing,
                 format!(
                     "The {} is part of the building. Choose a thing.",
                     self.surface_name(SurfaceOwner::Structure(id))
                 ),
             ),
             Entity::Void => (
-                ActionCode::NoTarget,
+                OutcomeCode::NoTarget,
                 "There is nothing. Choose a thing.".to_owned(),
             ),
         };
@@ -151,7 +151,7 @@ impl PhysicsWorld {
         }
         let Some(hit) = hit else {
             let sentence = "There is nothing in that direction. Point at something.";
-            return Err(Box::new(fail(ActionCode::NoTarget, sentence, None)));
+            return Err(Box::new(fail(OutcomeCode::NoTarget, sentence, None)));
         };
         let surface = actor.rays.surface(&hit);
         let point = Some(origin + direction * hit.distance_m);

@@ -1,6 +1,6 @@
 //! Throwing.
 
-use super::outcome::{ActionCode, done, fail};
+use super::outcome::{OutcomeCode, done, fail};
 use super::{ActionResult, Actor};
 use crate::world::PhysicsWorld;
 use dwell_scene::State;
@@ -34,7 +34,7 @@ impl PhysicsWorld {
             let sentence = format!(
                 "You cannot throw along {direction} at {speed_m_s} m/s; give a direction that is not zero and a speed from 0 up."
             );
-            return Ok(fail(ActionCode::BadNumber, sentence, Some(grip.object)));
+            return Ok(fail(OutcomeCode::BadNumber, sentence, Some(grip.object)));
         }
         let handle = self.bodies[grip.body as usize].handle;
         let mass = self.engine.bodies.get(handle).map_or(1.0, RigidBody::mass);
@@ -58,7 +58,7 @@ impl PhysicsWorld {
             ""
         };
         let sentence = format!("You throw the {name} at {speed:.1} m/s{limit}.");
-        Ok(done(ActionCode::Done, sentence, Some(grip.object)))
+        Ok(done(OutcomeCode::Done, sentence, Some(grip.object)))
     }
 }
 

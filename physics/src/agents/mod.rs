@@ -7,7 +7,7 @@ mod control;
 mod movement;
 mod resize;
 mod shape_queries;
-mod slope;
+mod slope_sliding;
 mod spawn;
 
 pub use control::AgentControl;

@@ -1,7 +1,7 @@
 //! All agents' movements in one physics step.
 
 use super::{AgentControl, AgentCylinder, AgentQueries, CharacterController, CharacterPush};
-use crate::actions::{ActionCode, ActionOutcome, DelayedOutcome};
+use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
 use crate::bases::{self, WheelMotion};
 use crate::world::PhysicsWorld;
 use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
@@ -187,7 +187,7 @@ impl PhysicsWorld {
             self.notices.push(DelayedOutcome {
                 agent: Some(id),
                 outcome: ActionOutcome::failed(
-                    ActionCode::Blocked,
+                    OutcomeCode::Blocked,
                     "Something is overhead: you cannot stand up here. Move out from under it first.",
                     None,
                 ),

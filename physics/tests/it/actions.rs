@@ -1,7 +1,7 @@
 //! The hand: each refusal has its code and a sentence a person can act on.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, ActionCode, AgentControl};
+use dwell_physics::{Action, AgentControl, OutcomeCode};
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -62,9 +62,9 @@ fn every_refusal_says_why_and_what_to_do() {
     let mut k = kitchen();
     let (agent, mug) = (k.agent, k.mug);
     let told = k.run.act(agent, Action::Drop);
-    assert_eq!((told.success, told.code), (false, ActionCode::HandEmpty));
+    assert_eq!((told.success, told.code), (false, OutcomeCode::HandEmpty));
     let told = k.run.act(agent, Action::pick(k.anvil));
-    assert_eq!(told.code, ActionCode::TooHeavy);
+    assert_eq!(told.code, OutcomeCode::TooHeavy);
     assert!(
         told.sentence.contains("62.4 kg") && told.sentence.contains("10.0 kg"),
         "{}",
@@ -72,33 +72,33 @@ fn every_refusal_says_why_and_what_to_do() {
     );
     assert_eq!(
         k.run.act(agent, Action::pick(k.table)).code,
-        ActionCode::NotPickable
+        OutcomeCode::NotPickable
     );
     assert_eq!(
         k.run.act(agent, Action::open(k.table)).code,
-        ActionCode::NotOpenable
+        OutcomeCode::NotOpenable
     );
     assert_eq!(
         k.run.act(agent, Action::toggle(k.table)).code,
-        ActionCode::NoSwitch
+        OutcomeCode::NoSwitch
     );
     assert_eq!(
         k.run.act(agent, Action::pick(ObjectId(999))).code,
-        ActionCode::UnknownObject
+        OutcomeCode::UnknownObject
     );
     assert_eq!(
         k.run.act(AgentId(7), Action::Drop).code,
-        ActionCode::UnknownAgent
+        OutcomeCode::UnknownAgent
     );
     let told = k.run.act(agent, Action::pick(k.hidden));
-    assert_eq!(told.code, ActionCode::NotVisible, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::NotVisible, "{}", told.sentence);
     assert!(told.sentence.contains("screen"), "{}", told.sentence);
     k.run
         .world
         .place_agent(&mut k.run.state, agent, Vec3::new(3.0, 0.0, 5.0), 0.0)
         .unwrap();
     let told = k.run.act(agent, Action::pick(mug));
-    assert_eq!(told.code, ActionCode::TooFar);
+    assert_eq!(told.code, OutcomeCode::TooFar);
     assert_eq!(
         told.sentence,
         "The mug is 2.78 m away; your reach is 1.50 m. Walk closer."
@@ -110,7 +110,7 @@ fn every_refusal_says_why_and_what_to_do() {
     let told = k.run.act(agent, Action::pick(mug));
     assert_eq!(
         (told.code, told.sentence.as_str()),
-        (ActionCode::Behind, "The mug is behind you. Turn around.")
+        (OutcomeCode::Behind, "The mug is behind you. Turn around.")
     );
     assert!(!told.success && told.object == Some(mug));
 }
@@ -121,13 +121,13 @@ fn a_thing_is_picked_carried_and_dropped() {
     let told = k.run.act(k.agent, Action::pick(k.mug));
     assert_eq!(
         (told.success, told.code, told.sentence.as_str()),
-        (true, ActionCode::Done, "You hold the mug.")
+        (true, OutcomeCode::Done, "You hold the mug.")
     );
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));
     assert_eq!(k.run.state.agents[k.agent].holding, Some(k.mug));
     assert_eq!(
         k.run.act(k.agent, Action::pick(k.hidden)).code,
-        ActionCode::HandFull
+        OutcomeCode::HandFull
     );
     // It follows while the agent walks backwards and turns.
     let back = AgentControl {
@@ -180,7 +180,7 @@ fn a_held_thing_never_passes_a_wall() {
             "{at}"
         );
         if k.run.state.agents[k.agent].holding.is_none() {
-            assert_eq!(k.run.world.notices()[0].outcome.code, ActionCode::Slipped);
+            assert_eq!(k.run.world.notices()[0].outcome.code, OutcomeCode::Slipped);
             break;
         }
     }
@@ -191,7 +191,7 @@ fn a_thing_is_put_on_a_table_and_stays_there() {
     let mut k = kitchen();
     k.run.act(k.agent, Action::pick(k.mug));
     let told = k.run.act(k.agent, Action::place(k.table));
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     k.run.walk(30, &[]);
     let at = k.run.position(k.mug);
     assert!((at.y - 0.84).abs() < 0.01, "{at}");
@@ -220,7 +220,7 @@ fn nobody_takes_from_another_hand() {
     let other = k.run.agent(Vec3::new(2.6, 0.0, 3.0), 0.0);
     k.run.act(k.agent, Action::pick(k.mug));
     let told = k.run.act(other, Action::pick(k.mug));
-    assert_eq!(told.code, ActionCode::HeldByOther, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::HeldByOther, "{}", told.sentence);
     k.run.walk(5, &[forward(0.0)]);
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));
 }

@@ -1,7 +1,7 @@
 //! What is meant: by id, by ray, by gaze; and everything that means nothing.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, ActionCode, Target};
+use dwell_physics::{Action, OutcomeCode, Target};
 use dwell_scene::{AgentId, EntityId, JointId, ObjectId, PartId};
 use glam::Vec3;
 
@@ -84,7 +84,7 @@ fn ids_that_do_not_exist_fail_with_how_many_there_are() {
             let told = room.run.act(room.agent, action);
             assert_eq!(
                 (told.success, told.code, told.sentence.as_str()),
-                (false, ActionCode::UnknownObject, sentence),
+                (false, OutcomeCode::UnknownObject, sentence),
                 "{action:?}"
             );
         }
@@ -93,7 +93,7 @@ fn ids_that_do_not_exist_fail_with_how_many_there_are() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::UnknownAgent,
+            OutcomeCode::UnknownAgent,
             "There is no agent 2; there are 2."
         )
     );
@@ -109,18 +109,18 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
         let told = room.run.act(room.agent, action);
         assert_eq!(
             (told.code, told.sentence.as_str()),
-            (ActionCode::Oneself, "That is you. Choose a thing.")
+            (OutcomeCode::Oneself, "That is you. Choose a thing.")
         );
     }
     let told = room
         .run
         .act(room.agent, Action::Point { target: own.into() });
-    assert_eq!(told.code, ActionCode::Oneself, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Oneself, "{}", told.sentence);
     let told = room.run.act(room.agent, Action::pick(other));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NotAThing,
+            OutcomeCode::NotAThing,
             "That is agent 1, not a thing. Choose a thing."
         )
     );
@@ -129,7 +129,7 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NotAThing,
+            OutcomeCode::NotAThing,
             "The wall is part of the building. Choose a thing."
         )
     );
@@ -149,7 +149,7 @@ fn rays_of_nonsense_are_refused() {
     for (origin, direction) in rays {
         let target = Target::Ray { origin, direction };
         let told = room.run.act(room.agent, Action::pick(target));
-        assert_eq!(told.code, ActionCode::BadNumber, "{origin} {direction}");
+        assert_eq!(told.code, OutcomeCode::BadNumber, "{origin} {direction}");
         assert!(
             told.sentence.contains("give finite numbers"),
             "{}",
@@ -165,7 +165,7 @@ fn rays_of_nonsense_are_refused() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NoTarget,
+            OutcomeCode::NoTarget,
             "There is nothing in that direction. Point at something."
         )
     );
@@ -179,7 +179,7 @@ fn a_thing_is_taken_by_ray_and_by_gaze() {
     let told = room.run.act(room.agent, Action::pick(target));
     assert_eq!(
         (told.code, told.object),
-        (ActionCode::Done, Some(room.mug)),
+        (OutcomeCode::Done, Some(room.mug)),
         "{}",
         told.sentence
     );
@@ -190,7 +190,10 @@ fn a_thing_is_taken_by_ray_and_by_gaze() {
     let down = room.run.position(room.mug) - eye;
     room.run.state.agents[room.agent].pitch_rad = (down.y / -down.z).atan();
     let told = room.run.act(room.agent, Action::pick(Target::Gaze));
-    assert_eq!((told.code, told.object), (ActionCode::Done, Some(room.mug)));
+    assert_eq!(
+        (told.code, told.object),
+        (OutcomeCode::Done, Some(room.mug))
+    );
 }
 
 #[test]
@@ -207,7 +210,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
     );
     assert_eq!(
         (told.code, told.object),
-        (ActionCode::Started, Some(room.chest)),
+        (OutcomeCode::Started, Some(room.chest)),
         "{}",
         told.sentence
     );
@@ -233,7 +236,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::AlreadyOpen,
+            OutcomeCode::AlreadyOpen,
             "The chest of drawers is 50 % open already."
         )
     );
@@ -243,7 +246,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
             fraction,
         };
         let told = room.run.act(room.agent, action);
-        assert_eq!(told.code, ActionCode::BadNumber, "{fraction}");
+        assert_eq!(told.code, OutcomeCode::BadNumber, "{fraction}");
         assert!(
             told.sentence.contains("from 0 (closed) to 1 (open)"),
             "{}",

@@ -1,7 +1,7 @@
 //! Carrying: what is held passes no wall, whatever its holder does.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, ActionCode, AgentControl, Grasp};
+use dwell_physics::{Action, AgentControl, Grasp, OutcomeCode};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
@@ -139,7 +139,7 @@ fn taking_a_thing_beside_a_wall_leaves_it_on_this_side() {
     run.steps(2);
     let told = run.act(agent, Action::pick(thing));
     assert!(
-        told.success || told.code == ActionCode::Behind,
+        told.success || told.code == OutcomeCode::Behind,
         "{}",
         told.sentence
     );
@@ -210,7 +210,7 @@ fn a_spring_sags_as_its_frequency_says() {
                 },
             },
         );
-        assert_eq!(told.code, ActionCode::BadNumber, "{}", told.sentence);
+        assert_eq!(told.code, OutcomeCode::BadNumber, "{}", told.sentence);
         assert!(told.sentence.contains("0.5 to 20 Hz"), "{}", told.sentence);
     }
 }

@@ -1,7 +1,7 @@
 //! Putting things in: open and roomy, or refused with the reason.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, ActionCode};
+use dwell_physics::{Action, OutcomeCode};
 use dwell_scene::{AgentId, JointId, ObjectId};
 use glam::Vec3;
 
@@ -63,7 +63,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::Done,
+            OutcomeCode::Done,
             "You put the thing in the chest of drawers."
         )
     );
@@ -82,7 +82,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
     assert!(room.run.position(room.thing).z < 2.2, "it came along");
     // Shut away, it can be neither seen nor taken.
     let told = room.run.act(room.agent, Action::pick(room.thing));
-    assert_eq!(told.code, ActionCode::NotVisible, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::NotVisible, "{}", told.sentence);
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn a_closed_drawer_takes_nothing() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::Closed,
+            OutcomeCode::Closed,
             "The chest of drawers is closed. Open it first."
         )
     );
@@ -107,7 +107,7 @@ fn what_is_too_large_is_refused() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::TooLarge,
+            OutcomeCode::TooLarge,
             "The thing is too large for the chest of drawers. Choose something roomier."
         )
     );
@@ -139,7 +139,7 @@ fn a_full_drawer_says_so() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::Full,
+            OutcomeCode::Full,
             "There is no room left for the thing in the chest of drawers. Take something out first."
         )
     );
@@ -152,7 +152,7 @@ fn what_holds_nothing_and_the_thing_itself_are_refused() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NotContainer,
+            OutcomeCode::NotContainer,
             "The stool holds nothing inside. Choose a drawer, cupboard, bowl, box or basin."
         )
     );

@@ -1,7 +1,7 @@
 //! Doors: shut ones stay shut, opened ones swing, blocked ones say so.
 
 use crate::common::{Build, Piece, forward};
-use dwell_physics::{Action, ActionCode};
+use dwell_physics::{Action, OutcomeCode};
 use dwell_scene::JointCommand;
 use glam::Vec3;
 
@@ -26,7 +26,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     let outcome = run.act(id, Action::open(door));
     assert_eq!(
         (outcome.success, outcome.code),
-        (true, ActionCode::Started),
+        (true, OutcomeCode::Started),
         "{}",
         outcome.sentence
     );
@@ -36,7 +36,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
         if let Some(notice) = run.world.notices().first() {
             assert_eq!(
                 notice.outcome.code,
-                ActionCode::Done,
+                OutcomeCode::Done,
                 "{}",
                 notice.outcome.sentence
             );
@@ -53,7 +53,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     assert!((run.state.joint_position[joint] - 1.6).abs() < 0.03);
     assert_eq!(
         run.act(id, Action::open(door)).code,
-        ActionCode::AlreadyOpen
+        OutcomeCode::AlreadyOpen
     );
     run.walk(40, &[forward(1.0)]);
     let through = run.state.agents[id].position;
@@ -69,7 +69,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
         .unwrap();
     run.rays.update(&run.state);
     let outcome = run.act(id, Action::close(door));
-    assert_eq!(outcome.code, ActionCode::Started, "{}", outcome.sentence);
+    assert_eq!(outcome.code, OutcomeCode::Started, "{}", outcome.sentence);
     run.walk(60, &[]);
     assert_eq!(run.state.joint_position[joint], 0.0);
     assert_eq!(run.state.joint_velocity[joint], 0.0);
@@ -101,7 +101,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
     let told = told.expect("a notice");
     assert_eq!(
         told.outcome.code,
-        ActionCode::Blocked,
+        OutcomeCode::Blocked,
         "{}",
         told.outcome.sentence
     );
@@ -133,7 +133,7 @@ fn a_door_does_not_shut_through_an_agent() {
         }
     }
     let told = told.expect("a notice");
-    assert_eq!(told.code, ActionCode::Blocked, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Blocked, "{}", told.sentence);
     assert!(told.sentence.contains("agent 0"), "{}", told.sentence);
     assert!(
         run.state.joint_position[joint] > 0.15,

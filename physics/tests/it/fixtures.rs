@@ -1,7 +1,7 @@
 //! Taps and lids of the built-in apartment: what is turned on runs, what is opened stays open and takes things in.
 
 use crate::common::Run;
-use dwell_physics::{Action, ActionCode, PhysicsConfig};
+use dwell_physics::{Action, OutcomeCode, PhysicsConfig};
 use dwell_scene::{AgentId, JointCommand, JointId, ObjectId};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -70,14 +70,14 @@ fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
     run.steps(2);
     assert!(!run.state.is_on(&run.house, tap));
     let told = run.act(agent, Action::toggle(tap));
-    assert_eq!(told.code, ActionCode::Started, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Started, "{}", told.sentence);
     let name = run.house.objects[tap].model.replace('_', " ");
     assert_eq!(
         told.sentence,
         format!("You turn the {name} on; it takes a moment.")
     );
     let told = run.told(60).expect("it arrives");
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     assert!(run.state.is_on(&run.house, tap));
     let open = run.house.joints[lever].open;
     assert!((run.state.joint_position[lever] - open).abs() < 0.03);
@@ -86,7 +86,7 @@ fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
     assert!(run.state.is_on(&run.house, tap));
     run.act(agent, Action::toggle(tap));
     let told = run.told(60).expect("it arrives");
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     assert!(!run.state.is_on(&run.house, tap));
     assert_eq!(run.state.joint_position[lever], 0.0);
 }
@@ -125,7 +125,7 @@ fn lids_and_small_doors_stay_where_a_hand_leaves_them() {
             let open = run.house.joints[id].open;
             run.state.joint_command[id] = JointCommand::Position(open);
             let told = run.told(100).expect("it arrives");
-            assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+            assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
             run.steps(60);
             let stands = run.state.joint_position[id];
             let name = &run.house.objects[object].name;
@@ -173,18 +173,18 @@ fn things_go_into_an_open_bin_only() {
             container: bin.into(),
         },
     );
-    assert_eq!(told.code, ActionCode::Closed, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Closed, "{}", told.sentence);
     let told = run.act(agent, Action::open(bin));
     assert!(told.success, "{}", told.sentence);
     let told = run.told(100).expect("it arrives");
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     let told = run.act(
         agent,
         Action::PutIn {
             container: bin.into(),
         },
     );
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     run.steps(20);
     let inside = run.position(fruit) - run.position(bin);
     assert!(

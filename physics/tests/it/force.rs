@@ -1,7 +1,7 @@
 //! Throwing, pushing, pulling: as strong as a person, and never through what is shut.
 
 use crate::common::{Build, Piece, Run, gravity};
-use dwell_physics::{Action, ActionCode, Target};
+use dwell_physics::{Action, OutcomeCode, Target};
 use dwell_scene::{AgentId, Mobility, ObjectId};
 use glam::Vec3;
 
@@ -78,7 +78,7 @@ fn strength_bounds_throws() {
         (Vec3::X, f32::INFINITY),
     ] {
         let told = run.act(agent, throw(direction, speed));
-        assert_eq!(told.code, ActionCode::BadNumber, "{direction} {speed}");
+        assert_eq!(told.code, OutcomeCode::BadNumber, "{direction} {speed}");
         assert!(
             told.sentence.contains("give a direction"),
             "{}",
@@ -96,7 +96,7 @@ fn strength_bounds_throws() {
         told.sentence
     );
     let told = run.act(agent, throw(Vec3::X, 1.0));
-    assert_eq!(told.code, ActionCode::HandEmpty);
+    assert_eq!(told.code, OutcomeCode::HandEmpty);
     assert_eq!(told.sentence, "You hold nothing. Pick something first.");
 }
 
@@ -120,7 +120,7 @@ fn a_push_moves_what_friction_lets_go() {
     let told = run.act(agent, push(light, None));
     assert_eq!(
         (told.code, told.sentence.as_str()),
-        (ActionCode::Started, "You push the crate with 100 N.")
+        (OutcomeCode::Started, "You push the crate with 100 N.")
     );
     let told = run.told(20).expect("a notice");
     assert!(
@@ -137,7 +137,7 @@ fn a_push_moves_what_friction_lets_go() {
     );
     for force in [f32::NAN, 0.0, -3.0, f32::INFINITY] {
         let told = run.act(agent, push(light, Some(force)));
-        assert_eq!(told.code, ActionCode::BadNumber, "{force}");
+        assert_eq!(told.code, OutcomeCode::BadNumber, "{force}");
         assert!(
             told.sentence.contains("give a force above 0"),
             "{}",
@@ -153,7 +153,7 @@ fn a_push_moves_what_friction_lets_go() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::Blocked,
+            OutcomeCode::Blocked,
             "The safe (324.0 kg) did not move. Use more force, or clear what holds it."
         )
     );
@@ -164,7 +164,7 @@ fn a_push_moves_what_friction_lets_go() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NotMovable,
+            OutcomeCode::NotMovable,
             "The shelf stands firm. Choose something loose."
         )
     );
@@ -185,7 +185,10 @@ fn a_pull_brings_a_thing_near_and_needs_a_free_hand() {
     let agent = run.agent(Vec3::new(2.0, 0.0, 3.0), 0.0);
     run.steps(20);
     let before = run.position(crate_);
-    assert_eq!(run.act(agent, pull(crate_, None)).code, ActionCode::Started);
+    assert_eq!(
+        run.act(agent, pull(crate_, None)).code,
+        OutcomeCode::Started
+    );
     assert!(run.told(20).expect("a notice").success);
     assert!(run.position(crate_).z > before.z + 0.02);
     assert!(run.act(agent, Action::pick(mug)).success);
@@ -193,7 +196,7 @@ fn a_pull_brings_a_thing_near_and_needs_a_free_hand() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::HandFull,
+            OutcomeCode::HandFull,
             "Your hand is full. Drop what you hold before you pull."
         )
     );
@@ -201,7 +204,7 @@ fn a_pull_brings_a_thing_near_and_needs_a_free_hand() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::HeldByOther,
+            OutcomeCode::HeldByOther,
             "Agent 0 holds the mug. Choose something else."
         )
     );
@@ -218,7 +221,7 @@ fn a_shut_drawer_does_not_give_way_and_an_ajar_one_does() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::Shut,
+            OutcomeCode::Shut,
             "The chest of drawers is shut and does not give way. Open it first."
         )
     );
@@ -227,14 +230,14 @@ fn a_shut_drawer_does_not_give_way_and_an_ajar_one_does() {
     run.rays.update(&run.state);
     assert_eq!(
         run.act(agent, pull(chest, Some(20.0))).code,
-        ActionCode::Started
+        OutcomeCode::Started
     );
     run.told(20);
     let out = run.state.joint_position[joint];
     assert!(out > 0.12, "{out}");
     assert_eq!(
         run.act(agent, push(chest, Some(20.0))).code,
-        ActionCode::Started
+        OutcomeCode::Started
     );
     run.told(20);
     run.steps(20);
@@ -302,7 +305,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::StoodOn,
+            OutcomeCode::StoodOn,
             "You stand on the plank. Step off it first."
         )
     );
@@ -310,7 +313,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::StoodOn,
+            OutcomeCode::StoodOn,
             "Agent 0 stands on the plank. Wait until it is free."
         )
     );
@@ -331,9 +334,9 @@ fn a_push_that_gives_way_to_another_is_told_of() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(2.0, 0.0, 2.8), 0.0);
     run.steps(2);
-    assert_eq!(run.act(agent, push(one, None)).code, ActionCode::Started);
+    assert_eq!(run.act(agent, push(one, None)).code, OutcomeCode::Started);
     run.steps(1);
-    assert_eq!(run.act(agent, push(two, None)).code, ActionCode::Started);
+    assert_eq!(run.act(agent, push(two, None)).code, OutcomeCode::Started);
     run.steps(1);
     let told = &run.world.notices()[0];
     assert_eq!((told.agent, told.outcome.object), (Some(agent), Some(one)));
@@ -345,7 +348,7 @@ fn a_push_that_gives_way_to_another_is_told_of() {
     let told = run.told(20).expect("the second push ends");
     assert_eq!(
         (told.code, told.object),
-        (ActionCode::Done, Some(two)),
+        (OutcomeCode::Done, Some(two)),
         "{}",
         told.sentence
     );

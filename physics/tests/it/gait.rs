@@ -1,7 +1,7 @@
 //! Legs: speed limits, crouching, slopes too steep to stand on.
 
 use crate::common::{Build, Piece, forward, gravity};
-use dwell_physics::{ActionCode, AgentControl};
+use dwell_physics::{AgentControl, OutcomeCode};
 use dwell_scene::{AgentBody, LeggedLocomotion, Locomotion};
 use glam::{Quat, Vec3};
 
@@ -76,7 +76,7 @@ fn a_crouched_agent_passes_under_a_beam_and_stands_up_only_behind_it() {
     let still = run.state.agents[id];
     assert!(still.height_m() < 1.0, "it stood up through the beam");
     let notice = &run.world.notices()[0].outcome;
-    assert_eq!(notice.code, ActionCode::Blocked);
+    assert_eq!(notice.code, OutcomeCode::Blocked);
     assert!(notice.sentence.contains("overhead"), "{}", notice.sentence);
     run.walk(40, &[forward(1.0)]);
     let behind = run.state.agents[id];

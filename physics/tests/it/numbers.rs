@@ -426,7 +426,7 @@ fn what_is_too_heavy_now_falls_from_the_hand() {
         run.walk(1, &[]);
         let told = run.world.notices().first().expect("it is told").clone();
         assert_eq!(told.agent, Some(agent));
-        assert_eq!(told.outcome.code, dwell_physics::ActionCode::TooHeavy);
+        assert_eq!(told.outcome.code, dwell_physics::OutcomeCode::TooHeavy);
         assert!(told.outcome.sentence.contains("fell from your hand"));
         assert_eq!(run.state.agents[agent].holding, None);
         assert_eq!(run.state.held_by[cube], None);

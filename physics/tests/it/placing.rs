@@ -1,7 +1,7 @@
 //! Putting things down: what is put down stands, or it is refused with the reason.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, ActionCode, PhysicsConfig, Target};
+use dwell_physics::{Action, OutcomeCode, PhysicsConfig, Target};
 use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, SupportRelation};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
@@ -98,7 +98,7 @@ fn things_of_all_shapes_stand_where_they_are_put() {
     for (k, piece) in shapes.into_iter().enumerate() {
         let mut on = table(piece, &[]);
         let told = on.run.act(on.agent, Action::place(on.table));
-        assert_eq!(told.code, ActionCode::Done, "{k}: {}", told.sentence);
+        assert_eq!(told.code, OutcomeCode::Done, "{k}: {}", told.sentence);
         assert_eq!(told.sentence, "You put the thing on the table.");
         let (moved, turn) = stays(&mut on.run, on.thing);
         assert!(
@@ -122,7 +122,7 @@ fn a_spot_is_found_between_other_things_and_refused_when_there_is_none() {
     let small = Piece::cuboid(Vec3::splat(0.05), Vec3::ZERO);
     let mut on = table(small, &clutter);
     let told = on.run.act(on.agent, Action::place(on.table));
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG, "{moved} {turn}");
     let large = Piece::cuboid(Vec3::new(0.15, 0.15, 0.15), Vec3::ZERO);
@@ -131,7 +131,7 @@ fn a_spot_is_found_between_other_things_and_refused_when_there_is_none() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NoSpace,
+            OutcomeCode::NoSpace,
             "There is no free space for the thing on the table within your reach and sight. Clear it or walk around it."
         )
     );
@@ -144,39 +144,39 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
     let mut on = table(mug(), &[]);
     let point = Vec3::new(3.1, 0.8, 2.2);
     let told = on.run.act(on.agent, Action::PlaceAt { point });
-    assert_eq!(told.code, ActionCode::Done, "{}", told.sentence);
+    assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG);
     let at = on.run.position(on.thing);
     assert!((at - point - Vec3::Y * 0.05).length() < 0.01, "{at}");
     let mut on = table(mug(), &[Vec3::new(3.0, 0.0, 2.1)]);
     let cases = [
-        (Vec3::NAN, ActionCode::BadNumber, "NaN"),
+        (Vec3::NAN, OutcomeCode::BadNumber, "NaN"),
         (
             Vec3::new(3.0, 0.0, 5.5),
-            ActionCode::TooFar,
+            OutcomeCode::TooFar,
             "That place is 2.98 m away; your reach is 1.50 m. Walk closer.",
         ),
         (
             Vec3::new(3.2, 1.2, 2.2),
-            ActionCode::NoSupport,
+            OutcomeCode::NoSupport,
             "Nothing carries the thing there. Choose a point on a level surface.",
         ),
         (
             Vec3::new(3.02, 0.8, 2.1),
-            ActionCode::NoSpace,
+            OutcomeCode::NoSpace,
             "The thing does not fit there: the bottle is in the way. Choose another point.",
         ),
         (
             // Half of it over the edge at z = 2.4.
             Vec3::new(3.3, 0.8, 2.399),
-            ActionCode::NoSupport,
+            OutcomeCode::NoSupport,
             "The thing would not stand there. Choose a level spot away from edges.",
         ),
         (
             // Inside the table.
             Vec3::new(3.2, 0.4, 2.2),
-            ActionCode::NotVisible,
+            OutcomeCode::NotVisible,
             "The table is between you and that place. Choose one in the open.",
         ),
     ];
@@ -202,9 +202,9 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
         assert!(!told.success, "{z}");
         assert!(
             [
-                ActionCode::NotVisible,
-                ActionCode::NoSupport,
-                ActionCode::NoSpace
+                OutcomeCode::NotVisible,
+                OutcomeCode::NoSupport,
+                OutcomeCode::NoSpace
             ]
             .contains(&told.code),
             "{:?}",
@@ -222,7 +222,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     assert_eq!(
         (told.code, told.sentence.as_str(), told.object),
         (
-            ActionCode::Done,
+            OutcomeCode::Done,
             "You put the thing on the table.",
             Some(on.table)
         )
@@ -236,7 +236,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
-            ActionCode::NoSpace,
+            OutcomeCode::NoSpace,
             "You see no free surface for the thing within your reach. Turn towards one."
         )
     );

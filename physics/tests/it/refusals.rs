@@ -1,13 +1,13 @@
 //! Every code that an action can end with comes about somewhere, with its sentence.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, ActionCode, ActionOutcome, Target};
+use dwell_physics::{Action, ActionOutcome, OutcomeCode, Target};
 use dwell_scene::{AgentId, EntityId, Mobility, ObjectId};
 use glam::Vec3;
 use std::collections::BTreeSet;
 
 /// What was told, and what it must say.
-struct Case(ActionOutcome, ActionCode, &'static str);
+struct Case(ActionOutcome, OutcomeCode, &'static str);
 
 /// A room with an agent at (3, 0, 3) that looks towards -Z.
 struct Scene {
@@ -25,7 +25,7 @@ impl Scene {
         Self { run, agent, cases }
     }
 
-    fn tell(&mut self, action: Action, code: ActionCode, sentence: &'static str) {
+    fn tell(&mut self, action: Action, code: OutcomeCode, sentence: &'static str) {
         let told = self.run.act(self.agent, action);
         self.cases.push(Case(told, code, sentence));
     }
@@ -65,7 +65,7 @@ fn put_in(container: ObjectId) -> Action {
 
 /// Wrong targets, numbers and hands.
 fn of_targets_and_hands() -> Vec<Case> {
-    use ActionCode as C;
+    use OutcomeCode as C;
     let mut build = room();
     let table = build.fixed(
         "table",
@@ -279,7 +279,7 @@ fn of_walls() -> Vec<Case> {
 
 /// Doors, drawers and what is put into them.
 fn of_doors_and_drawers() -> Vec<Case> {
-    use ActionCode as C;
+    use OutcomeCode as C;
     let mut build = room();
     let (chest, joint) = build.chest(Vec3::new(3.0, 0.5, 2.0));
     let thing = build.movable("thing", cube(0.04, [2.4, 0.04, 2.7]));
@@ -343,7 +343,7 @@ fn of_doors_and_drawers() -> Vec<Case> {
 
 /// A drawer that a block fills, and a door that a chest blocks.
 fn of_what_is_in_the_way() -> Vec<Case> {
-    use ActionCode as C;
+    use OutcomeCode as C;
     let mut build = room();
     let (chest, drawer) = build.chest(Vec3::new(3.0, 0.5, 2.0));
     build.data.joints[drawer].initial = 0.34;
@@ -390,7 +390,7 @@ fn of_what_is_in_the_way() -> Vec<Case> {
 
 /// Returns what somebody stands on stays; what is caught slips from the hand.
 fn of_feet_and_slips() -> Vec<Case> {
-    use ActionCode as C;
+    use OutcomeCode as C;
     let mut build = room();
     let plank = build.object(
         "plank",
@@ -457,13 +457,13 @@ fn every_code_comes_about_and_says_what_to_do() {
             "{code:?}: {}",
             told.sentence
         );
-        let works = matches!(code, ActionCode::Done | ActionCode::Started);
+        let works = matches!(code, OutcomeCode::Done | OutcomeCode::Started);
         assert_eq!(told.success, works, "{code:?}: {}", told.sentence);
         seen.insert(code);
     }
     // No scene is known in which the solver loses something; `src/lost.rs` makes it do so.
-    seen.insert(ActionCode::Lost);
-    let missing: Vec<_> = ActionCode::ALL
+    seen.insert(OutcomeCode::Lost);
+    let missing: Vec<_> = OutcomeCode::ALL
         .iter()
         .filter(|code| !seen.contains(code))
         .collect();

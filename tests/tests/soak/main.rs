@@ -18,7 +18,7 @@ mod memory;
 use checks::{check, largest_snapshot, places};
 use dwell::{Engines, RoomViewpoint, World, WorldConfig, viewpoints};
 use dwell_houses::with_robot;
-use dwell_physics::{ActionCode, AgentControl};
+use dwell_physics::{AgentControl, OutcomeCode};
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{
     Address, AgentBody, AgentId, DifferentialDrive, House, Id, Locomotion, Parameter, Pose,
@@ -200,7 +200,7 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         play.step();
         check(&play.world, &before, k);
         for lost in play.world.notices() {
-            if lost.outcome.code == ActionCode::Lost {
+            if lost.outcome.code == OutcomeCode::Lost {
                 println!(
                     "  control step {k}: {} Before: {:?}",
                     lost.outcome.sentence, play.lately

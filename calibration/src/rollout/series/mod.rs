@@ -10,7 +10,7 @@ pub use model::{ModelParameter, ModelledSubject, SimulationModel};
 pub use score::{EpisodeError, KindErrors, ModelGain};
 
 use super::refine::sentence as told;
-use super::residuals::{self, Residuals};
+use super::residuals::{self, ResidualGroups};
 use super::study::folds;
 use super::{FINER, Refinement, WindowEnd, WindowOptions, WindowScore, ends, refinements, windows};
 use crate::error::CalibrationError;
@@ -91,7 +91,7 @@ pub struct SeriesReport {
     /// The models, as they were given.
     pub models: Vec<ModelOutcome>,
     /// How residuals spread.
-    pub residuals: Vec<Residuals>,
+    pub residuals: Vec<ResidualGroups>,
     /// Which residuals are the solver's, a sentence for each model.
     pub solver: Vec<String>,
     /// The best model with the median of what its folds chose, for the simulator.

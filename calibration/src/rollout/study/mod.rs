@@ -11,10 +11,10 @@ mod write;
 
 pub(super) use folds::folds;
 pub use model::{ContactModel, ContactParameter, all as models, trials};
-pub use other_simulator::{OtherSimulator, PairedDifference, SimulatorComparison};
+pub use other_simulator::{OtherSimulator, SimulatorComparison, SimulatorScoreDifference};
 
 use super::refine::sentence as told;
-use super::residuals::{self, Residuals};
+use super::residuals::{self, ResidualGroups};
 use super::{
     BoardRig, FINER, PoseTracks, Refinement, RolloutSubject as _, Score, ScoreSummary,
     TrackerNoise, WindowEnd, WindowOptions, WindowScore, diverging, ends, refinements, scores,
@@ -124,7 +124,7 @@ pub struct StudyReport {
     /// The models, in the order of [`models`].
     pub models: Vec<ModelReport>,
     /// How residuals of the first models spread.
-    pub residuals: Vec<Residuals>,
+    pub residuals: Vec<ResidualGroups>,
     /// The best model with the median of what its folds chose, for the simulator.
     pub found: FoundEffects,
 }

@@ -65,7 +65,7 @@ impl OtherSimulator {
 
 /// One quantity, episode by episode: ours minus theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PairedDifference {
+pub struct SimulatorScoreDifference {
     /// The share of episodes in which ours is smaller.
     pub better_share: f64,
     /// The median difference; below 0: ours is smaller.
@@ -82,11 +82,11 @@ pub struct SimulatorComparison {
     /// Its own figures on the shared episodes.
     pub summary: ScoreSummary,
     /// Distance, as a share of the body's width.
-    pub position_widths: PairedDifference,
+    pub position_widths: SimulatorScoreDifference,
     /// Angle, degrees.
-    pub rotation_deg: PairedDifference,
+    pub rotation_deg: SimulatorScoreDifference,
     /// The published loss.
-    pub e_q: PairedDifference,
+    pub e_q: SimulatorScoreDifference,
 }
 
 /// Compares the scores of all episodes with a peer's.
@@ -127,7 +127,7 @@ pub(super) fn compare(
         medians.sort_by(f64::total_cmp);
         let at = |share: f64| medians[(share * (medians.len() - 1) as f64).round() as usize];
         let better = differences.iter().filter(|d| **d < 0.0).count();
-        PairedDifference {
+        SimulatorScoreDifference {
             better_share: better as f64 / differences.len() as f64,
             median_difference: median(&mut differences.clone()),
             interval: [at(0.025), at(0.975)],

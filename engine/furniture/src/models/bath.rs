@@ -1,6 +1,6 @@
 //! Washbasin, bathtub, shower screen.
 
-use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
 use crate::finishes::{chrome, glass, lacquer, oak, sanitary};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{SolidMesh, block, cylinder, extrude, rod, tube};
@@ -13,12 +13,12 @@ pub const TUB_RIM_M: f32 = 0.57;
 
 /// A washbasin on a cabinet with two doors; its tap stands at the middle of the back.
 pub fn washbasin(width_m: f32) -> Model {
-    let look = FrontPanel::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
+    let look = FrontStyle::plain(oak(), lacquer("black_lacquer", [38, 38, 40]));
     washbasin_with(width_m, &look)
 }
 
 /// The same with a cabinet of another look.
-pub fn washbasin_with(width_m: f32, look: &FrontPanel) -> Model {
+pub fn washbasin_with(width_m: f32, look: &FrontStyle) -> Model {
     let (x, z) = (0.5 * width_m, 0.23);
     let white = sanitary();
     let (rim, low, t) = (BASIN_RIM_M, 0.74, 0.03);

@@ -1,6 +1,6 @@
 //! Bookshelves, wall shelves, and what stands in them.
 
-use super::cabinet::Carcass;
+use super::cabinet_parts::Carcass;
 use crate::finishes::{Finish, oak, pages};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, panel};

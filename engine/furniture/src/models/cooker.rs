@@ -1,6 +1,6 @@
 //! A cooker with an oven, and the hood above it.
 
-use super::cabinet::level_handle;
+use super::cabinet_parts::level_handle;
 use super::kitchen_unit::{UNIT_DEPTH_M, WORKTOP_M};
 use crate::finishes::{Finish, black, enamel, steel};
 use crate::model::{Model, PartBuilder};

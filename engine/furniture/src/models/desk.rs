@@ -1,6 +1,6 @@
 //! A desk with drawers on one side.
 
-use super::cabinet::{Carcass, FrontPanel, GAP_M, drawer, drawer_space};
+use super::cabinet_parts::{Carcass, FrontStyle, GAP_M, drawer, drawer_space};
 use crate::finishes::{Finish, black, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
@@ -20,7 +20,7 @@ pub struct Desk {
     /// What the carcass is made of.
     pub body: Finish,
     /// What doors and drawers look like.
-    pub front: FrontPanel,
+    pub front: FrontStyle,
 }
 
 impl Default for Desk {
@@ -31,7 +31,7 @@ impl Default for Desk {
             height_m: 0.74,
             top: oak(),
             body: white_lacquer(),
-            front: FrontPanel::plain(white_lacquer(), black()),
+            front: FrontStyle::plain(white_lacquer(), black()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A chest of drawers.
 
-use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, drawer, drawer_space};
+use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, drawer, drawer_space};
 use crate::finishes::{Finish, brass, walnut};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block, tapered_leg};
@@ -20,7 +20,7 @@ pub struct Dresser {
     /// What the body is made of.
     pub wood: Finish,
     /// What doors and drawers look like.
-    pub front: FrontPanel,
+    pub front: FrontStyle,
 }
 
 impl Default for Dresser {
@@ -31,7 +31,7 @@ impl Default for Dresser {
             depth_m: 0.45,
             rows: 3,
             wood: walnut(),
-            front: FrontPanel::plain(walnut(), brass()),
+            front: FrontStyle::plain(walnut(), brass()),
         }
     }
 }

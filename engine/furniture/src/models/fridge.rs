@@ -1,6 +1,6 @@
 //! A refrigerator with a freezer below.
 
-use super::cabinet::upright_handle;
+use super::cabinet_parts::upright_handle;
 use crate::finishes::{enamel, glass, steel};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{SolidMesh, block, rounded_block};

@@ -1,6 +1,6 @@
 //! Fitted kitchens: base units with worktop and sink, and cabinets on the wall.
 
-use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, TOP, door, drawer, drawer_space};
+use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, TOP, door, drawer, drawer_space};
 use crate::finishes::{Finish, black, granite, lacquer, steel};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{SolidMesh, block};
@@ -30,7 +30,7 @@ pub struct KitchenUnit {
     /// From left to right as one stands before it, at most four.
     pub bays: Vec<UnitKind>,
     /// What doors and drawers look like.
-    pub front: FrontPanel,
+    pub front: FrontStyle,
     /// What the worktop is made of.
     pub worktop: Finish,
 }
@@ -41,7 +41,7 @@ impl Default for KitchenUnit {
         Self {
             bay_m: 0.6,
             bays: vec![UnitKind::Drawers, UnitKind::Sink, UnitKind::Door],
-            front: FrontPanel::plain(front, steel()),
+            front: FrontStyle::plain(front, steel()),
             worktop: granite(),
         }
     }
@@ -185,7 +185,7 @@ const SHELVES: [[&str; 2]; 4] = [
 ];
 
 /// Cabinets on the wall: `doors` doors of `door_m` width; y = 0 is their lower edge.
-pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontPanel) -> Model {
+pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontStyle) -> Model {
     const DEPTH_M: f32 = 0.34;
     let count = doors.clamp(1, DOORS.len());
     let x = 0.5 * door_m * count as f32;
@@ -224,7 +224,7 @@ pub fn wall_cabinet(doors: usize, door_m: f32, height_m: f32, front: &FrontPanel
             )
             .with(
                 &look.handle,
-                super::cabinet::upright_handle(
+                super::cabinet_parts::upright_handle(
                     if hinge_left { b - 0.04 } else { a + 0.04 },
                     0.05,
                     0.15,

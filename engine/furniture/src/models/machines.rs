@@ -1,7 +1,7 @@
 //! Larger machines: dishwasher, dryer, water cooler, air conditioner, fans, vacuum cleaner, treadmill.
 
 use super::appliances::{drum_case, drum_space};
-use super::cabinet::level_handle;
+use super::cabinet_parts::level_handle;
 use crate::finishes::{Finish, black, chrome, enamel, plastic, steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;

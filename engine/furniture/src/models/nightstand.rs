@@ -1,6 +1,6 @@
 //! A bedside table with a drawer.
 
-use super::cabinet::{Carcass, FrontPanel, drawer, drawer_space};
+use super::cabinet_parts::{Carcass, FrontStyle, drawer, drawer_space};
 use crate::finishes::{Finish, brass};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::tapered_leg;
@@ -8,12 +8,12 @@ use glam::Vec3;
 
 /// A small cupboard on legs: an open shelf below a drawer.
 pub fn nightstand(width_m: f32, height_m: f32, wood: &Finish) -> Model {
-    let front = FrontPanel::plain(wood.clone(), brass());
+    let front = FrontStyle::plain(wood.clone(), brass());
     nightstand_with(width_m, height_m, wood, &front)
 }
 
 /// The same with a front of another look.
-pub fn nightstand_with(width_m: f32, height_m: f32, wood: &Finish, front: &FrontPanel) -> Model {
+pub fn nightstand_with(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) -> Model {
     const DEPTH_M: f32 = 0.38;
     const SHARE: f32 = 0.52;
     let carcass = Carcass::standing(width_m, 0.14, height_m, DEPTH_M);

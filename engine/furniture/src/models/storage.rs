@@ -1,6 +1,6 @@
 //! Cupboards for shoes, provisions and valuables, racks, chests with lids.
 
-use super::cabinet::{BOARD_M, Carcass, GAP_M, door, level_handle};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door, level_handle};
 use crate::finishes::{black, brass, chrome, grey_board, painted_steel};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;

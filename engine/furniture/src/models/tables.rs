@@ -1,6 +1,6 @@
 //! Tables of other builds, the dressing table, the home bar.
 
-use super::cabinet::{BOARD_M, Carcass, GAP_M, drawer, drawer_space};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, drawer, drawer_space};
 use super::table::Table;
 use crate::finishes::{Finish, brass, glass, mirror};
 use crate::model::{Model, PartBuilder};

@@ -1,6 +1,6 @@
 //! A low cabinet for a television.
 
-use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
 use crate::finishes::{Finish, black, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
@@ -22,7 +22,7 @@ pub struct Lowboard {
     /// What the body is made of.
     pub wood: Finish,
     /// What doors and drawers look like.
-    pub front: FrontPanel,
+    pub front: FrontStyle,
 }
 
 impl Default for Lowboard {
@@ -34,7 +34,7 @@ impl Default for Lowboard {
             height_m: 0.46,
             depth_m: 0.42,
             wood: oak(),
-            front: FrontPanel::plain(white_lacquer(), black()),
+            front: FrontStyle::plain(white_lacquer(), black()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A wardrobe with hinged doors.
 
-use super::cabinet::{BOARD_M, Carcass, FrontPanel, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
 use crate::finishes::{Finish, black, chrome, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rod};
@@ -20,7 +20,7 @@ pub struct Wardrobe {
     /// What the carcass is made of.
     pub body: Finish,
     /// What doors and drawers look like.
-    pub front: FrontPanel,
+    pub front: FrontStyle,
 }
 
 impl Default for Wardrobe {
@@ -31,7 +31,7 @@ impl Default for Wardrobe {
             depth_m: 0.58,
             doors: 3,
             body: white_lacquer(),
-            front: FrontPanel::plain(oak(), black()),
+            front: FrontStyle::plain(oak(), black()),
         }
     }
 }

@@ -4,7 +4,7 @@ mod held_out;
 mod train;
 
 use super::finishes::Finish;
-use super::models::cabinet::FrontPanel;
+use super::models::cabinet_parts::FrontStyle;
 use super::shapes::{SolidMesh, rod, surface_of_revolution, tapered_leg};
 use super::textures::Srgb;
 use dwell_scene::random::RandomStream;
@@ -143,17 +143,17 @@ impl Style {
     }
 
     /// Returns how doors and drawers of furniture look.
-    pub fn doors(&self) -> FrontPanel {
+    pub fn doors(&self) -> FrontStyle {
         self.fronts(&self.front)
     }
 
     /// Returns how doors and drawers of the kitchen look.
-    pub fn kitchen_doors(&self) -> FrontPanel {
+    pub fn kitchen_doors(&self) -> FrontStyle {
         self.fronts(&self.kitchen_front)
     }
 
-    fn fronts(&self, board: &Finish) -> FrontPanel {
-        FrontPanel {
+    fn fronts(&self, board: &Finish) -> FrontStyle {
+        FrontStyle {
             board: board.clone(),
             handle: self.metal.clone(),
             knobs: self.knobs,

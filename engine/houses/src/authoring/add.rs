@@ -23,7 +23,7 @@ use super::{describe, fixtures, mesh_file, place, surfaces};
 use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
 use crate::import::{CategoryRow, category, convex_pieces};
-use crate::spelling::nearest;
+use crate::name_suggestions::nearest;
 
 /// Longest edge and volume of what a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);

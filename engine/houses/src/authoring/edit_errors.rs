@@ -5,7 +5,7 @@ use std::fmt::Display;
 use dwell_scene::material::{Substance, library};
 
 use crate::error::HousesError;
-use crate::spelling::nearest;
+use crate::name_suggestions::nearest;
 
 /// Names that are offered in place of an unknown one.
 pub(super) const OFFERED: usize = 6;

@@ -5,7 +5,7 @@
 use dwell_scene::interrupt;
 use roxmltree::Node;
 
-use super::numbers;
+use super::finite_check;
 use crate::data_root::folder_of;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
@@ -67,7 +67,7 @@ impl IncludeResolver<'_> {
             if elements % 4096 == 0 {
                 interrupt::check();
             }
-            numbers::check(node, &at)?;
+            finite_check::check(node, &at)?;
             match node.tag_name().name() {
                 "include" => elements = elements.saturating_add(self.named(node, name)?),
                 // Models of `<asset>` are copied by each `<attach>`.

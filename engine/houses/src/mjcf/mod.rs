@@ -4,10 +4,10 @@
 //! include are checked first, so that none lies out of the data root.
 
 mod actuators;
+mod finite_check;
 mod geoms;
 mod house;
 mod includes;
-mod numbers;
 mod read;
 
 use std::io::Read as _;

@@ -16,7 +16,7 @@ use crate::color::SrgbTables;
 use crate::texture::{BilinearTaps, MipImage, level_of};
 use crate::texture_filter::GRAZING;
 use crate::triangle_table::{PosedTriangle, SLOW, coordinate};
-use dwell_scene::simd::{SimdKernel, SimdLevel};
+use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
 /// Fewer pixels than this are quicker one by one.

@@ -10,7 +10,7 @@ use super::kernels::{HitFilter, tree_packet};
 use super::packet::{PacketHits, RayPacket};
 use super::ray::{Hit, Ray, RayMask};
 use super::triangles::TriangleBvh;
-use crate::simd::SimdLevel;
+use crate::simd_dispatch::SimdLevel;
 
 /// A world as rays see it; a pair of references, free to make and copy.
 ///

@@ -7,7 +7,7 @@ mod physics;
 mod render;
 mod table;
 
-pub use physics::{BenchBox, BenchBoxes};
+pub use physics::{BenchBoxes, BoxBody};
 
 use crate::engines::Engines;
 use crate::error::WorldError;

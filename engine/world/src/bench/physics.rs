@@ -28,9 +28,9 @@ const STEPS_PER_CONTROL: usize = 5;
 #[serde(deny_unknown_fields)]
 pub struct BenchBoxes {
     /// Those that stand.
-    pub fixed: Vec<BenchBox>,
+    pub fixed: Vec<BoxBody>,
     /// Those that move.
-    pub dynamic: Vec<BenchBox>,
+    pub dynamic: Vec<BoxBody>,
     /// Of those that move, kg/m³.
     pub density_kg_m3: f32,
     /// Physics steps per second; a whole multiple of 5.
@@ -40,7 +40,7 @@ pub struct BenchBoxes {
 /// An upright box.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct BenchBox {
+pub struct BoxBody {
     /// m.
     pub center: [f32; 3],
     /// Half of each edge, m.

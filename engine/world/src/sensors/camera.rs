@@ -1,7 +1,7 @@
 //! The settings that all camera sensors share. Sensors with equal settings share one picture.
 
+use crate::camera_capture::{CameraMount, PictureRequest};
 use crate::error::WorldError;
-use crate::picture::{CameraMount, PictureRequest};
 use dwell_render::{Camera, Preset, Projection};
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, Pose, State, math};

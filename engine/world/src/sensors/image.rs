@@ -2,8 +2,8 @@
 
 use super::camera::{CameraConfig, EyeCamera};
 use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
+use crate::camera_capture::PictureRequest;
 use crate::error::WorldError;
-use crate::picture::PictureRequest;
 use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};

@@ -1,11 +1,11 @@
-//! Packets on several instruction levels; see [`crate::simd`].
+//! Packets on several instruction levels; see [`crate::simd_dispatch`].
 
 use super::super::packet::RayPacket;
 use super::super::scene::SceneBvh;
 use super::HitFilter;
 use super::scene_packet::{closest, occluded};
 use super::tree_packet::PacketClosestHits;
-use crate::simd::SimdKernel;
+use crate::simd_dispatch::SimdKernel;
 
 /// Offers all hits that may matter to the answers.
 pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
     use crate::bvh::{Instance, InstanceSet, PacketHits, RayMask, TriangleBvh, TriangleTag};
     use crate::random::{RandomKey, RandomStream};
-    use crate::simd::SimdLevel;
+    use crate::simd_dispatch::SimdLevel;
     use glam::{Affine3A, Quat, Vec3};
     use std::sync::Arc;
 

@@ -8,7 +8,7 @@ use super::closest_hit::{ClosestHit, HitIndex, TieBreak};
 use super::slab::least;
 use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, meet, traverse};
 use crate::bounds::Aabb;
-use crate::simd::SimdKernel;
+use crate::simd_dispatch::SimdKernel;
 
 /// Hands the hits of a ray to `hits`, in no particular order, until one is enough. What comes of it: whether one was.
 pub(in super::super) struct SceneRayQuery<'a, 'b, H> {

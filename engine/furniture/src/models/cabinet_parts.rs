@@ -92,7 +92,7 @@ impl Carcass {
 
 /// How a front is opened.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FrontPanel {
+pub struct FrontStyle {
     /// The board's finish.
     pub board: Finish,
     /// The handle's finish.
@@ -103,7 +103,7 @@ pub struct FrontPanel {
     pub panelled: bool,
 }
 
-impl FrontPanel {
+impl FrontStyle {
     /// A plain board with a bar to pull.
     pub fn plain(board: Finish, handle: Finish) -> Self {
         Self {
@@ -150,7 +150,7 @@ pub fn door(
     high: [f32; 2],
     z: f32,
     handle_right: bool,
-    front: &FrontPanel,
+    front: &FrontStyle,
 ) -> PartBuilder {
     let leaf = block([low[0], low[1], z], [high[0], high[1], z + BOARD_M]);
     let x = if handle_right {
@@ -217,7 +217,7 @@ pub fn drawer(
     high: [f32; 2],
     z: f32,
     depth_m: f32,
-    front: &FrontPanel,
+    front: &FrontStyle,
 ) -> PartBuilder {
     let (x0, x1) = (low[0] + 0.025, high[0] - 0.025);
     let (y0, y1) = (low[1] + 0.02, high[1] - 0.03);

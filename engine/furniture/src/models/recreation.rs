@@ -1,6 +1,6 @@
 //! A pool table, an aquarium on its cupboard.
 
-use super::cabinet::{BOARD_M, Carcass, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use crate::finishes::{Finish, glass};
 use crate::model::{Model, PartBuilder};
 use crate::sampling::SizeSampler;
