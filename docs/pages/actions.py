@@ -74,7 +74,7 @@ def _limits(base: str) -> list[tuple[str, ...]]:
 def page() -> str:
     """The page."""
     space = action_space()
-    stride = settings_table(_ACTION, "Stride")
+    stride = settings_table(_ACTION, "StepSizes")
     head = ("address", "default", "unit", "lowest", "highest")
     bases = "\n".join(f"### {_words(base)}\n\n{table(head, _limits(base))}" for base in _BASES)
     return f"""# Actions

@@ -34,15 +34,15 @@ Without `sensors`; [all that can be asked for](observations.md).
 {observation_table(specifications(sensors, name))}
 ### Settings of {name}
 
-{_settings(file)}"""
+{_settings(file, f"{name}Settings")}"""
 
 
-def _settings(file: str) -> str:
-    if "struct Settings {}" in text(file):
+def _settings(file: str, struct: str) -> str:
+    if f"struct {struct} {{}}" in text(file):
         return "There are none.\n"
     return f"""`task_settings` is a mapping with these fields.
 
-{settings_table(file, "Settings")}"""
+{settings_table(file, struct)}"""
 
 
 def page() -> str:

@@ -86,7 +86,7 @@ class House:
         """The houses that a HOUSE string stands for where several are taken.
 
         ``seed:3..5?home=studio`` is ``seed:3?home=studio`` and ``seed:4?home=studio``; any other
-        string is itself. :class:`dwell.house_names.HouseList` holds longer ranges.
+        string is itself. :class:`dwell.house_list.HouseList` holds longer ranges.
 
         Raises:
             HouseError: The range is empty or none of whole numbers.

@@ -14,8 +14,8 @@ from dwell import ConfigError, _native
 class HouseList(Sequence[str]):
     """HOUSE strings in order; ``seed:A..B`` stands for its houses and takes no memory for them.
 
-    >>> from dwell.house_names import HouseNames
-    >>> names = HouseNames(["builtin:studio", "seed:0..1000000000?home=studio"])
+    >>> from dwell.house_list import HouseList
+    >>> names = HouseList(["builtin:studio", "seed:0..1000000000?home=studio"])
     >>> len(names), names[1000000000], names.index("seed:7?home=studio")
     (1000000001, 'seed:999999999?home=studio', 8)
     """

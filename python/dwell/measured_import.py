@@ -17,7 +17,7 @@ from typing import Any
 
 from dwell import csv_values
 from dwell.arguments import finite
-from dwell.files import open_file, read_json
+from dwell.files import make_folder, open_file, read_json
 
 CsvRow = dict[str, Any]
 
@@ -133,8 +133,12 @@ def import_files(
     if out.exists():
         raise FileExistsError(f"{out}: is there already; remove it or choose another name")
     mapping = read_map(map_file)
-    tables = {path.name: path for path in files}
-    out.parent.mkdir(parents=True, exist_ok=True)
+    tables: dict[str, Path] = {}
+    for path in files:
+        other = tables.setdefault(path.name, path)
+        if other is not path:
+            raise ValueError(f"{path}: has the name of {other}, and maps name tables; rename one")
+    make_folder(out.parent)
     part = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
     try:
         counts = WRITERS[mapping["kind"]](mapping, str(map_file), tables, part, progress)
@@ -478,6 +482,9 @@ def flight_bundle(
         )
     table = MeasuredTable(part, tables, here)
     channels = require_columns(part, "channels", here)
+    for channel, column in channels.items():
+        if not isinstance(column, str):
+            raise ValueError(f"{here}: channels.{channel} is {column!r:.60}; text is needed")
     episode, clock = require_columns(part, "episode", here), require_columns(part, "t_s", here)
     group = part.get("split_group") or episode
     table.has([episode, group, clock, *channels.values()])

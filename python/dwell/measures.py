@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import choice, finite
+from dwell.arguments import choice, finite, numbers
 
 #: How wide bands are: eight octaves from 62.5 Hz, or 24 third octaves from 50 Hz (IEC 61260-1).
 Bands = Literal["octave", "third_octave"]
@@ -68,7 +68,7 @@ def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> d
     Raises:
         ConfigError: There are not two rows of finite numbers, or the rate is out of range.
     """
-    rows = np.asarray(ears)
+    rows = numbers("ears", ears, np.float64)
     if rows.ndim != 2 or rows.shape[0] != 2:
         raise ConfigError(f"ears: expected shape (2, samples), found {rows.shape}")
     left, right = _channel("ears[0]", rows[0]), _channel("ears[1]", rows[1])

@@ -181,6 +181,14 @@ def test_points_may_be_negative_and_must_be_finite(tmp_path: Path) -> None:
         assert "finite" in done.stderr
 
 
+def test_a_sound_has_the_name_of_one(tmp_path: Path) -> None:
+    points = ("--source", "-2,1.5,6", "--mic", "-1.5,1.5,-6.5")
+    done = dwell("ir", HOUSE, *points, "--rays", "10", "--out", tmp_path / "x.mp3")
+    assert done.returncode == 1
+    assert "expected the name of a .wav file" in done.stderr
+    assert not list(tmp_path.iterdir())
+
+
 def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
     path = tmp_path / "house.json"
     for text in ('{"position": 1}', "[1]", '[{"position": [0, 0], "forward": [0, 0, 1]}]', "{"):

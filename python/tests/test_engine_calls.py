@@ -38,13 +38,13 @@ def test_a_panic_is_an_exception_with_its_place_and_nothing_is_printed(
     capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.DEBUG, "dwell")
-    with pytest.raises(dwell.EngineBug, match=r"a pool's, on purpose \(.*bugs\.rs:\d+") as caught:
+    with pytest.raises(dwell.EngineBug, match=r"a pool's, on purpose \(.*panics\.rs:\d+") as caught:
         _native.panic_for_tests()
     assert isinstance(caught.value, RuntimeError)
     assert isinstance(caught.value, dwell.DwellError)
     assert capfd.readouterr() == ("", "")
     (record,) = caplog.records
-    assert (record.name, record.levelno) == ("dwell.python.bugs", logging.DEBUG)
+    assert (record.name, record.levelno) == ("dwell.python.panics", logging.DEBUG)
     assert "a pool's, on purpose" in record.getMessage()
     # The pool goes on.
     assert dwell.World("builtin:studio").render(agent=0)["rgb"].shape == (128, 128, 3)

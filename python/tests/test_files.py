@@ -315,8 +315,8 @@ def test_drafts_of_killed_processes_are_removed(tmp_path: Path) -> None:
 #: Writes half a file and waits to be killed.
 HALF = """
 import sys
-from dwell.files import atomic
-with atomic(sys.argv[1]) as draft:
+from dwell.files import atomic_write
+with atomic_write(sys.argv[1]) as draft:
     draft.write_text("half")
     print("ready", flush=True)
     sys.stdin.read()

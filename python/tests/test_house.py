@@ -120,3 +120,27 @@ def test_a_shoebox_is_of_a_substance_or_absorbs_as_told() -> None:
     # What the documentation says of the default: parquet below, plaster around.
     plain = dwell.AcousticScene(dwell.House.shoebox(size)).explain()
     assert {"parquet", "plaster"} <= {word for word in re.findall(r"\w+", str(plain))}
+
+
+TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [TRIANGLE, "\ufeff" + TRIANGLE, TRIANGLE.replace("\n", "\r"), TRIANGLE.replace("\n", "\r\n")],
+)
+def test_lines_of_obj_files_end_and_begin_as_editors_have_them(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "a.obj"
+    path.write_bytes(text.encode())
+    house = dwell.House.open(str(path))
+    assert house.info()["triangles"] == 2
+    assert not house.report
+
+
+def test_a_house_that_could_not_be_read_again_is_not_written(tmp_path: Path) -> None:
+    edits = dwell.House.open("builtin:studio").edit()
+    for k in range(2):
+        edits.add("mug", at=(2.0, 0.0, 2.0), name=f"{k}" + "x" * 2**25)
+    with pytest.raises(dwell.HouseError, match="at most 67108864 are read again"):
+        edits.done().write(str(tmp_path / "a.dwell"), "dwell")
+    assert not list(tmp_path.iterdir())

@@ -134,6 +134,28 @@ def test_hdf5_holds_responses_by_source_and_receiver(tmp_path: Path, studio: dwe
         assert first > distance / 343.2 - 0.003
 
 
+@pytest.mark.parametrize("options", [("--grid", "0"), ("--grid", "2", "--sources", "0")])
+def test_numbers_of_a_grid_are_refused_by_the_name_of_the_option(
+    options: tuple[str, ...], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["ir", HOUSE, *options, "--out", str(tmp_path / "out")]) == 1
+    assert f"{options[-2]} is " in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_two_processes_do_not_write_one_file(tmp_path: Path) -> None:
+    path = tmp_path / "a.h5"
+    with (
+        ir_grid._alone(path),
+        pytest.raises(ValueError, match="is being written by another process"),
+        ir_grid._alone(path),
+    ):
+        pass
+    with ir_grid._alone(path):
+        pass
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_stopped_run_goes_on_and_gives_the_same_data(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

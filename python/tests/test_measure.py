@@ -189,3 +189,30 @@ def test_real_sets_are_imported_whole(tmp_path: Path, name: str, episodes: int |
     assert counts["episodes"] == _native.check_measured(str(out))
     if episodes is not None:
         assert counts["episodes"] == episodes
+
+
+def test_two_tables_of_one_name_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    first, second = tmp_path / "x.csv", tmp_path / "sub" / "x.csv"
+    for path in (first, second):
+        path.write_text("t\n0\n")
+    told = refused(first, second, tmp_path=tmp_path, mapping={"kind": "trajectory"})
+    assert f"{second}: has the name of {first}" in told
+
+
+def test_a_channel_is_named_by_text(tmp_path: Path) -> None:
+    table = tmp_path / "x.csv"
+    table.write_text("t,e\n0,1\n")
+    part = {"file": "x.csv", "episode": "e", "t_s": "t", "channels": {"y": 5}}
+    mapping = {"kind": "trajectory", "title": "t", "licence": "l", "table": part}
+    told = refused(table, tmp_path=tmp_path, mapping=mapping)
+    assert "channels.y is 5; text is needed" in told
+
+
+def refused(*tables: Path, tmp_path: Path, mapping: dict[str, object]) -> str:
+    """What an import of tables is refused with."""
+    path = tmp_path / "map.json"
+    path.write_text(json.dumps(mapping))
+    with pytest.raises(ValueError, match=r".") as caught:
+        import_files([*tables], path, tmp_path / "o.measured", lambda *_: None)
+    return str(caught.value)

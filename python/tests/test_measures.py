@@ -54,6 +54,8 @@ def test_what_is_no_response_is_refused() -> None:
         measures.of_response(np.zeros(4), 16_000, bands="half")  # type: ignore[arg-type]
     with pytest.raises(dwell.ConfigError, match=r"\(2, samples\)"):
         measures.of_ears(np.zeros((3, 4)), 16_000)
+    with pytest.raises(dwell.ConfigError, match="ears: expected real numbers"):
+        measures.of_ears([np.zeros(10), np.zeros(11)], 16_000)  # type: ignore[arg-type]
     silent = measures.of_response(np.zeros(100), 16_000)
     assert all(value is None for row in silent for key, value in row.items() if key != "centre_hz")
 

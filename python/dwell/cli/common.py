@@ -68,6 +68,16 @@ def path(text: str) -> Path:
     return Path(text)
 
 
+def refuse_other_suffix(out: Path | None, suffix: str) -> None:
+    """Refuses a file that by its name would be of another format than what is written.
+
+    Raises:
+        ValueError: Its suffix is another.
+    """
+    if out is not None and out.suffix.lower() != suffix:
+        raise ValueError(f"--out is {os.fspath(out)!r}; expected the name of a {suffix} file")
+
+
 def add_back_end(parser: argparse.ArgumentParser) -> None:
     """Adds ``--backend`` and ``--path``; see :func:`back_end`."""
     parser.add_argument(

@@ -179,7 +179,7 @@ def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
     """The rows of a manifest."""
     with open_file(manifest) as file:
         for number, line in enumerate(lines(file, manifest), start=1):
-            row = parse_json(line, str(manifest))
+            row = parse_json(line, f"{manifest} line {number}")
             if not isinstance(row, dict):
                 raise ValueError(f"{manifest} line {number}: expected an object, found {row!r:.60}")
             yield row

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
-from dwell.cli.common import print_json
+from dwell.cli.common import path, print_json
 from dwell.files import atomic_write
 
 _MOST_WARNINGS = 20
@@ -19,7 +19,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
     parser.add_argument("--map", metavar="FILE", help="what foreign names of the house mean")
     parser.add_argument(
-        "--init-map", metavar="FILE", help="write a map with what stayed unmapped, to be filled in"
+        "--init-map",
+        type=path,
+        metavar="FILE",
+        help="write a map with what stayed unmapped, to be filled in",
     )
 
 
@@ -33,7 +36,7 @@ def run(args: argparse.Namespace) -> int:
         return 0
     house = House.open(args.house, map=args.map)
     if args.init_map is not None:
-        _write_new(Path(args.init_map), house.map_template())
+        _write_new(args.init_map, house.map_template())
     info = house.info()
     if args.json:
         print_json(info)

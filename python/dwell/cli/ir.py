@@ -7,7 +7,7 @@ import argparse
 import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
-from dwell.cli.common import count, number, path, point, print_json
+from dwell.cli.common import count, number, path, point, print_json, refuse_other_suffix
 from dwell.cli.write_files import add_bits, save_sound
 
 
@@ -74,6 +74,7 @@ def run(args: argparse.Namespace) -> int:
         return ir_picture.run(args)
     if args.source is None or args.mic is None:
         raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
+    refuse_other_suffix(args.out, ".wav")
     scene = AcousticScene(
         args.house,
         laws=args.laws,

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import re
 import shutil
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
 from dwell.cli.job_journal import claim, refuse_other
-from dwell.files import atomic_write, read, read_json
+from dwell.files import atomic_write, lock, read, read_json
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -57,6 +58,8 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError("--out is needed: the folder for the files")
     houses = House.expand(args.house)
     files = {house: args.out / (_slug(house) + _FORMATS[args.format]) for house in houses}
+    if not 0.1 <= args.grid <= 10.0:
+        raise ValueError(f"--grid is {args.grid:g}; allowed is 0.1 to 10 m")
     if len(set(files.values())) < len(files):
         raise ValueError("two houses would have one file; compute them into two folders")
     job = _job(args)
@@ -87,11 +90,28 @@ def run(args: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
+@contextlib.contextmanager
+def _alone(out: Path) -> Iterator[None]:
+    """Keeps other processes from the parts of a file.
+
+    Raises:
+        ValueError: Another process writes it.
+    """
+    path = out.with_name(f".{out.name}.lock")
+    with path.open("wb") as file:
+        if lock(file) is False:
+            raise ValueError(f"{out} is being written by another process; wait for its end")
+        try:
+            yield
+        finally:
+            path.unlink(missing_ok=True)
+
+
 def _job(args: argparse.Namespace) -> dict[str, Any]:
     """What the responses depend on, beside the house."""
     sources = args.sources or "1"
-    if args.source is None and not re.fullmatch(r"[0-9]{1,5}", sources):
-        raise ValueError(f"--sources is {sources!r}; of a grid it is how many")
+    if args.source is None and not re.fullmatch(r"[1-9][0-9]{0,3}|10000", sources):
+        raise ValueError(f"--sources is {sources!r}; of a grid it is how many, 1 to 10000")
     head = {} if args.head is None else {"head": args.head.id}
     return {
         **head,
@@ -130,42 +150,43 @@ def _house(
     parts = out.with_name(f".{out.name}.parts")
     # What cannot be was refused by now.
     claim(args.out, dataset)
-    _begin(parts, {**job, "house": name, "fingerprint": fingerprint, "dwell": __version__})
-    made, bar = 0, ProgressBar()
-    for k, source in enumerate(sources):
-        part = parts / f"{k}.npy"
-        if part.exists():
-            continue
+    with _alone(out):
+        _begin(parts, {**job, "house": name, "fingerprint": fingerprint, "dwell": __version__})
+        made, bar = 0, ProgressBar()
+        for k, source in enumerate(sources):
+            part = parts / f"{k}.npy"
+            if part.exists():
+                continue
 
-        def told(fraction: float, k: int = k) -> None:
-            bar((k + fraction) / len(sources), f"{name}: source {k + 1} of {len(sources)}")
+            def told(fraction: float, k: int = k) -> None:
+                bar((k + fraction) / len(sources), f"{name}: source {k + 1} of {len(sources)}")
 
-        found = _source(scene, source, receivers, args, told)
-        # What is there is whole: a file gets its name when it is written.
-        with atomic_write(part) as path, path.open("wb") as file:
-            np.save(file, found)
-        made += len(receivers)
-    radius = None if args.head is None else args.head.about
-    data = Dataset(
-        house=name,
-        fingerprint=fingerprint,
-        rate_hz=scene.rate_hz,
-        sources=sources,
-        receivers=receivers,
-        yaw_deg=args.yaw_deg,
-        parts=[parts / f"{k}.npy" for k in range(len(sources))],
-        head_radius_m=float(radius["radius_m"] if radius else scene.config["head_radius_m"]),
-        corners=np.array(scene.explain()["bounds_m"], np.float64),
-        air=scene.config["air"],
-        settings=job,
-        version=__version__,
-        created=time.strftime("%Y-%m-%d %H:%M:%S", time.gmtime()),
-    )
-    write = write_sofa if args.format == "sofa" else write_hdf5
-    with atomic_write(out) as path:
-        write(path, data)
-    shutil.rmtree(parts)
-    return made
+            found = _source(scene, source, receivers, args, told)
+            # What is there is whole: a file gets its name when it is written.
+            with atomic_write(part) as path, path.open("wb") as file:
+                np.save(file, found)
+            made += len(receivers)
+        radius = None if args.head is None else args.head.about
+        data = Dataset(
+            house=name,
+            fingerprint=fingerprint,
+            rate_hz=scene.rate_hz,
+            sources=sources,
+            receivers=receivers,
+            yaw_deg=args.yaw_deg,
+            parts=[parts / f"{k}.npy" for k in range(len(sources))],
+            head_radius_m=float(radius["radius_m"] if radius else scene.config["head_radius_m"]),
+            corners=np.array(scene.explain()["bounds_m"], np.float64),
+            air=scene.config["air"],
+            settings=job,
+            version=__version__,
+            created=time.strftime("%Y-%m-%d %H:%M:%S", time.gmtime()),
+        )
+        write = write_sofa if args.format == "sofa" else write_hdf5
+        with atomic_write(out) as path:
+            write(path, data)
+        shutil.rmtree(parts)
+        return made
 
 
 def _begin(parts: Path, job: dict[str, Any]) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from dwell.arguments import finite, whole
-from dwell.cli.common import ProgressBar, print_json
+from dwell.cli.common import ProgressBar, print_json, refuse_other_suffix
 from dwell.files import MOST_TEXT_BYTES, atomic_write, read, read_json
 from dwell.listening import Receiver
 
@@ -84,6 +84,7 @@ def run(args: argparse.Namespace) -> int:
     """Computes all responses, writes them, and prints what they took."""
     from dwell.acoustics import AcousticScene
 
+    refuse_other_suffix(args.out, ".npz")
     room = MeasuredRoom.read(Path(args.house))
     sources = _picked("--sources", room.sources, args.sources)
     receivers = _picked("--receivers", room.receivers, args.receivers)

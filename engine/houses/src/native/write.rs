@@ -10,12 +10,13 @@ use super::{GEOMETRY, TABLES};
 use crate::atomic::write_folder;
 use crate::error::HousesError;
 use crate::gltf::{Storage, encode};
+use crate::limits::MAX_TEXT_BYTES;
 
 /// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
 ///
 /// # Errors
 /// [`HousesError::Unwritable`] when the house holds a number that is not finite outside of its meshes, when its geometry
-/// exceeds 4 GiB, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
+/// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
     write_as(house, path, Storage::Inside)
 }
@@ -63,6 +64,12 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
         },
     };
     let text = serde_json::to_vec(&file).map_err(|error| unwritable(error.to_string()))?;
+    if text.len() as u64 > MAX_TEXT_BYTES {
+        let bytes = text.len();
+        return Err(unwritable(format!(
+            "its tables take {bytes} bytes, and at most {MAX_TEXT_BYTES} are read again; leave some of its things out"
+        )));
+    }
     // JSON has no infinity and no NaN: such a number would come back as something else, so it is refused here.
     if let Err(error) = serde_json::from_slice::<NativeFile>(&text) {
         return Err(unwritable(format!(

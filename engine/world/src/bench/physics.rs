@@ -202,7 +202,10 @@ fn together(
     for _ in 0..options.repeats.min(5) {
         let alone = start.clone().run(options.steps)?;
         let mut worlds: Vec<(BenchStart, Result<f64, WorldError>)> = (0..options.worlds)
-            .map(|_| (start.clone(), Ok(0.0)))
+            .map(|_| {
+                interrupt::check();
+                (start.clone(), Ok(0.0))
+            })
             .collect();
         let begun = Instant::now();
         threads.for_each(&mut worlds, |_, (world, rate)| {
