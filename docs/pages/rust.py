@@ -86,7 +86,7 @@ _TYPES = {
     "HeadId": "head",
     "LawSpec": "mapping",
     "Locomotion": "mapping",
-    "Named": "text or whole number",
+    "ObjectRef": "text or whole number",
     "PixelCamera": "mapping",
     "Projection": "mapping",
 }
@@ -94,7 +94,7 @@ _TYPES = {
 #: Where the texts come from that a field may have.
 _ENUMS = {
     "InstructionKind": "semantics/src/instruct/task.rs",
-    "StartFrom": "engine/world/src/tasks/free.rs",
+    "StartChoice": "engine/world/src/tasks/free.rs",
 }
 
 

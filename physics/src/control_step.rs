@@ -192,7 +192,7 @@ impl PhysicsWorld {
         self.contact_tracker
             .note_held_back(&self.engine, &self.motion, self.settings.dt_s);
         self.apply_laws(&floating_roots, |law, stage| {
-            law.apply_half_step(stage, half)
+            law.apply_half_step(stage, half);
         });
         self.tick += 1;
         self.shrink_pair_storage();

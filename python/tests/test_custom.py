@@ -593,9 +593,3 @@ def test_infos_that_no_array_holds_are_refused_by_name() -> None:
     envs.reset(seed=1)
     with pytest.raises(dwell.ConfigError, match="info of environment 0"):
         envs.step(np.array([1, 1]))
-
-
-@pytest.mark.parametrize("name", ["../x:Y", ".:x", "..a:b"])
-def test_relative_modules_are_refused_by_a_sentence(name: str) -> None:
-    with pytest.raises(dwell.ConfigError, match="expected 'module:Name'"):
-        DwellEnv(name, houses="builtin:studio")

@@ -331,3 +331,9 @@ def test_so_many_laws_are_refused_and_bytes_are_no_numbers() -> None:
     world = dwell.World("builtin:studio")
     with pytest.raises(dwell.ConfigError, match="linear_m_s"):
         world.set_body(world.objects()[0]["name"], linear_m_s=b"abc")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", ["../x:Y", ".:x", "..a:b"])
+def test_relative_modules_are_refused_by_a_sentence(name: str) -> None:
+    with pytest.raises(dwell.ConfigError, match="expected 'module:Name'"):
+        DwellEnv(name, houses="builtin:studio")

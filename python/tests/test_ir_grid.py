@@ -244,7 +244,6 @@ def test_points_are_microphones_and_what_is_none_is_refused_by_name() -> None:
 @pytest.mark.parametrize(
     ("options", "told"),
     [
-        (("--grid", "0"), "spacing_m is 0"),
         (("--grid", "1.5", "--height", "9"), "height_m is 9"),
         (("--grid", "1.5", "--image-order", "9"), "image_order"),
     ],

@@ -202,9 +202,10 @@ def test_two_tables_of_one_name_are_refused(tmp_path: Path) -> None:
 
 def test_a_channel_is_named_by_text(tmp_path: Path) -> None:
     table = tmp_path / "x.csv"
-    table.write_text("t,e\n0,1\n")
+    table.write_text("t,e,m,d\n0,1,1,0.1\n")
     part = {"file": "x.csv", "episode": "e", "t_s": "t", "channels": {"y": 5}}
-    mapping = {"kind": "trajectory", "title": "t", "licence": "l", "table": part}
+    bodies = {"file": "x.csv", "episode": "e", "name": "t", "mass_kg": "m", "diameter_m": "d"}
+    mapping = {"kind": "trajectory", "title": "t", "licence": "l", "bodies": bodies, "table": part}
     told = refused(table, tmp_path=tmp_path, mapping=mapping)
     assert "channels.y is 5; text is needed" in told
 

@@ -104,7 +104,7 @@ fn falling_balls_get_a_defensible_verdict() {
             assert!((0.05..1.0).contains(&c_d), "{c_d}");
         }
         CalibrationVerdict::OneOf { laws, .. } => {
-            assert!(laws.contains(&"drag".to_owned()), "{laws:?}")
+            assert!(laws.contains(&"drag".to_owned()), "{laws:?}");
         }
         CalibrationVerdict::Unexplained { reason } => assert!(!reason.is_empty()),
         CalibrationVerdict::Nothing => panic!("{}", report.sentence),

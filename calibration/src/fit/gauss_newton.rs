@@ -166,10 +166,10 @@ impl FitTask<'_> {
         for (slot, change) in global.iter().zip(step.global.iter()) {
             match *slot {
                 ParameterIndex::Shared(k) => {
-                    moved.shared[k] = bounded(*slot, moved.shared[k] + change)
+                    moved.shared[k] = bounded(*slot, moved.shared[k] + change);
                 }
                 ParameterIndex::Cause(k) => {
-                    moved.causes[k] = bounded(*slot, moved.causes[k] + change)
+                    moved.causes[k] = bounded(*slot, moved.causes[k] + change);
                 }
                 ParameterIndex::Own(_) => {}
             }

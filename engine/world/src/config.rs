@@ -132,9 +132,8 @@ impl WorldConfig {
             return Ok(());
         };
         // What is listed is a folder that may be read.
-        let told = match std::fs::read_dir(folder) {
-            Ok(_) => return Ok(()),
-            Err(error) => error,
+        let Err(told) = std::fs::read_dir(folder) else {
+            return Ok(());
         };
         Err(WorldError::Config {
             field: "sound_root",

@@ -44,7 +44,6 @@ use rapier3d::math::Pose as RapierPose;
 
 /// A joint of a world.
 #[derive(Clone, Copy, Debug)]
-#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
 pub(crate) struct PhysicsJoint {
     pub(crate) id: JointId,
     pub(crate) kind: JointKind,

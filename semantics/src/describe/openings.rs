@@ -77,7 +77,7 @@ fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
         for group in of() {
             match &group.way {
                 DoorDestination::Rooms(rooms) if group.number == 1 && rooms.len() == 1 => {
-                    single.extend(rooms)
+                    single.extend(rooms);
                 }
                 _ => {}
             }

@@ -44,7 +44,6 @@ pub(crate) struct LinkInertia {
 
 /// A shape on a link.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
 pub(crate) struct LinkShape {
     pub(crate) link_from_shape: Pose,
     pub(crate) solid: ShapeGeometry,
@@ -77,7 +76,6 @@ pub(crate) enum RobotJointKind {
 
 /// A joint between two links.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_field_names, reason = "a transform names both its ends")]
 pub(crate) struct RobotJoint {
     pub(crate) name: String,
     /// Places in the robot's links.
