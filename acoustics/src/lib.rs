@@ -9,15 +9,15 @@
 //! moment of the impulse. Channels: left, right.
 //!
 //! ```
-//! use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, Source, metrics};
-//! use dwell_scene::{House, ShoeboxMaterials, parallel::Threads, random::Key, rays::RayScene};
+//! use dwell_acoustics::{AcousticConfig, AcousticScene, Receiver, SoundSourcePose, metrics};
+//! use dwell_scene::{House, ShoeboxMaterials, parallel::Threads, random::RandomKey, rays::RayScene};
 //! use glam::Vec3;
 //! use std::sync::Arc;
 //!
 //! let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
 //! let (scene, rays) = (AcousticScene::new(house.clone(), AcousticConfig::rl())?, RayScene::new(house));
-//! let (source, ear) = (Source::at(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
-//! let response = scene.impulse_response(&rays, &source, &ear, Key::root(1), Threads::ONE)?;
+//! let (source, ear) = (SoundSourcePose::at(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
+//! let response = scene.impulse_response(&rays, &source, &ear, RandomKey::root(1), Threads::ONE)?;
 //! assert_eq!(response.echogram.paths[0].order(), 0);
 //! assert!(metrics::of_echogram(&response.echogram)[4].edt_s.unwrap() > 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

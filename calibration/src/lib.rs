@@ -8,7 +8,7 @@
 //! let folder = tempfile::tempdir()?;
 //! let hidden = dwell_calibration::example::write(folder.path(), 3)?;
 //! let report = dwell_calibration::calibrate(folder.path(), &Default::default(), &mut |_, _| true)?;
-//! assert!(matches!(&report.verdict, dwell_calibration::Verdict::Named { law, .. } if law == "drag"));
+//! assert!(matches!(&report.verdict, dwell_calibration::CalibrationVerdict::Named { law, .. } if law == "drag"));
 //! println!("{hidden} / {}", report.sentence);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

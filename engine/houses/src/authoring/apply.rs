@@ -38,14 +38,14 @@ const MAX_EDITS: usize = 10_000;
 /// The same house, edits and files give the same house for any number of threads.
 ///
 /// ```
-/// use dwell_houses::authoring::{Edit, Files, edit};
+/// use dwell_houses::authoring::{Edit, FileAccess, edit};
 /// let house = dwell_houses::builtin::build("studio").ok_or("no studio")?;
 /// let edits: Vec<Edit> = serde_json::from_str(
 ///     r#"[{"add": {"what": {"catalogue": {"kind": "mug"}}, "place": {"on": "dining_table_1"}}}]"#,
 /// )?;
 /// # let has = house.object_named("dining_table_1").is_some();
 /// # if !has { return Ok(()); }
-/// let (edited, _) = edit(&house, &edits, &Files::Anywhere)?;
+/// let (edited, _) = edit(&house, &edits, &FileAccess::Anywhere)?;
 /// assert_eq!(edited.objects.len(), house.objects.len() + 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -100,11 +100,11 @@ impl HousePlan {
 /// The same plan and files give the same house for any number of threads.
 ///
 /// ```
-/// use dwell_houses::authoring::{Files, Plan, build};
-/// let plan: Plan = serde_json::from_str(
+/// use dwell_houses::authoring::{FileAccess, HousePlan, build};
+/// let plan: HousePlan = serde_json::from_str(
 ///     r#"{"building": {"storeys": [{"rooms": [{"name": "study", "outline": [[0, 0], [4, 0], [4, 3], [0, 3]]}]}]}}"#,
 /// )?;
-/// let (house, _) = build(&plan, &Files::Anywhere)?;
+/// let (house, _) = build(&plan, &FileAccess::Anywhere)?;
 /// assert!((house.rooms.as_slice()[0].area_m2() - 12.0).abs() < 1e-4);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -39,14 +39,14 @@ const BAND_ROWS: usize = 8;
 /// Equal input, equal bits, for any number of threads and for any company in a batch.
 ///
 /// ```
-/// use dwell_render::{Camera, Channels, CpuRenderer, Frame, View};
+/// use dwell_render::{Camera, CpuRenderer, Frame, ImageChannels, View};
 /// use dwell_scene::{House, Pose, ShoeboxMaterials, State, parallel::Threads, rays::RayScene};
 /// use std::sync::Arc;
 ///
 /// let house = Arc::new(House::shoebox([6.0, 3.0, 5.0], &ShoeboxMaterials::default())?);
 /// let (scene, state) = (RayScene::new(house.clone()), State::new(&house));
 /// let view = View::new(Camera::from_fov(64, 64, 90.0)?, Pose::from_position(glam::Vec3::new(3.0, 1.5, 4.0)));
-/// let mut frame = Frame::new(&view.camera, Channels::ALL);
+/// let mut frame = Frame::new(&view.camera, ImageChannels::ALL);
 /// CpuRenderer::new(&house).render(&scene, &state, &[view], &mut [frame.as_mut()], Threads::ONE)?;
 /// assert!((frame.depth[32 * 64 + 32] - 4.0).abs() < 1e-4); // the north wall
 /// # Ok::<(), Box<dyn std::error::Error>>(())
