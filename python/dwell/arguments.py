@@ -127,14 +127,11 @@ def texts(name: str, values: object) -> list[str]:
 
 
 def path(name: str, value: object) -> str:
-    """The path of a file or folder, as text; an empty one is none."""
+    """The path of a file or folder, as text."""
     try:
-        found = text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
+        return text(name, os.fspath(value))  # type: ignore[call-overload] # what this finds out
     except TypeError:
         raise ConfigError(f"{name} is {quoted(value)}; expected text or a path") from None
-    if not found:
-        raise ConfigError(f"{name} is ''; expected the path of a file or folder")
-    return found
 
 
 def flag(name: str, value: object) -> bool:

@@ -277,7 +277,10 @@ class House:
         Returns:
             What the form cannot hold, in sentences.
         """
-        return self._native.write(arguments.path("path", path), text("form", form))
+        target = arguments.path("path", path)
+        if not target:
+            raise ConfigError("path is ''; expected the path of a file or folder")
+        return self._native.write(target, text("form", form))
 
     def write_into(
         self, root: str | os.PathLike[str], name: str, form: Form

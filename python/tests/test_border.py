@@ -105,7 +105,7 @@ CALLS = [
     ('W.map("a")', "longest_edge is 'a'"),
     ("W.map(0)", "longest_edge is 0"),
     ("W.map(10**30)", "longest_edge is 1000000000000000000000000000000"),
-    ("W.map(2**31)", "camera: width is 2147483648"),
+    ("W.map(2**31)", "longest_edge is 2147483648"),
     ("W.navigation(5)", "walker is 5"),
     ("W.navigation(dwell.Walker(radius_m=nan))", "walker.radius_m is nan"),
     ("W.navigation(dwell.Walker(radius_m=-1))", "navigation: radius_m is -1"),
