@@ -31,7 +31,7 @@ PRESETS: tuple[Preset, ...] = get_args(Preset)
 
 
 #: Most pixels along an edge, and the end of all depth, as the engine has them.
-_MOST_PIXELS = 16_384
+MOST_PIXELS = 16_384
 _FURTHEST_M = 1e6
 
 
@@ -89,8 +89,8 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
     if not isinstance(camera, Camera):
         raise ConfigError(f"{name} is {quoted(camera)}; expected a dwell.Camera")
     settings: dict[str, Any] = {
-        "width": whole(f"{name}.width", camera.width, low=1, high=_MOST_PIXELS),
-        "height": whole(f"{name}.height", camera.height, low=1, high=_MOST_PIXELS),
+        "width": whole(f"{name}.width", camera.width, low=1, high=MOST_PIXELS),
+        "height": whole(f"{name}.height", camera.height, low=1, high=MOST_PIXELS),
         "max_objects": whole(f"{name}.max_objects", camera.max_objects, low=1, high=4096),
         "preset": choice(f"{name}.preset", camera.preset, PRESETS),
         "position_m": list(triple(f"{name}.position_m", camera.position_m)),

@@ -278,6 +278,31 @@ def lock(file: int | IO[bytes]) -> bool | None:
     return True
 
 
+def open_alone(path: Path) -> IO[bytes]:
+    """A file to be read and written, new or old, which no other process has as long as it is open.
+
+    Raises:
+        ValueError: Another process has it.
+        OSError: The system refuses, or it is no regular file.
+    """
+    while True:
+        if os.path.lexists(path):
+            # Refuses what is no regular file.
+            open_file(path).close()
+        file = os.fdopen(os.open(path, os.O_RDWR | os.O_CREAT, 0o644), "r+b")
+        if lock(file) is False:
+            file.close()
+            raise ValueError(
+                f"{path} is being written by another process; wait for its end, or give "
+                "another --out"
+            )
+        with contextlib.suppress(FileNotFoundError):
+            if os.path.samestat(os.fstat(file.fileno()), os.stat(path)):
+                return file
+        # Its process came to its end in this moment, and has taken it away.
+        file.close()
+
+
 def make_folder(folder: Path) -> None:
     """Makes a folder and those above it, where they are not there.
 

@@ -25,7 +25,7 @@ from dwell.arguments import (
     unit_quaternion,
     whole,
 )
-from dwell.camera import Camera, Channel, camera_settings
+from dwell.camera import MOST_PIXELS, Camera, Channel, camera_settings
 from dwell.configs import bodies
 from dwell.guide_api import GuideApi
 from dwell.heads import Head
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
-#: The longest edge of a picture.
-_MOST_PIXELS = 16_384
 
 JointCommand = Literal["off", "position", "velocity", "effort"]
 
@@ -322,7 +320,7 @@ class World(ActionApi, GuideApi, SoundApi):
         Returns:
             The image (height, width, 3), the x and z of its upper left corner in m, pixels a metre.
         """
-        edge = whole("longest_edge", longest_edge, low=1, high=_MOST_PIXELS)
+        edge = whole("longest_edge", longest_edge, low=1, high=MOST_PIXELS)
         level = whole("level", level, high=_MOST_IDS)
         image, x, z, scale = _native.map(self._native, level, edge)
         return image, (x, z), scale

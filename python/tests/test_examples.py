@@ -1,4 +1,4 @@
-"""Examples and the README's program run as they stand."""
+"""Examples and the README's programs run as they stand."""
 
 from __future__ import annotations
 

@@ -73,6 +73,12 @@ impl Aabb {
         }
     }
 
+    /// Half the surface, m²: what trees weigh boxes by.
+    pub(crate) fn half_area(&self) -> f32 {
+        let size = self.size();
+        size.x * size.y + size.y * size.z + size.z * size.x
+    }
+
     /// The full edge lengths, m; zero for an empty box.
     pub fn size(&self) -> Vec3 {
         if self.is_empty() {

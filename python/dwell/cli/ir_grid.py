@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
 from dwell.cli.job_journal import claim, refuse_other
-from dwell.files import atomic_write, lock, read, read_json
+from dwell.files import atomic_write, open_alone, read, read_json
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -98,9 +98,7 @@ def _alone(out: Path) -> Iterator[None]:
         ValueError: Another process writes it.
     """
     path = out.with_name(f".{out.name}.lock")
-    with path.open("wb") as file:
-        if lock(file) is False:
-            raise ValueError(f"{out} is being written by another process; wait for its end")
+    with open_alone(path):
         try:
             yield
         finally:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
-from dwell.files import atomic_write, is_draft, lines, lock, open_file, parse_json, read_json
+from dwell.files import atomic_write, is_draft, lines, open_alone, open_file, parse_json, read_json
 
 _JOB, _DONE = "job", "done"
 #: What is the same for a whole folder; it stands there from the beginning.
@@ -75,7 +75,7 @@ class Journal:
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came.
         self.done: dict[str, None] = {}
-        self._file: IO[bytes] = self._open()
+        self._file: IO[bytes] = open_alone(self._path)
         try:
             keep = self._read(job)
             self._file.seek(keep)
@@ -85,25 +85,6 @@ class Journal:
         except BaseException:
             self.close()
             raise
-
-    def _open(self) -> IO[bytes]:
-        """The journal's file, which no other process has as long as it is open."""
-        while True:
-            if os.path.lexists(self._path):
-                # Refuses what is no regular file.
-                open_file(self._path).close()
-            file = os.fdopen(os.open(self._path, os.O_RDWR | os.O_CREAT, 0o644), "r+b")
-            if lock(file) is False:
-                file.close()
-                raise ValueError(
-                    f"{self._path} is being written by another process; wait for its end, or give "
-                    "another --out"
-                )
-            with contextlib.suppress(FileNotFoundError):
-                if os.path.samestat(os.fstat(file.fileno()), os.stat(self._path)):
-                    return file
-            # Its process came to its end in this moment, and has taken it away.
-            file.close()
 
     def _read(self, job: dict[str, Any]) -> int:
         """How many bytes of the old journal are whole; 0 for none."""

@@ -13,14 +13,6 @@ pub(super) struct BinaryNode {
     pub(super) count: u32,
 }
 
-impl BinaryNode {
-    /// Half the surface of the box, m².
-    pub(super) fn half_area(&self) -> f32 {
-        let size = self.bounds.size();
-        size.x * size.y + size.y * size.z + size.z * size.x
-    }
-}
-
 /// Node 0 is the top; no nodes when there are no boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BinaryBvh {

@@ -94,10 +94,9 @@ fn longest_unmerged(boxes: &[Aabb]) -> usize {
     order.sort_unstable();
     let cost = |pair: &[(u64, u32)]| {
         let [a, b] = [pair[0], pair[1]].map(|(_, k)| &boxes[k as usize]);
-        let size = a.union(b).size();
-        size.x * size.y + size.y * size.z + size.z * size.x
+        a.union(b).half_area()
     };
-    // A pair merges where it costs less than the pair before, and no more than the one after.
+    // A pair merges where it costs no more than the pair before, and less than the one after.
     let (mut longest, mut since, mut falls) = (0, 0, true);
     let mut costs = order.windows(2).map(cost).peekable();
     while let Some(cost) = costs.next() {

@@ -61,7 +61,7 @@ impl WideBvh {
         let mut children = [first, first + 1, 0, 0];
         let mut count = 2;
         while count < WIDTH {
-            let area = |k: usize| tree.nodes[children[k]].half_area();
+            let area = |k: usize| tree.nodes[children[k]].bounds.half_area();
             let inner = (0..count).filter(|k| tree.nodes[children[*k]].count == 0);
             let Some(largest) = inner.max_by(|a, b| area(*a).total_cmp(&area(*b))) else {
                 break;
