@@ -148,8 +148,9 @@ impl UserFile {
     }
 }
 
-/// Returns whether a file is JSON by its name and holds all of these words: enough to tell formats apart, before anything is read in earnest.
-pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
+/// Returns whether a file is JSON by its name and holds one word of each list: enough to tell formats apart, before anything is read in
+/// earnest.
+pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
     let is_json = path
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
@@ -163,7 +164,7 @@ pub(crate) fn is_json_with(path: &Path, words: &[&str]) -> bool {
         let mut windows = bytes.windows(word.len());
         windows.any(|window| window == word.as_bytes())
     };
-    words.iter().all(holds)
+    lists.iter().all(|words| words.iter().any(holds))
 }
 
 /// Reads a regular file of at most `max_bytes`; `name` stands in the error.

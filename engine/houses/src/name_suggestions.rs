@@ -19,6 +19,11 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>, count: usiz
         .collect()
 }
 
+/// Returns whether at most `letters` letters differ between two names, upper case or not, and more than those are the same.
+pub(crate) fn within(name: &str, known: &str, letters: usize) -> bool {
+    known.chars().count() > 2 * letters && distance(name, known) <= letters
+}
+
 /// Returns how many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
 fn distance(a: &str, b: &str) -> usize {
     let letters = |text: &str| -> Vec<char> {

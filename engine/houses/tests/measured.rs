@@ -87,6 +87,37 @@ fn faces_of_a_mesh_come_by_material() {
     assert_eq!(all.bounds().max, Vec3::new(2.0, 3.0, 0.0));
 }
 
+/// Materials may leave out all they have, and then no word of the file says what absorbs.
+#[test]
+fn rooms_without_a_word_of_absorption_are_measured_rooms() {
+    let bare = BOX.replace(r#""absorption": 0.1, "#, "");
+    let bare = bare.replace(r#"{"absorption": [0.05, 0.4]}"#, "{}");
+    assert!(!bare.contains("absorption"));
+    let house = house("bare", &[("scene.json", &bare)]).unwrap();
+    assert_eq!(house.source, "measured");
+    assert_eq!(
+        house.materials.iter().next().unwrap().absorption.at(500.0),
+        0.1
+    );
+}
+
+#[test]
+fn other_names_are_the_users_own() {
+    let own = BOX.replace(
+        r#""name": "b""#,
+        r#""name": "b", "volume_m3": 90, "source": [1]"#,
+    );
+    let own = own.replace(
+        r#""absorption": 0.1"#,
+        r#""absorption": 0.1, "source": "lab""#,
+    );
+    let path = written("own", &[("scene.json", &own)]);
+    let (_, report) = open(&path.to_string_lossy()).unwrap();
+    let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("\"source\" is not understood"), "{told:?}");
+}
+
 #[test]
 fn what_cannot_be_is_refused_by_its_field() {
     let refused = |name: &str, from: &str, to: &str, word: &str| {
@@ -101,6 +132,30 @@ fn what_cannot_be_is_refused_by_its_field() {
     refused("loud", "[0.05, 0.4]", "[0.05, 1.4]", "absorption");
     refused("bands", "[125, 1000]", "[1000, 125]", "absorption");
     refused("neither", "shoebox", "mesh_of", "neither");
+    refused(
+        "slip",
+        r#""absorption": 0.1"#,
+        r#""absorbtion": 0.1"#,
+        "nearly \"absorption\"",
+    );
+    refused(
+        "case",
+        r#""scattering":"#,
+        r#""Scattering":"#,
+        "hard.Scattering",
+    );
+    refused(
+        "field",
+        r#""bands_hz""#,
+        r#""band_hz""#,
+        "nearly \"bands_hz\"",
+    );
+    refused(
+        "side",
+        r#""x0": "hard""#,
+        r#""x0": "hard", "x2": "hard""#,
+        "\"x2\"",
+    );
     let mesh = |name: &str, path: &str, obj: &str| {
         let text = MESH.replace("room.obj", path);
         house(name, &[("scene.json", &text), ("room.obj", obj)]).unwrap_err()

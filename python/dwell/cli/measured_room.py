@@ -44,6 +44,8 @@ class MeasuredRoom:
         if not isinstance(file, dict):
             raise ValueError(f"{path}: expected an object, found {type(file).__name__}")
         air = _object(path, "air", file.get("air", {}))
+        if unknown := sorted(set(air) - set(_AIR)):
+            raise ValueError(f"{path}: air: expected {', '.join(_AIR)}, found {unknown[0]!r}")
         return cls(
             path=path,
             rate_hz=whole(f"{path}: fs", file.get("fs", 48000), low=8000, high=192_000),
@@ -70,14 +72,14 @@ class MeasuredRoom:
 
 
 def is_measured_room(house: str) -> bool:
-    """Whether a HOUSE string names a scene file with sources and receivers."""
+    """Whether a HOUSE string names a scene file with materials and receivers."""
     path = Path(house)
     if path.suffix.lower() != ".json" or not path.is_file():
         return False
     if path.stat().st_size > MOST_TEXT_BYTES:
         return False
     text = read(path)
-    return b'"receivers"' in text and b'"absorption"' in text
+    return b'"receivers"' in text and b'"materials"' in text
 
 
 def run(args: argparse.Namespace) -> int:

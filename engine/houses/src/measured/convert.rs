@@ -1,6 +1,7 @@
 //! From the file to a house.
 
 use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
+use super::unknown_names;
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::obj::{PartShape, read_mesh, shape_of};
@@ -49,6 +50,10 @@ const SIDES: [BoxFace; 6] = [
     ),
 ];
 
+fn is_side(name: &str) -> bool {
+    SIDES.iter().any(|(side, ..)| *side == name)
+}
+
 /// From the file's axes to the house's.
 fn upright(p: Vec3) -> Vec3 {
     Vec3::new(p.x, p.z, -p.y)
@@ -68,6 +73,7 @@ pub(super) fn convert(
     (root, at): (&DataRoot, &FileLocation),
     report: &mut LoadReport,
 ) -> Result<HouseData, HousesError> {
+    unknown_names::check(file, at, report)?;
     let mut room = MeasuredRoomBuilder {
         file,
         at,
@@ -162,6 +168,13 @@ impl MeasuredRoomBuilder<'_> {
             Vec3::new(0.0, 0.0, -size.y),
             Vec3::new(size.x, size.z, 0.0),
         ));
+        if let Some(unknown) = self.file.walls.keys().find(|name| !is_side(name)) {
+            return Err(HousesError::Field {
+                at: self.at.field("walls"),
+                expected: "x0, x1, y0, y1, z0, and z1",
+                found: format!("{unknown:?}"),
+            });
+        }
         for (name, kind, corners) in SIDES {
             let at = self.at.field("walls").field(name);
             let wall = self.file.walls.get(name).map(String::as_str);

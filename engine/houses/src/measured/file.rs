@@ -1,11 +1,11 @@
 //! What the file holds, nothing interpreted.
 
-use serde::de::{MapAccess, Visitor};
+use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
 
-/// A measured room. Fields that are not named here belong to the measurement.
+/// A measured room.
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasuredRoomFile {
     /// Centres of the bands of all tables, Hz.
@@ -21,6 +21,9 @@ pub(super) struct MeasuredRoomFile {
     /// By name, each once.
     #[serde(deserialize_with = "each_once")]
     pub(super) materials: BTreeMap<String, MeasuredMaterial>,
+    /// All other fields; they belong to the measurement.
+    #[serde(flatten)]
+    pub(super) others: BTreeMap<String, IgnoredAny>,
 }
 
 /// A map in which no name stands twice: which of two materials counts is not for us to say.
@@ -57,6 +60,9 @@ pub(super) struct MeasuredMaterial {
     /// 0 to 1.
     #[serde(default = "none")]
     pub(super) scattering: BandCoefficient,
+    /// All other fields.
+    #[serde(flatten)]
+    pub(super) others: BTreeMap<String, IgnoredAny>,
 }
 
 /// One number for all bands, or one for each.

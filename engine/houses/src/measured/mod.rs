@@ -5,6 +5,7 @@
 
 mod convert;
 mod file;
+mod unknown_names;
 
 use crate::data_root::{DataRoot, is_json_with};
 use crate::error::HousesError;
@@ -15,16 +16,22 @@ use dwell_scene::House;
 use file::MeasuredRoomFile;
 use std::path::Path;
 
-/// Returns whether `path` is a measured room: a JSON file that speaks of materials and of absorption.
+/// A word of each list stands in every measured room.
+const WORDS: [&[&str]; 2] = [
+    &["\"materials\""],
+    &["\"shoebox\"", "\"mesh\"", "\"absorption\""],
+];
+
+/// Returns whether `path` is a measured room: a JSON file with materials and a shape, or with what absorbs.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    is_json_with(path, &["\"absorption\"", "\"materials\""])
+    is_json_with(path, &WORDS)
 }
 
 /// Opens a measured room. Z is up in the file, Y in the house: (x, y, z) becomes (x, z, -y).
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
-/// for a wall or face without a material, for tables of another length than the bands, and for a mesh that cannot be read or lies outside
+/// for a name that is a few letters from a field's, for a wall or face without a material, for tables of another length than the bands, and for a mesh that cannot be read or lies outside
 /// of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
 pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));

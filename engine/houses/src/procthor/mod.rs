@@ -25,7 +25,7 @@ use sizes::AssetSizes;
 
 /// Returns whether `path` is a house of ProcTHOR: a JSON file that speaks of its parameters and of walls.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    is_json_with(path, &["\"proceduralParameters\"", "\"walls\""])
+    is_json_with(path, &[&["\"proceduralParameters\""], &["\"walls\""]])
 }
 
 /// Opens a house. Sizes of assets come from an `asset-database.json` beside it, or up to two folders above, where there is

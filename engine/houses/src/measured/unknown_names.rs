@@ -1,0 +1,68 @@
+//! Names in the file that no field has: slips of the pen are refused, all others are the user's own.
+
+use crate::error::HousesError;
+use crate::name_suggestions::within;
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
+
+use super::file::MeasuredRoomFile;
+
+/// The fields of the file, those of the measurement among them.
+const FIELDS: [&str; 11] = [
+    "air",
+    "bands_hz",
+    "duration_s",
+    "fs",
+    "materials",
+    "mesh",
+    "name",
+    "receivers",
+    "shoebox",
+    "sources",
+    "walls",
+];
+const MATERIAL_FIELDS: [&str; 2] = ["absorption", "scattering"];
+/// Names with up to so many letters written otherwise are the same name, misspelt.
+const SLIP_LETTERS: usize = 2;
+
+/// Refuses unknown names that are nearly a field's, whose value would silently be the default; other names in a material are
+/// warnings, and other fields of the file belong to the measurement.
+///
+/// # Errors
+/// [`HousesError::Field`] with the field that was meant.
+pub(super) fn check(
+    file: &MeasuredRoomFile,
+    at: &FileLocation,
+    report: &mut LoadReport,
+) -> Result<(), HousesError> {
+    // "source" beside "sources" is no slip.
+    let is_there = |field: &&str| file.others.contains_key(*field);
+    let (there, absent): (Vec<_>, Vec<_>) = FIELDS.into_iter().partition(is_there);
+    for name in file.others.keys() {
+        if !there.contains(&&**name) {
+            refuse_slip(at, name, &absent)?;
+        }
+    }
+    for (material, values) in &file.materials {
+        let at = at.field("materials").field(material);
+        for name in values.others.keys() {
+            refuse_slip(&at, name, &MATERIAL_FIELDS)?;
+            let found = name.chars().take(60).collect();
+            report.warn(at.clone(), WarningKind::BadStatement { found });
+        }
+    }
+    Ok(())
+}
+
+fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result<(), HousesError> {
+    let meant = fields
+        .iter()
+        .find(|field| within(name, field, SLIP_LETTERS));
+    meant.map_or(Ok(()), |field| {
+        Err(HousesError::Field {
+            at: at.field(name),
+            expected: "a name of its own, or the exact name of a field",
+            found: format!("nearly {field:?}"),
+        })
+    })
+}
