@@ -75,6 +75,14 @@ pub enum WarningKind {
         /// Relative to the data root.
         path: String,
     },
+    /// A material file that could not be read; grey is used.
+    #[error("material file {path:?} could not be read ({reason}); its materials are grey")]
+    UnreadableMaterialFile {
+        /// Relative to the data root.
+        path: String,
+        /// Why.
+        reason: String,
+    },
     /// A material that no material file defines; grey is used.
     #[error("material {name:?} is not defined; grey is used")]
     MissingMaterial {

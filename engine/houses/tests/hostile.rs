@@ -129,6 +129,34 @@ fn what_is_no_regular_file_is_no_house() {
     assert_eq!(message(&file), format!("{}: {told}", file.display()));
 }
 
+/// What stands there but is no file is not told to be missing.
+#[cfg(unix)]
+#[test]
+fn a_pipe_that_a_mesh_names_is_told_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "mtllib a.mtl\nmtllib gone.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    std::fs::write(folder.path().join("a.obj"), text).unwrap();
+    let pipe = folder.path().join("a.mtl");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let (_, report) = open(&folder.path().join("a.obj").to_string_lossy()).unwrap();
+    let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    assert!(
+        told[0].contains("\"a.mtl\" could not be read (is a named pipe"),
+        "{told:?}"
+    );
+    assert!(told[1].contains("\"gone.mtl\" does not exist"), "{told:?}");
+}
+
+#[test]
+fn a_robot_without_a_link_has_no_loop() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.urdf");
+    std::fs::write(&path, "<robot name=\"r\"/>").unwrap();
+    let told = open(&path.to_string_lossy()).unwrap_err().to_string();
+    assert!(told.ends_with("found no link at all"), "{told}");
+}
+
 #[test]
 fn a_data_root_with_several_houses_is_not_guessed() {
     let folder = tempfile::tempdir().unwrap();

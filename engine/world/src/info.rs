@@ -6,7 +6,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::{ln, wrap_angle};
 use dwell_scene::navigation::NavGrid;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentBody, Pose, RoomId};
+use dwell_scene::{AgentBody, House, IdVec, Pose, RoomId};
 use glam::Vec3;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -94,26 +94,38 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
     let body = AgentBody::default();
     let grid = engines.navigation(&body)?;
     let rays = RayScene::new(house.clone());
-    Ok(house
-        .rooms
-        .ids()
-        .map(|room| viewpoint(&rays, &grid, room, body.eye_height_m))
+    let places = walkable_places(house, &grid);
+    let rooms = places.iter_ids();
+    Ok(rooms
+        .map(|(room, places)| {
+            dwell_scene::interrupt::check();
+            viewpoint(&rays, places, room, body.eye_height_m)
+        })
         .collect())
 }
 
-fn viewpoint(rays: &RayScene, grid: &NavGrid, id: RoomId, eye_m: f32) -> RoomViewpoint {
+/// Where one can stand on the floor of each room, m.
+fn walkable_places(house: &House, grid: &NavGrid) -> IdVec<RoomId, Vec<Vec3>> {
+    let mut places = IdVec::filled(Vec::new(), house.rooms.len());
+    for (k, cell) in grid.walkable().enumerate() {
+        if k % 4096 == 0 {
+            dwell_scene::interrupt::check();
+        }
+        let place = grid.position(cell);
+        let room = house.room_at(place + Vec3::Y * 0.1);
+        if let Some(room) = room.filter(|id| (place.y - house.rooms[*id].floor_y).abs() < 0.3) {
+            places[room].push(place);
+        }
+    }
+    places
+}
+
+fn viewpoint(rays: &RayScene, inside: &[Vec3], id: RoomId, eye_m: f32) -> RoomViewpoint {
     let house = rays.house();
     let room = &house.rooms[id];
     let corners: Vec<_> = room.footprint.iter().flatten().collect();
     let middle = corners.iter().copied().sum::<glam::Vec2>() / corners.len().max(1) as f32;
     let center = Vec3::new(middle.x, room.floor_y, middle.y);
-    let inside: Vec<Vec3> = grid
-        .walkable()
-        .map(|cell| grid.position(cell))
-        .filter(|p| {
-            (p.y - room.floor_y).abs() < 0.3 && house.room_at(*p + Vec3::Y * 0.1) == Some(id)
-        })
-        .collect();
     let distance = |p: &Vec3| (*p - center).length_squared();
     let stand = inside
         .iter()

@@ -52,12 +52,21 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) ->
             );
             continue;
         };
-        let Ok(bytes) = root.read(&mtl_path, MAX_MESH_BYTES) else {
-            report.warn(
-                FileLocation::file(path),
-                WarningKind::MissingMaterialFile { path: mtl_path },
-            );
-            continue;
+        let bytes = match root.read(&mtl_path, MAX_MESH_BYTES) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                let reason = error.reason();
+                let damage = if root.has_file(&mtl_path) {
+                    WarningKind::UnreadableMaterialFile {
+                        path: mtl_path,
+                        reason,
+                    }
+                } else {
+                    WarningKind::MissingMaterialFile { path: mtl_path }
+                };
+                report.warn(FileLocation::file(path), damage);
+                continue;
+            }
         };
         let mtl = read_mtl(&bytes, &mtl_path, report);
         for material in &mtl.materials {

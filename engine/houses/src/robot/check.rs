@@ -59,7 +59,9 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
             .map(|k| &robot.links[*k].name)
             .take(8)
             .collect();
-        let found = if names.is_empty() {
+        let found = if count == 0 {
+            "no link at all".to_owned()
+        } else if names.is_empty() {
             "none: the links form a loop".to_owned()
         } else {
             format!("{} of them, {names:?}", roots.len())

@@ -3,6 +3,7 @@
 mod check;
 mod data;
 mod fingerprint;
+mod footprint;
 mod geometry;
 mod queries;
 mod shoebox;
@@ -17,7 +18,8 @@ pub use shoebox::ShoeboxMaterials;
 
 use crate::error::SceneError;
 use crate::fixtures::Receptacle;
-use crate::ids::{IdVec, ObjectId};
+use crate::ids::{IdVec, ObjectId, RoomId};
+use footprint::FootprintBounds;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
@@ -31,6 +33,7 @@ pub struct House {
     geometry: OnceLock<Geometry>,
     fingerprint: OnceLock<u64>,
     spaces: OnceLock<IdVec<ObjectId, Vec<u32>>>,
+    footprints: OnceLock<IdVec<RoomId, FootprintBounds>>,
 }
 
 impl House {
@@ -45,6 +48,7 @@ impl House {
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
             spaces: OnceLock::new(),
+            footprints: OnceLock::new(),
         })
     }
 
@@ -72,6 +76,11 @@ impl House {
         own.map(|k| &self.data.receptacles[*k as usize])
     }
 
+    fn footprint_bounds(&self) -> &IdVec<RoomId, FootprintBounds> {
+        self.footprints
+            .get_or_init(|| self.data.rooms.iter().map(FootprintBounds::of).collect())
+    }
+
     /// The plain data, for editing and writing.
     pub fn data(&self) -> &HouseData {
         &self.data
@@ -85,6 +94,7 @@ impl Clone for House {
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
             spaces: OnceLock::new(),
+            footprints: OnceLock::new(),
         }
     }
 }

@@ -74,19 +74,21 @@ impl House {
     /// The room that holds `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above, if no other
     /// storey's room holds it without that), the smallest one where rooms overlap.
     pub fn room_at(&self, point: Vec3) -> Option<RoomId> {
-        let holds = |room: &Room| {
+        let bounds = self.footprint_bounds();
+        let point_xz = Vec2::new(point.x, point.z);
+        let holds = |id: RoomId, room: &Room| {
             point.y >= room.floor_y - 0.3
                 && point.y <= room.ceiling_y + 0.3
-                && room.contains_xz(Vec2::new(point.x, point.z))
+                && bounds[id].may_contain_xz(point_xz)
+                && room.contains_xz(point_xz)
         };
+        let strays = |room: &Room| point.y < room.floor_y - 0.01 || point.y > room.ceiling_y + 0.01;
         self.rooms
             .iter_ids()
-            .filter(|(_, room)| holds(room))
-            .min_by(|(_, a), (_, b)| {
-                let strays =
-                    |room: &Room| point.y < room.floor_y - 0.01 || point.y > room.ceiling_y + 0.01;
+            .filter(|(id, room)| holds(*id, room))
+            .min_by(|(i, a), (j, b)| {
                 let by_storey = strays(a).cmp(&strays(b));
-                by_storey.then(a.area_m2().total_cmp(&b.area_m2()))
+                by_storey.then(bounds[*i].area_m2.total_cmp(&bounds[*j].area_m2))
             })
             .map(|(id, _)| id)
     }
@@ -185,8 +187,9 @@ impl House {
 
 #[cfg(test)]
 mod tests {
+    use crate::random::RandomKey;
     use crate::{House, RoomId, ShoeboxMaterials};
-    use glam::Vec2;
+    use glam::{Vec2, Vec3};
 
     /// A line has every point of itself on its border, and a point all of space on that of its three sides.
     #[test]
@@ -202,5 +205,39 @@ mod tests {
         room.footprint.insert(0, [a, b, b * 0.5]);
         let after = [inside, outside].map(|point| room.contains_xz(point));
         assert_eq!(after, before);
+    }
+
+    /// The rectangles around the floors leave out no room that a comparison with each of them finds.
+    #[test]
+    fn the_room_at_a_point_is_that_of_all_rooms_compared() {
+        let one = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+        let mut stream = RandomKey::root(5).child("rooms").stream();
+        let mut somewhere = |size: f32| {
+            let across = stream.uniform_f32() * 2.0 - 1.0;
+            Vec2::new(across, stream.uniform_f32() * 2.0 - 1.0) * size
+        };
+        let mut data = one.data().clone();
+        let room = data.rooms[RoomId(0)].clone();
+        for k in 0..60 {
+            let middle = somewhere(10.0);
+            let mut room = room.clone();
+            room.name = format!("room_{k}");
+            room.footprint = vec![[(); 3].map(|()| middle + somewhere(4.0)), [middle; 3]];
+            data.rooms.push(room);
+        }
+        let house = House::new(data).unwrap();
+        let corners = house.rooms.iter().flat_map(|room| room.footprint.clone());
+        let corners: Vec<Vec2> = corners.flatten().collect();
+        let points = corners
+            .into_iter()
+            .chain((0..2000).map(|_| somewhere(14.0)));
+        for point in points {
+            let all = house.rooms.iter_ids();
+            let smallest = all
+                .filter(|(_, room)| room.contains_xz(point))
+                .min_by(|(_, a), (_, b)| a.area_m2().total_cmp(&b.area_m2()));
+            let found = house.room_at(Vec3::new(point.x, 1.0, point.y));
+            assert_eq!(found, smallest.map(|(id, _)| id), "at {point}");
+        }
     }
 }

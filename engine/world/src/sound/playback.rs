@@ -96,7 +96,7 @@ fn open(
 fn check_place(house: &House, state: &State, place: &SoundPlace) -> Result<(), WorldError> {
     use dwell_scene::Id;
     let (what, found, count) = match place {
-        SoundPlace::Point(point) if point.is_finite() && point.abs().max_element() < 1e6 => {
+        SoundPlace::Point(point) if point.is_finite() && point.abs().max_element() <= 1e6 => {
             return Ok(());
         }
         SoundPlace::Point(point) => {
