@@ -1,5 +1,6 @@
 //! Fourier transforms of real signals with their buffers.
 
+use dwell_scene::interrupt;
 use realfft::num_complex::Complex;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::fmt;
@@ -64,6 +65,8 @@ impl RealFft {
 
     /// As [`Self::forward`], into `spectrum` of [`Self::bins`] values.
     pub(crate) fn forward_into(&mut self, signal: &[f32], spectrum: &mut [Complex<f32>]) {
+        // A transform of some million samples takes 0.1 s, and nothing stops it.
+        interrupt::check();
         let used = signal.len().min(self.time.len());
         self.time[..used].copy_from_slice(&signal[..used]);
         self.time[used..].fill(0.0);
@@ -79,6 +82,7 @@ impl RealFft {
 
     /// As [`Self::inverse`], without a copy.
     pub(crate) fn inverse_ref(&mut self, spectrum: &mut [Complex<f32>]) -> &[f32] {
+        interrupt::check();
         // A real signal's spectrum is real at both ends; what rounding left there is dropped.
         spectrum[0].im = 0.0;
         let last = spectrum.len() - 1;
@@ -103,6 +107,28 @@ impl fmt::Debug for RealFft {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_call_is_stopped_between_transforms() {
+        let transforms: [fn(&mut RealFft); 2] = [
+            |fft| drop(fft.forward(&[1.0])),
+            |fft| {
+                let mut spectrum = vec![Complex::default(); fft.bins()];
+                fft.inverse_ref(&mut spectrum);
+            },
+        ];
+        for transform in transforms {
+            let mut fft = RealFft::at_least(64);
+            let stopped = interrupt::interruptible(
+                || true,
+                || {
+                    std::thread::sleep(interrupt::INTERVAL);
+                    transform(&mut fft);
+                },
+            );
+            assert!(stopped.is_err());
+        }
+    }
 
     #[test]
     fn there_and_back_is_nothing() {

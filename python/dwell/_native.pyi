@@ -138,10 +138,10 @@ class House:
     @property
     def name(self) -> str: ...
     @property
-    def has_rooms(self) -> bool: ...
-    @property
     def counts(self) -> tuple[int, int]:
         """Rooms and objects."""
+    def is_outside(self, point: tuple[float, float, float]) -> bool:
+        """Whether a point lies in no room; in a house without rooms: beyond all walls."""
     def room_at(self, point: tuple[float, float, float]) -> str | None:
         """The name of the room around a point."""
     def same(self, other: House) -> bool:

@@ -191,6 +191,7 @@ class AcousticScene:
     ) -> Echogram:
         """Energies over time at the middle of a receiver, from which responses are made."""
         receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
+        self._tell_outside(source, [receiver])
         text = self._native.echogram_json(
             to_json(source_of(source).to_json()),
             to_json(receiver.to_json()),

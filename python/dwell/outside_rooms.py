@@ -12,7 +12,7 @@ _LOG = logging.getLogger("dwell.outside")
 
 
 def warn_outside_rooms(house: House, what: str, position: Sequence[float]) -> None:
-    """Logs a warning when a point lies in no room of a house that has rooms.
+    """Logs a warning when a point lies in no room; in a house without rooms: beyond all walls.
 
     Once for a house and a kind of thing: cameras that fly around a house would fill the log.
     """
@@ -20,10 +20,10 @@ def warn_outside_rooms(house: House, what: str, position: Sequence[float]) -> No
     if what in told:
         return
     x, y, z = point("position", position)
-    if house.native.room_at((x, y, z)) is None and house.native.has_rooms:
+    if house.native.is_outside((x, y, z)):
         told.add(what)
         _LOG.warning(
-            "%s stands outside of every room of %r, at (%g, %g, %g) m; heights count from the "
+            "%s stands outside of every room of %r, at (%g, %g, %g) m; heights (y) count from the "
             "ground floor, and house.rooms() has a place to stand in each room. This is said once.",
             what,
             house.name,

@@ -150,9 +150,9 @@ impl PyHouse {
         })
     }
 
-    #[getter]
-    fn has_rooms(&self, py: Python<'_>) -> PyResult<bool> {
-        py.engine(|| Ok::<_, PyFault>(!self.house().rooms.is_empty()))
+    /// Returns whether a point lies outside; see [`dwell_scene::House::is_outside`].
+    fn is_outside(&self, py: Python<'_>, point: [f32; 3]) -> PyResult<bool> {
+        py.engine(|| Ok::<_, PyFault>(self.house().is_outside(Vec3::from_array(point))))
     }
 
     /// Returns how many rooms and objects there are.

@@ -182,6 +182,14 @@ def responses() -> Call:
     return lambda: scene.impulse_responses(dwell.Source((3.0, 1.5, 3.0)), ears)
 
 
+def long_response() -> Call:
+    """A long response, nearly all of which is noise: few rays, many arrivals, a high rate."""
+    air = {"rate_hz": 192_000, "max_duration_s": 20.0, "arrivals_per_s": 100_000.0}
+    house = dwell.House.shoebox((30.0, 10.0, 30.0), absorption=0.02)
+    scene = dwell.AcousticScene(house, rays=200, **air)
+    return lambda: scene.impulse_response((3.0, 1.5, 3.0), (7.0, 1.5, 3.0))
+
+
 def render() -> Call:
     """A picture of 16 million pixels."""
     world = dwell.World("builtin:apartment")
@@ -263,6 +271,7 @@ CALLS: dict[str, Callable[..., Call]] = {
     "pile": make_pile,
     "snapshot": snapshot,
     "responses": responses,
+    "long response": long_response,
     "render": render,
     "map": draw_map,
     "navigation": navigation,

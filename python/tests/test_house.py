@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import logging
 import re
 from pathlib import Path
@@ -73,6 +74,24 @@ def test_what_stands_outside_is_told_once(caplog: pytest.LogCaptureFixture) -> N
     told = [record.getMessage().split(" stands")[0] for record in caplog.records]
     assert told == ["a camera", "an agent", "a microphone"]
     assert "at (9, 1, 1.5) m" in caplog.records[0].getMessage()
+
+
+def test_a_source_outside_of_a_measured_room_is_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    walls = dict.fromkeys(("x0", "x1", "y0", "y1", "z0", "z1"), "hard")
+    room = {"shoebox": [6, 5, 3], "walls": walls, "materials": {"hard": {}}}
+    (tmp_path / "room.json").write_text(json.dumps(room), encoding="utf-8")
+    scene = dwell.AcousticScene(tmp_path / "room.json", rays=100, max_duration_s=0.1)
+    assert scene.house.info()["rooms"] == []
+    with caplog.at_level(logging.WARNING, "dwell"):
+        scene.impulse_response((3.0, 1.5, -2.5), (2.0, 1.0, -1.0))
+        assert not caplog.records
+        silence = scene.impulse_response((9.0, 1.5, -2.5), (2.0, 1.0, -1.0))
+        scene.echogram((3.0, 1.5, -2.5), (2.0, 1.5, 1.0))
+    assert not silence.any()
+    told = [record.getMessage().split(" stands")[0] for record in caplog.records]
+    assert told == ["a source", "a microphone"]
 
 
 def test_things_outside_stand_in_the_report() -> None:

@@ -6,6 +6,7 @@ use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::directions::DirectionalEnergy;
 use crate::echogram::Echogram;
 use crate::receiver_channel::{Delay, ReceiverChannel};
+use dwell_scene::interrupt::PollEvery;
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 use std::sync::LazyLock;
@@ -13,6 +14,8 @@ use std::sync::LazyLock;
 /// Taps on either side of an arrival that falls between samples.
 const HALF: i32 = 4;
 const TAPS: usize = 2 * HALF as usize;
+/// Some milliseconds of work.
+const ARRIVALS_BETWEEN_POLLS: usize = 16_384;
 /// Places between two samples.
 const PHASES: usize = 64;
 
@@ -67,12 +70,14 @@ impl TailNoise<'_> {
         let pulses = arrivals.iter().map(|arrival| self.pulse(arrival, levels));
         let pulses: Vec<BandValues> = pulses.collect();
         let mut bus: BandSignals = vec![Vec::new(); BAND_COUNT];
+        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
         for (channel, out) in channels.iter().zip(out.chunks_exact_mut(self.length)) {
             for band in &mut bus {
                 band.clear();
                 band.resize(self.length, 0.0);
             }
             for (arrival, pulse) in arrivals.iter().zip(&pulses) {
+                poll.turn();
                 let heard = channel.hear(speed, arrival.from);
                 let pulse = std::array::from_fn(|band| pulse[band] * heard.gain[band]);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &heard.delay);
@@ -112,6 +117,7 @@ impl TailNoise<'_> {
         let nowhere = DirectionalEnergy::default();
         let mut sampler = None;
         let mut arrivals = Vec::new();
+        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
         for (k, bin) in self.energy.iter().enumerate() {
             if k % tail.bins_per_direction.max(1) == 0 {
                 sampler = None;
@@ -128,6 +134,7 @@ impl TailNoise<'_> {
             // Keyed by the bin, so that what is drawn in one bin does not depend on the others.
             let mut stream = key.child(k as u64).stream();
             let count = poisson(self.arrivals_per_s * tail.bin_s, &mut stream).max(1);
+            poll.turns(count);
             let amplitude: BandValues =
                 std::array::from_fn(|b| (bin[b] / count as f64).sqrt() as f32);
             for _ in 0..count {
@@ -160,9 +167,11 @@ impl TailNoise<'_> {
         let wanted: [BandEnergy<'_>; BAND_COUNT] = std::array::from_fn(|band| self.wanted(band));
         let mut levels: BandGains = std::array::from_fn(|band| GainCurve::ones(&wanted[band]));
         let paths = self.bank.sift(paths);
+        let mut poll = PollEvery::new(ARRIVALS_BETWEEN_POLLS);
         for _ in 0..rounds {
             let mut bus: BandSignals = vec![vec![0.0; self.length]; BAND_COUNT];
             for arrival in arrivals {
+                poll.turn();
                 let pulse = self.pulse(arrival, &levels);
                 self.add_arrival(&mut bus, arrival.time_s, &pulse, &Delay::None);
             }

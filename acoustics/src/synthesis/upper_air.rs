@@ -7,6 +7,7 @@ use super::minimum_phase::PathFilters;
 use crate::bands::{self, BAND_COUNT};
 use crate::config::AcousticConfig;
 use crate::fft::RealFft;
+use dwell_scene::interrupt::PollEvery;
 use realfft::num_complex::Complex;
 
 /// What the filters of parts ring beyond this comes in again at the other end, s: they are a third of an octave wide or more.
@@ -80,7 +81,9 @@ impl UpperBands {
         let fft = RealFft::at_least(length + (WRAP_S * rate_hz) as usize);
         let count = centres_hz(rate_hz).count();
         let mut shares = vec![(0, Vec::new()); count];
+        let mut poll = PollEvery::new(4096);
         for bin in 0..fft.bins() {
+            poll.turn();
             let frequency_hz = bin as f64 * rate_hz / fft.len() as f64;
             // In thirds of an octave above the highest band, to which belongs what is below.
             let place = 10.0 * libm::log10(frequency_hz.max(1.0) / highest_hz());

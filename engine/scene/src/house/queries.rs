@@ -2,6 +2,7 @@
 
 use super::House;
 use super::data::Room;
+use crate::bounds::Aabb;
 use crate::ids::{AgentId, Entity, EntityId, Id, JointId, ObjectId, PartId, RoomId, StructureId};
 use crate::random::RandomKey;
 use crate::state::State;
@@ -93,6 +94,19 @@ impl House {
             .map(|(id, _)| id)
     }
 
+    /// Returns whether a point lies in no room; in a house without rooms: whether it lies beyond all walls. Nothing is outside of a
+    /// house with neither.
+    pub fn is_outside(&self, point: Vec3) -> bool {
+        if !self.rooms.is_empty() {
+            return self.room_at(point).is_none();
+        }
+        let pieces = self.structure.iter();
+        let bounds = pieces.fold(Aabb::EMPTY, |bounds, piece| {
+            bounds.union(&self.meshes[piece.mesh].bounds())
+        });
+        !self.structure.is_empty() && !bounds.contains(point)
+    }
+
     /// Points at half height over a room's floor, evenly spread by area: of `count`, those that lie in no smaller room.
     ///
     /// # Determinism
@@ -143,11 +157,11 @@ impl House {
     }
 
     /// The box around a part where it stands in `state`, m.
-    pub fn part_bounds(&self, state: &State, id: PartId) -> crate::Aabb {
+    pub fn part_bounds(&self, state: &State, id: PartId) -> Aabb {
         let part = &self.parts[id];
         let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
         let mesh = &self.meshes[part.mesh];
-        crate::Aabb::from_points(
+        Aabb::from_points(
             mesh.positions
                 .iter()
                 .map(|p| world_from_mesh.transform_point3(*p)),
@@ -155,16 +169,14 @@ impl House {
     }
 
     /// The box around an object where it stands in `state`, m.
-    pub fn object_bounds(&self, state: &State, id: ObjectId) -> crate::Aabb {
-        self.objects[id]
-            .parts()
-            .fold(crate::Aabb::EMPTY, |bounds, part| {
-                bounds.union(&self.part_bounds(state, part))
-            })
+    pub fn object_bounds(&self, state: &State, id: ObjectId) -> Aabb {
+        self.objects[id].parts().fold(Aabb::EMPTY, |bounds, part| {
+            bounds.union(&self.part_bounds(state, part))
+        })
     }
 
     /// The boxes around all objects where they stand in `state`, m. Shape (object,).
-    pub fn object_boxes(&self, state: &State) -> Vec<crate::Aabb> {
+    pub fn object_boxes(&self, state: &State) -> Vec<Aabb> {
         let ids = self.objects.ids();
         ids.map(|id| self.object_bounds(state, id)).collect()
     }
