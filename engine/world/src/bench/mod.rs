@@ -6,6 +6,7 @@ mod load;
 mod physics;
 mod render;
 mod table;
+mod unwinding;
 
 pub use physics::{BenchBoxes, BoxBody};
 

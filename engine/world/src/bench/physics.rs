@@ -1,5 +1,6 @@
 //! Physics steps a second: of one world as it falls to rest, without sleep, asleep, and of many worlds together.
 
+use super::unwinding::DropInBackground;
 use super::{BenchOptions, median};
 use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld};
@@ -201,18 +202,17 @@ fn together(
     let mut ratios = Vec::new();
     for _ in 0..options.repeats.min(5) {
         let alone = start.clone().run(options.steps)?;
-        let mut worlds: Vec<(BenchStart, Result<f64, WorldError>)> = (0..options.worlds)
-            .map(|_| {
-                interrupt::check();
-                (start.clone(), Ok(0.0))
-            })
-            .collect();
+        let mut worlds = DropInBackground(Vec::with_capacity(options.worlds));
+        for _ in 0..options.worlds {
+            interrupt::check();
+            worlds.push((start.clone(), Ok(0.0)));
+        }
         let begun = Instant::now();
         threads.for_each(&mut worlds, |_, (world, rate)| {
             *rate = world.run(options.steps);
         });
         let seconds = begun.elapsed().as_secs_f64();
-        for (_, rate) in worlds {
+        for (_, rate) in worlds.drain(..) {
             rate?;
         }
         ratios.push((options.worlds * options.steps) as f64 / seconds / alone);
