@@ -1,5 +1,6 @@
-//! One direction: `cargo metadata` compared with the list of the layers, and the page that draws it.
+//! One direction: `cargo metadata` compared with the list of the layers, the page that draws it, and the modules within each crate.
 
+mod circles;
 mod page;
 mod rules;
 mod uses;
@@ -29,6 +30,7 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     outcome
         .findings
         .extend(walls::check(&members, &tree, rules::WALLS));
+    outcome.join(circles::check(root, &members, rules::CIRCLES_HELD_BACK)?);
     outcome.findings.extend(check_page(root, &members));
     outcome.notes.push(format!(
         "{} crates, {} walls",
