@@ -5,6 +5,9 @@ use crate::directions::DirectionalEnergy;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+/// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.
+pub const NEAREST_M: f64 = 0.1;
+
 /// One deterministic path from source to receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PropagationPath {

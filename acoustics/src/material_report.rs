@@ -1,7 +1,7 @@
 //! What sound meets in a house, for people: areas, absorption, and what is only a guess.
 
 use crate::bands::{BAND_COUNT, BandValues};
-use crate::scene::AcousticScene;
+use crate::propagation_data::PropagationData;
 use dwell_scene::material::library;
 use dwell_scene::{Id, MaterialId};
 use glam::Vec3;
@@ -50,8 +50,8 @@ pub struct AcousticReport {
 }
 
 impl AcousticReport {
-    pub(crate) fn new(scene: &AcousticScene) -> Self {
-        let house = scene.house();
+    pub(crate) fn new(data: &PropagationData) -> Self {
+        let house = data.house();
         let mut area_of = vec![0.0_f64; house.materials.len()];
         let mut bounds: Option<(Vec3, Vec3)> = None;
         for placed in &house.geometry().placed {
@@ -74,7 +74,7 @@ impl AcousticReport {
             .zip(&area_of)
             .filter(|(_, area)| **area > 0.0)
             .map(|((id, material), area_m2)| {
-                let surface = scene.surface(id);
+                let surface = data.surface(id);
                 let known = library().get(&material.substance);
                 MaterialAcoustics {
                     material: id,
@@ -86,7 +86,7 @@ impl AcousticReport {
                     is_default: known.is_none_or(|substance| substance.name == *default)
                         && known
                             .is_none_or(|substance| substance.absorption == material.absorption),
-                    is_overridden: scene.is_overridden(&material.name),
+                    is_overridden: data.is_overridden(&material.name),
                 }
             })
             .collect();
@@ -116,7 +116,7 @@ impl AcousticReport {
             bounds_m: bounds.map_or_else(Default::default, |(low, high)| {
                 [low.to_array(), high.to_array()]
             }),
-            planes: scene.planes().len(),
+            planes: data.planes().len(),
             triangles: house.triangle_count(),
             materials: rows,
         }

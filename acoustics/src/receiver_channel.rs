@@ -180,7 +180,7 @@ mod tests {
     fn harmonics_are_orthogonal_and_of_unit_power() {
         let n = 20_000;
         let directions: Vec<Vec3> = (0..n)
-            .map(|k| crate::tail::fibonacci_direction(k, n))
+            .map(|k| crate::sphere_sequences::fibonacci_direction(k, n))
             .collect();
         for direction in &directions[..50] {
             for order in 0..4_usize {

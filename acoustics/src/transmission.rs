@@ -1,8 +1,8 @@
 //! Sound through walls and doors.
 
 use crate::bands::{BAND_COUNT, BandValues};
-use crate::scene::AcousticScene;
-use crate::tail::margin_m;
+use crate::propagation_data::PropagationData;
+use crate::ray_margin::margin_m;
 use dwell_scene::SurfaceOwner;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -27,7 +27,7 @@ struct TransmittingWall {
 
 /// The energy that gets from `source` to `receiver` through what stands between, and how many walls that is.
 pub(crate) fn transmitted(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
@@ -43,7 +43,7 @@ pub(crate) fn transmitted(
             return Some((fractions, walls.len()));
         };
         near_m = hit.distance_m + margin_m(whole.at(hit.distance_m));
-        let here = TransmittingWall::new(scene, rays, &hit);
+        let here = TransmittingWall::new(data, rays, &hit);
         // Both faces of a solid, or both shells of a wall, are crossed by one sound: it counts once, by its better insulator.
         if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
             wall.join(&here);
@@ -70,12 +70,12 @@ pub(crate) struct WallExit {
 
 /// Returns where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
 pub(crate) fn beyond(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     ray: &Ray,
     hit: &Hit,
 ) -> Option<WallExit> {
-    let mut wall = TransmittingWall::new(scene, rays, hit);
+    let mut wall = TransmittingWall::new(data, rays, hit);
     let mut last_m = hit.distance_m;
     for _ in 0..MOST_SURFACES {
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
@@ -84,7 +84,7 @@ pub(crate) fn beyond(
         let near_m = last_m + margin_m(ray.at(last_m));
         let rest = ray.between(near_m, hit.distance_m + THICKEST_WALL_M);
         let next = rays.closest(&rest, RayMask::EAR);
-        match next.map(|next| (TransmittingWall::new(scene, rays, &next), next.distance_m)) {
+        match next.map(|next| (TransmittingWall::new(data, rays, &next), next.distance_m)) {
             Some((here, distance_m)) if wall.is_same(&here) => {
                 wall.join(&here);
                 last_m = distance_m;
@@ -101,13 +101,13 @@ pub(crate) fn beyond(
 }
 
 impl TransmittingWall {
-    fn new(scene: &AcousticScene, rays: &RayScene, hit: &Hit) -> Self {
+    fn new(data: &PropagationData, rays: &RayScene, hit: &Hit) -> Self {
         let surface = rays.surface(hit);
         Self {
             owner: surface.owner,
             normal: surface.normal,
             first_m: hit.distance_m,
-            passed: scene.surface(surface.material).passed,
+            passed: data.surface(surface.material).passed,
         }
     }
 

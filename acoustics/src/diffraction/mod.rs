@@ -9,8 +9,7 @@ mod insertion_loss;
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::PropagationPath;
-use crate::image_sources;
-use crate::scene::AcousticScene;
+use crate::propagation_data::PropagationData;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use edge_path::{EdgeFrame, EdgePath};
@@ -72,17 +71,17 @@ impl EdgePoint {
 
 /// The paths from `source` around edges to `receiver`, which does not see it.
 pub(crate) fn around_edges(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
-    let n_per_m = insertion_loss::per_metre(scene.config().air.speed_of_sound_m_s());
+    let n_per_m = insertion_loss::per_metre(data.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let sight = |a, b| is_free(rays, a, b);
     let mut ways = Vec::new();
     let mut seen: Vec<(&EdgeFrame, &EdgePath, [bool; 2])> = Vec::new();
-    let near = near_edges(scene, from, to, LONGEST_DETOUR_M, |bend| {
+    let near = near_edges(data, from, to, LONGEST_DETOUR_M, |bend| {
         // What lies within the matter of an edge may be reached over a second one.
         bend.open[0] != bend.open[1] || (bend.hidden && bend.open == [true; 2])
     });
@@ -133,7 +132,7 @@ pub(crate) fn around_edges(
         return Vec::new();
     }
     let touched: Vec<EdgePoint> = ways.iter().flat_map(|way| way.touches.clone()).collect();
-    let kept = beside_edges(scene, rays, source, receiver, &touched);
+    let kept = beside_edges(data, rays, source, receiver, &touched);
     unite(&mut ways, &n_per_m);
     for way in &mut ways {
         for (amplitude, kept) in way.amplitude.iter_mut().zip(kept) {
@@ -145,7 +144,7 @@ pub(crate) fn around_edges(
     let towards = |from: DVec3, to: DVec3| (to - from).normalize_or_zero().as_vec3();
     let paths = ways.into_iter().map(|way| {
         let length_m = straight_m + way.detour_m;
-        let mut energy = image_sources::spread(scene, length_m);
+        let mut energy = data.spread(length_m);
         for (e, amplitude) in energy.iter_mut().zip(way.amplitude) {
             *e *= amplitude * amplitude;
         }
@@ -165,27 +164,27 @@ pub(crate) fn around_edges(
 
 /// Returns what edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
 pub(crate) fn in_sight(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> [f64; BAND_COUNT] {
-    beside_edges(scene, rays, source, receiver, &[])
+    beside_edges(data, rays, source, receiver, &[])
 }
 
 /// Returns what edges that hide nothing but are close to the straight line leave of the sound, but for those of profiles that are `touched`
 /// anyway. Shape (band,).
 fn beside_edges(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
     touched: &[EdgePoint],
 ) -> [f64; BAND_COUNT] {
-    let n_per_m = insertion_loss::per_metre(scene.config().air.speed_of_sound_m_s());
+    let n_per_m = insertion_loss::per_metre(data.config().air.speed_of_sound_m_s());
     let (from, to) = (source.as_dvec3(), receiver.as_dvec3());
     let longest_m = BESIDE_WAVES * 2.0 / n_per_m[0];
-    let near = near_edges(scene, from, to, longest_m, |bend| {
+    let near = near_edges(data, from, to, longest_m, |bend| {
         !bend.hidden && bend.facing > 0.0 && bend.open == [true; 2]
     });
     let mut kept = [1.0; BAND_COUNT];
@@ -215,7 +214,7 @@ fn is_free(rays: &RayScene, a: DVec3, b: DVec3) -> bool {
 
 /// The edges over which the way is at most `longest_m` longer and that are `wanted`, by their detours.
 fn near_edges(
-    scene: &AcousticScene,
+    data: &PropagationData,
     from: DVec3,
     to: DVec3,
     longest_m: f64,
@@ -223,7 +222,7 @@ fn near_edges(
 ) -> Vec<(EdgeFrame, EdgePath)> {
     let straight_m = from.distance(to);
     let mut near = Vec::new();
-    for edge in scene.edges() {
+    for edge in data.edges() {
         let [a, b] = edge.ends.map(Vec3::as_dvec3);
         let middle = 0.5 * (a + b);
         let least_m = from.distance(middle) + middle.distance(to) - a.distance(b);

@@ -3,9 +3,7 @@
 use super::{Ear, Head, HeadId, HeadTables, SphericalHead};
 use crate::bands::BandValues;
 use crate::config::AcousticConfig;
-use crate::error::AcousticsError;
-use crate::receiver::{Receiver, ReceiverKind};
-use crate::synthesis::minimum_phase::PathFilters;
+use crate::minimum_phase::PathFilters;
 use glam::{Quat, Vec3};
 use realfft::num_complex::Complex;
 use std::collections::BTreeMap;
@@ -66,16 +64,6 @@ impl HeadSet {
             heads.add(head);
         }
         heads
-    }
-
-    /// Returns whether a receiver's head is here.
-    pub(crate) fn check(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
-        match receiver.kind {
-            ReceiverKind::Head(id) if !self.knows(id) => {
-                Err(AcousticsError::UnknownHead { id: id.0 })
-            }
-            _ => Ok(()),
-        }
     }
 
     /// The ears of a head that is turned by `rotation`: left, right. `None`: the built-in head, as for one that is not here.

@@ -2,7 +2,7 @@
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::PropagationPath;
-use crate::scene::AcousticScene;
+use crate::propagation_data::PropagationData;
 use crate::transmission;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -10,20 +10,20 @@ use glam::Vec3;
 
 /// The direct path; `None` when nothing gets through.
 pub(super) fn direct(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> Option<PropagationPath> {
     let length_m = source.as_dvec3().distance(receiver.as_dvec3());
-    let passed = if scene.config().transmission {
-        transmission::transmitted(scene, rays, source, receiver)?
+    let passed = if data.config().transmission {
+        transmission::transmitted(data, rays, source, receiver)?
     } else {
         let blocked = rays.occluded(&Ray::segment(source, receiver, 0.0), RayMask::EAR);
         (!blocked).then_some(([1.0; BAND_COUNT], 0))?
     };
     let (fractions, walls) = passed;
-    let mut energy = super::spread(scene, length_m);
+    let mut energy = data.spread(length_m);
     for (e, fraction) in energy.iter_mut().zip(fractions) {
         *e *= f64::from(fraction);
     }

@@ -1,40 +1,37 @@
 //! Early sound: the direct path or the ways around what hides it, and mirror images up to a low order, each checked against the
 //! geometry.
 
+mod corners;
 mod direct;
-mod early_paths;
 mod sequences;
 mod visibility;
 
 use crate::bands::BAND_COUNT;
 use crate::diffraction;
 use crate::echogram::PropagationPath;
+use crate::propagation_data::PropagationData;
 use crate::receiver::SoundSourcePose;
-use crate::scene::AcousticScene;
+pub(crate) use corners::corners;
 use dwell_scene::rays::RayScene;
-pub use early_paths::EarlyPath;
 use glam::{DVec3, Vec3};
 use visibility::ImageValidator;
 
-/// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.
-pub const NEAREST_M: f64 = 0.1;
-
 /// All audible paths of order 0 to the configured order, by length.
 pub(crate) fn find(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: &SoundSourcePose,
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
-    let mut paths = find_omnidirectional(scene, rays, source.position(), receiver);
-    radiate(scene, source, &mut paths);
+    let mut paths = find_omnidirectional(data, rays, source.position(), receiver);
+    radiate(data, source, &mut paths);
     paths
 }
 
 /// Gives paths of a source that radiates equally in all directions what it radiates into each.
-fn radiate(scene: &AcousticScene, source: &SoundSourcePose, paths: &mut Vec<PropagationPath>) {
-    let speed_m_s = scene.config().air.speed_of_sound_m_s();
-    let (axis, pattern) = scene.effects().radiation(source, speed_m_s);
+fn radiate(data: &PropagationData, source: &SoundSourcePose, paths: &mut Vec<PropagationPath>) {
+    let speed_m_s = data.config().air.speed_of_sound_m_s();
+    let (axis, pattern) = data.effects().radiation(source, speed_m_s);
     if !pattern.is_omni() {
         for path in paths.iter_mut() {
             let gain = pattern.gain(axis.dot(path.departure));
@@ -49,18 +46,18 @@ fn radiate(scene: &AcousticScene, source: &SoundSourcePose, paths: &mut Vec<Prop
 
 /// The same for a source that radiates equally in all directions.
 fn find_omnidirectional(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
-    let validator = ImageValidator::new(scene, rays, source, receiver);
+    let validator = ImageValidator::new(data, rays, source, receiver);
     let mut paths: Vec<(PropagationPath, DVec3)> = Vec::new();
-    for path in straight(scene, rays, source, receiver) {
+    for path in straight(data, rays, source, receiver) {
         let from = path.bends.first().copied().unwrap_or(source);
         paths.push((path, from.as_dvec3()));
     }
-    sequences::for_each(scene, rays, source, receiver, |planes, images| {
+    sequences::for_each(data, rays, source, receiver, |planes, images| {
         if let Some(path) = validator.path(planes, images) {
             paths.push((path, *images.last().unwrap_or(&DVec3::ZERO)));
         }
@@ -86,25 +83,25 @@ fn find_omnidirectional(
 
 /// The straight way, in sight or through walls, and where it is not in sight, those around what hides it.
 fn straight(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
 ) -> Vec<PropagationPath> {
-    let mut direct = direct::direct(scene, rays, source, receiver);
+    let mut direct = direct::direct(data, rays, source, receiver);
     let mut paths = Vec::new();
-    if scene.config().diffraction {
+    if data.config().diffraction {
         match &mut direct {
             Some(path) if path.walls == 0 => {
-                let kept = diffraction::in_sight(scene, rays, source, receiver);
+                let kept = diffraction::in_sight(data, rays, source, receiver);
                 for (e, kept) in path.energy.iter_mut().zip(kept) {
                     *e *= kept as f32;
                 }
             }
             _ => {
-                paths = diffraction::around_edges(scene, rays, source, receiver);
+                paths = diffraction::around_edges(data, rays, source, receiver);
                 if let Some(wall_chance) = &direct {
-                    subtract_transmitted(scene, wall_chance, &mut paths);
+                    subtract_transmitted(data, wall_chance, &mut paths);
                 }
             }
         }
@@ -115,11 +112,11 @@ fn straight(
 
 /// Takes what comes `wall_chance` a screen off the paths around it: it is not missing behind it (Babinet's principle).
 fn subtract_transmitted(
-    scene: &AcousticScene,
+    data: &PropagationData,
     wall_chance: &PropagationPath,
     around: &mut Vec<PropagationPath>,
 ) {
-    let whole = spread(scene, wall_chance.length_m);
+    let whole = data.spread(wall_chance.length_m);
     let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
         // Over a long way air leaves nothing at all of high notes.
         let passed = f64::from(wall_chance.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
@@ -137,28 +134,20 @@ fn subtract_transmitted(
 /// Returns what becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
 /// reflections that are still there.
 pub(crate) fn follow(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
     known: &[PropagationPath],
 ) -> Vec<PropagationPath> {
-    let validator = ImageValidator::new(scene, rays, source, receiver);
-    let mut paths = straight(scene, rays, source, receiver);
+    let validator = ImageValidator::new(data, rays, source, receiver);
+    let mut paths = straight(data, rays, source, receiver);
     let mut images = Vec::new();
     for path in known.iter().filter(|path| !path.planes.is_empty()) {
-        if sequences::mirror(scene.planes(), source.as_dvec3(), &path.planes, &mut images) {
+        if sequences::mirror(data.planes(), source.as_dvec3(), &path.planes, &mut images) {
             paths.extend(validator.path(&path.planes, &images));
         }
     }
-    radiate(scene, &SoundSourcePose::at(source), &mut paths);
+    radiate(data, &SoundSourcePose::at(source), &mut paths);
     paths
-}
-
-/// Energy of a free path: 1/d² and what air leaves of it.
-pub(crate) fn spread(scene: &AcousticScene, length_m: f64) -> [f64; BAND_COUNT] {
-    let distance = length_m.max(NEAREST_M);
-    scene
-        .air_decay_per_m()
-        .map(|m| libm::exp(-m * length_m) / (distance * distance))
 }

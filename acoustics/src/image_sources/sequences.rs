@@ -1,8 +1,9 @@
 //! Which sequences of mirrors are worth a look.
 
 use crate::planes::{NO_PLANE, Plane};
-use crate::scene::AcousticScene;
-use crate::tail::fibonacci_direction;
+use crate::propagation_data::PropagationData;
+use crate::ray_margin::margin_m;
+use crate::sphere_sequences::fibonacci_direction;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
@@ -19,14 +20,14 @@ const ON_PLANE_M: f64 = 1e-6;
 /// Tried are all sequences of the largest planes, as long as an order has not too many of them, and those that rays from
 /// the receiver run through.
 pub(super) fn for_each(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: Vec3,
     receiver: Vec3,
     mut visit: impl FnMut(&[u32], &[DVec3]),
 ) {
-    let config = scene.config();
-    let largest = scene.table().largest();
+    let config = data.config();
+    let largest = data.table().largest();
     let tried = &largest[..largest.len().min(config.image_planes)];
     let mut exhaustive = 0;
     let mut count = 1;
@@ -37,7 +38,7 @@ pub(super) fn for_each(
     let source = source.as_dvec3();
     if exhaustive > 0 && !tried.is_empty() {
         let mut walk = SequenceSearch {
-            planes: scene.planes(),
+            planes: data.planes(),
             tried,
             order: exhaustive,
             sequence: Vec::new(),
@@ -46,9 +47,9 @@ pub(super) fn for_each(
         walk.descend(&mut visit);
     }
     let mut images = Vec::new();
-    for sequence in discover(scene, rays, receiver) {
+    for sequence in discover(data, rays, receiver) {
         let known = sequence.len() <= exhaustive && sequence.iter().all(|p| tried.contains(p));
-        if !known && mirror(scene.planes(), source, &sequence, &mut images) {
+        if !known && mirror(data.planes(), source, &sequence, &mut images) {
             visit(&sequence, &images);
         }
     }
@@ -108,8 +109,8 @@ impl SequenceSearch<'_> {
 }
 
 /// The sequences, from the source on, that specular rays from the receiver run through backwards.
-fn discover(scene: &AcousticScene, rays: &RayScene, receiver: Vec3) -> BTreeSet<Vec<u32>> {
-    let config = scene.config();
+fn discover(data: &PropagationData, rays: &RayScene, receiver: Vec3) -> BTreeSet<Vec<u32>> {
+    let config = data.config();
     let mut found = BTreeSet::new();
     for k in 0..config.discovery_rays {
         let mut ray = Ray::new(receiver, fibonacci_direction(k, config.discovery_rays));
@@ -118,16 +119,16 @@ fn discover(scene: &AcousticScene, rays: &RayScene, receiver: Vec3) -> BTreeSet<
             let Some(hit) = rays.closest(&ray, RayMask::EAR) else {
                 break;
             };
-            let id = scene.table().of_hit(scene.house(), &hit);
+            let id = data.table().of_hit(data.house(), &hit);
             if id == NO_PLANE || backwards.last() == Some(&id) {
                 break;
             }
             backwards.push(id);
             found.insert(backwards.iter().rev().copied().collect());
-            let normal = scene.planes()[id as usize].normal.as_vec3();
+            let normal = data.planes()[id as usize].normal.as_vec3();
             let point = ray.at(hit.distance_m);
             let direction = ray.direction - 2.0 * ray.direction.dot(normal) * normal;
-            ray = Ray::new(point, direction).between(crate::tail::margin_m(point), f32::INFINITY);
+            ray = Ray::new(point, direction).between(margin_m(point), f32::INFINITY);
         }
     }
     found

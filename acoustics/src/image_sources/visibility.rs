@@ -1,8 +1,8 @@
 //! Whether a mirror image can be heard: the path back through its mirrors, in double precision and against the BVH.
 
 use crate::echogram::PropagationPath;
-use crate::scene::AcousticScene;
-use crate::tail::margin_m;
+use crate::propagation_data::PropagationData;
+use crate::ray_margin::margin_m;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 const TOLERANCE_M: f32 = 2e-3;
 
 pub(super) struct ImageValidator<'a> {
-    scene: &'a AcousticScene,
+    data: &'a PropagationData,
     rays: &'a RayScene,
     source: DVec3,
     receiver: DVec3,
@@ -19,13 +19,13 @@ pub(super) struct ImageValidator<'a> {
 
 impl<'a> ImageValidator<'a> {
     pub(super) fn new(
-        scene: &'a AcousticScene,
+        data: &'a PropagationData,
         rays: &'a RayScene,
         source: Vec3,
         receiver: Vec3,
     ) -> Self {
         Self {
-            scene,
+            data,
             rays,
             source: source.as_dvec3(),
             receiver: receiver.as_dvec3(),
@@ -46,7 +46,7 @@ impl<'a> ImageValidator<'a> {
         // Geometry first: it rejects nearly all candidates without a ray.
         let mut target = self.receiver;
         for k in (0..order).rev() {
-            let plane = self.scene.planes().get(planes[k] as usize)?;
+            let plane = self.data.planes().get(planes[k] as usize)?;
             let (here, there) = (plane.distance_m(target), plane.distance_m(images[k]));
             if here * there >= 0.0 {
                 return None;
@@ -59,21 +59,21 @@ impl<'a> ImageValidator<'a> {
             target = point;
         }
         let length_m = images.last()?.distance(self.receiver);
-        let mut energy = super::spread(self.scene, length_m);
+        let mut energy = self.data.spread(length_m);
         let mut from = self.receiver;
         let mut leaves_surface = false;
         for k in (0..order).rev() {
             let hit = self.leg(from, points[k], leaves_surface)?;
-            if self.scene.table().of_hit(self.scene.house(), &hit) != planes[k] {
+            if self.data.table().of_hit(self.data.house(), &hit) != planes[k] {
                 return None;
             }
             let surface = self.rays.surface(&hit);
-            let material = self.scene.surface(surface.material);
+            let material = self.data.surface(surface.material);
             let incoming = (from - points[k]).normalize_or_zero().as_vec3();
             let cosine = incoming.dot(surface.normal).abs();
             // The way from the source, unfolded.
             let straight_m = images[k].distance(points[k]);
-            let scattering = self.scene.scattering(material, &hit, cosine, straight_m);
+            let scattering = self.data.scattering(material, &hit, cosine, straight_m);
             let factors = material.absorption.iter().zip(scattering);
             for (e, (absorption, scattering)) in energy.iter_mut().zip(factors) {
                 *e *= f64::from(1.0 - absorption) * (1.0 - f64::from(scattering));

@@ -3,7 +3,7 @@
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
 use super::{AcousticLaw, BAND_DB, LawNumbers, SignalStage};
-use crate::synthesis::minimum_phase::PathFilters;
+use crate::minimum_phase::PathFilters;
 use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
 

@@ -118,7 +118,11 @@ impl Stream {
         let settings = scene.config();
         let longest_s = settings.max_duration_s + 0.02;
         let longest = (longest_s * f64::from(settings.rate_hz)).ceil() as usize;
-        let large_parts = scene.table().parts_larger_than(LARGE_PART_M).collect();
+        let large_parts = scene
+            .data()
+            .table()
+            .parts_larger_than(LARGE_PART_M)
+            .collect();
         Ok(Self {
             partitions: longest.div_ceil(config.block_samples).max(1),
             fft: RealFft::new(2 * config.block_samples),

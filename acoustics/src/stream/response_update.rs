@@ -71,11 +71,19 @@ impl ResponseUpdater<'_> {
         let (scene, rays, source) = (self.scene, self.rays, &self.source);
         let centre = self.receiver.position();
         let (count, key) = (scene.config().rays, self.key.child("tail"));
-        let trace = TailTrace::new(scene, rays, source, &[centre], count, key, self.threads);
+        let trace = TailTrace::new(
+            scene.data(),
+            rays,
+            source,
+            &[centre],
+            count,
+            key,
+            self.threads,
+        );
         if !trace.advance(progress, most) {
             return Ok(None);
         }
-        let paths = image_sources::find(scene, rays, source, centre);
+        let paths = image_sources::find(scene.data(), rays, source, centre);
         let late = trace.end(progress.clone()).into_iter();
         let echograms =
             late.map(|late| scene.joined(paths.clone(), late, source.position(), centre));

@@ -1,7 +1,6 @@
 //! From energies to pressure.
 
 mod fractional_delay;
-pub(crate) mod minimum_phase;
 mod noise_gains;
 mod smooth;
 mod tail_noise;
@@ -9,14 +8,14 @@ mod upper_air;
 
 use crate::bands::{BAND_COUNT, BandValues, FilterBank};
 use crate::config::AcousticConfig;
-use crate::echogram::{Echogram, PropagationPath};
+use crate::echogram::{Echogram, NEAREST_M, PropagationPath};
 use crate::fft::RealFft;
 use crate::head::HeadSet;
+use crate::minimum_phase::{self, EAR_LEAD_S, PathFilters};
 use crate::receiver::Receiver;
 use crate::receiver_channel::ReceiverChannel;
 use dwell_scene::random::RandomKey;
 use fractional_delay::FractionalDelay;
-use minimum_phase::{EAR_LEAD_S, PathFilters};
 pub(crate) use noise_gains::CachedGains;
 use serde::{Deserialize, Serialize};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
@@ -298,7 +297,7 @@ impl Synthesizer {
                     0
                 },
                 amplitude,
-                delay_s: delay_s + path.length_m.max(crate::image_sources::NEAREST_M) / speed_m_s,
+                delay_s: delay_s + path.length_m.max(NEAREST_M) / speed_m_s,
             }
         })
     }

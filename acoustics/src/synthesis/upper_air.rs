@@ -3,10 +3,10 @@
 //! Surfaces, walls and edges do to all higher sound what they do at 8 kHz. Air takes far more of it, the more the higher it is: at
 //! 16 kHz three and a half times as much.
 
-use super::minimum_phase::PathFilters;
 use crate::bands::{self, BAND_COUNT};
 use crate::config::AcousticConfig;
 use crate::fft::RealFft;
+use crate::minimum_phase::PathFilters;
 use dwell_scene::interrupt::PollEvery;
 use realfft::num_complex::Complex;
 

@@ -13,8 +13,8 @@ use crate::bands::{BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
 use crate::directions::{CELL_COUNT, DirectionalEnergy};
 use crate::echogram::{EnergyHistogram, RayStatistics, SPAN_COUNT};
+use crate::propagation_data::PropagationData;
 use crate::receiver::SoundSourcePose;
-use crate::scene::AcousticScene;
 use dwell_scene::math::sin_cos;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -40,45 +40,6 @@ const PROBES: (usize, usize) = (128, 512);
 const OPEN_AIR_M: f32 = 20.0;
 /// Time over which directions are summed, s.
 const DIRECTION_S: f64 = 0.02;
-
-/// Returns how far a ray starts off the surface at `point`, m: more than what f32 loses there.
-pub(crate) fn margin_m(point: Vec3) -> f32 {
-    1e-4 * point.abs().max_element().max(1.0)
-}
-
-/// Direction `k` of `count` that cover the sphere evenly.
-///
-/// # Source
-/// R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132, 1769 (2006): the Fibonacci lattice.
-pub(crate) fn fibonacci_direction(k: usize, count: usize) -> Vec3 {
-    let y = 1.0 - (2 * k + 1) as f64 / count.max(1) as f64;
-    on_sphere(y, k as f64 * 0.618_033_988_749_894_9)
-}
-
-/// Direction `k` of a sequence every beginning of which covers the sphere evenly.
-///
-/// # Source
-/// M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences* (2018): the additive recurrence of the plastic number,
-/// mapped to the sphere by equal areas.
-fn sequence_direction(k: usize, (u, v): (f64, f64)) -> Vec3 {
-    let place = |start: f64, step: f64| {
-        let x = start + k as f64 * step;
-        x - x.floor()
-    };
-    let y = 1.0 - 2.0 * place(u, 0.754_877_666_246_692_7);
-    on_sphere(y, place(v, 0.569_840_290_998_053_2))
-}
-
-/// The unit vector at height `y` and some turns about the vertical.
-fn on_sphere(y: f64, turns: f64) -> Vec3 {
-    let angle = std::f64::consts::TAU * (turns - turns.floor());
-    let r = (1.0 - y * y).max(0.0).sqrt();
-    Vec3::new(
-        (r * libm::cos(angle)) as f32,
-        y as f32,
-        (r * libm::sin(angle)) as f32,
-    )
-}
 
 /// A rotation, uniform over all.
 ///
@@ -207,7 +168,7 @@ fn times(config: &AcousticConfig) -> usize {
 
 /// The tails from one source to some receivers, all by the same rays.
 pub(crate) struct TailTrace<'a> {
-    scene: &'a AcousticScene,
+    data: &'a PropagationData,
     rays: &'a RayScene,
     source: &'a SoundSourcePose,
     listeners: Vec<TailReceiver>,
@@ -219,7 +180,7 @@ pub(crate) struct TailTrace<'a> {
 
 /// Traces the tails from `source` to `receivers`, all by the same `count` rays.
 pub(crate) fn trace(
-    scene: &AcousticScene,
+    data: &PropagationData,
     rays: &RayScene,
     source: &SoundSourcePose,
     receivers: &[Vec3],
@@ -227,8 +188,8 @@ pub(crate) fn trace(
     key: RandomKey,
     threads: Threads,
 ) -> Vec<LateReverberation> {
-    let trace = TailTrace::new(scene, rays, source, receivers, count, key, threads);
-    let mut progress = TraceProgress::new(scene.config(), receivers.len());
+    let trace = TailTrace::new(data, rays, source, receivers, count, key, threads);
+    let mut progress = TraceProgress::new(data.config(), receivers.len());
     trace.advance(&mut progress, usize::MAX);
     trace.end(progress)
 }
@@ -236,7 +197,7 @@ pub(crate) fn trace(
 impl<'a> TailTrace<'a> {
     /// Looks around from the receivers.
     pub(crate) fn new(
-        scene: &'a AcousticScene,
+        data: &'a PropagationData,
         rays: &'a RayScene,
         source: &'a SoundSourcePose,
         receivers: &[Vec3],
@@ -244,14 +205,14 @@ impl<'a> TailTrace<'a> {
         key: RandomKey,
         threads: Threads,
     ) -> Self {
-        let config = scene.config();
+        let config = data.config();
         let probes = config.discovery_rays.clamp(PROBES.0, PROBES.1);
         let listeners = threads.map(receivers.len(), |k| {
             let (radius_m, source) = (config.receiver_radius_m, source.position());
             TailReceiver::new(rays, source, receivers[k], radius_m, probes)
         });
         Self {
-            scene,
+            data,
             rays,
             source,
             listeners,
@@ -268,14 +229,14 @@ impl<'a> TailTrace<'a> {
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
     /// chapter 5 (diffuse rain), here in the limit of a small receiver.
     pub(crate) fn advance(&self, progress: &mut TraceProgress, most: usize) -> bool {
-        let (config, key) = (self.scene.config(), self.key);
+        let (config, key) = (self.data.config(), self.key);
         let speed = config.air.speed_of_sound_m_s();
         let (bin_count, times) = (config.bin_count(), times(config));
         let hidden = self.listeners.iter().any(|listener| listener.hidden);
         let mut start = key.child("turn").stream();
-        let (axis, pattern) = self.scene.effects().radiation(self.source, speed);
+        let (axis, pattern) = self.data.effects().radiation(self.source, speed);
         let walk = RayTracer {
-            scene: self.scene,
+            data: self.data,
             rays: self.rays,
             source: self.source.position(),
             axis,
@@ -332,7 +293,7 @@ impl<'a> TailTrace<'a> {
 
     /// Returns what all rays so far tell. Shape (receiver,).
     pub(crate) fn end(&self, progress: TraceProgress) -> Vec<LateReverberation> {
-        let config = self.scene.config();
+        let config = self.data.config();
         let speed = config.air.speed_of_sound_m_s();
         let chunks = progress.chunks;
         let traced = chunks.saturating_mul(RAYS_PER_CHUNK).min(self.count);
@@ -343,7 +304,7 @@ impl<'a> TailTrace<'a> {
             mean_free_path_m: progress.length_m / (progress.segments.max(1)) as f64,
             ..RayStatistics::default()
         };
-        let decay = self.scene.air_decay_per_m();
+        let decay = self.data.air_decay_per_m();
         let both = progress.sums.into_iter().zip(&self.listeners);
         let late = both.map(|(sums, listener)| {
             let relative_error = sums.relative_error(chunks).map(|e| e as f32);
@@ -403,31 +364,6 @@ impl ReceiverSums {
         for (sum, cell) in self.directions.iter_mut().zip(directions) {
             for (total, e) in sum.iter_mut().zip(cell) {
                 *total += e;
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directions_cover_the_sphere_evenly() {
-        let n = 5000;
-        let lattice: Vec<Vec3> = (0..n).map(|k| fibonacci_direction(k, n)).collect();
-        let sequence: Vec<Vec3> = (0..n).map(|k| sequence_direction(k, (0.3, 0.8))).collect();
-        for (directions, tolerance) in [
-            (&lattice[..], 1e-3),
-            (&sequence, 3e-3),
-            (&sequence[..640], 1e-2),
-        ] {
-            let n = directions.len() as f32;
-            let mean = directions.iter().sum::<Vec3>() / n;
-            assert!(mean.length() < tolerance, "{mean}");
-            for axis in [Vec3::X, Vec3::Y, Vec3::new(0.6, 0.0, 0.8)] {
-                let second: f32 = directions.iter().map(|d| d.dot(axis).powi(2)).sum::<f32>() / n;
-                assert!((second - 1.0 / 3.0).abs() < tolerance);
             }
         }
     }

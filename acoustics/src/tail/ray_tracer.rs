@@ -1,12 +1,14 @@
 //! One ray's way through the house.
 
 use super::receiver_volume::TailReceiver;
-use super::{RAYS_PER_CHUNK, RayChunk, margin_m, sequence_direction};
+use super::{RAYS_PER_CHUNK, RayChunk};
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::directions::{CELL_COUNT, cell_of};
 use crate::directivity::TabulatedPattern;
 use crate::echogram::SPAN_COUNT;
-use crate::scene::AcousticScene;
+use crate::propagation_data::PropagationData;
+use crate::ray_margin::margin_m;
+use crate::sphere_sequences::sequence_direction;
 use crate::surface::ReflectedEnergy;
 use crate::transmission;
 use dwell_scene::bvh::{Hit, Ray, RayMask};
@@ -32,7 +34,7 @@ const STAGE_M: f32 = 5.0;
 
 /// What all rays of one trace have in common.
 pub(super) struct RayTracer<'a> {
-    pub(super) scene: &'a AcousticScene,
+    pub(super) data: &'a PropagationData,
     pub(super) rays: &'a RayScene,
     pub(super) source: Vec3,
     /// The source's axis and how loud it is around it.
@@ -167,7 +169,7 @@ impl RayTracer<'_> {
         chunk: &mut RayChunk,
         beyond: &mut Vec<TracedRay>,
     ) -> Option<TracedRay> {
-        let images = self.scene.config().image_order;
+        let images = self.data.config().image_order;
         while one.travelled_m < end_m {
             if one.reflections == MOST_REFLECTIONS {
                 return None;
@@ -193,7 +195,7 @@ impl RayTracer<'_> {
                 return None;
             }
             let surface = self.rays.surface(&hit);
-            let material = self.scene.surface(surface.material);
+            let material = self.data.surface(surface.material);
             if self.wall_chance > 0.0 && material.passed.iter().any(|passed| *passed > 0.0) {
                 self.pass(&one, &hit, random.aside, beyond);
             }
@@ -205,7 +207,7 @@ impl RayTracer<'_> {
                 surface.normal
             };
             let scattering =
-                self.scene
+                self.data
                     .scattering(material, &hit, cosine.abs(), f64::from(one.straight_m));
             let parts = material.parts(cosine.abs(), &scattering);
             let start = point + normal * margin_m(point);
@@ -255,8 +257,8 @@ impl RayTracer<'_> {
                 if !(looks_through && listener.hidden) {
                     continue;
                 }
-                let (scene, rays) = (self.scene, self.rays);
-                let passed = transmission::transmitted(scene, rays, start, listener.position);
+                let (data, rays) = (self.data, self.rays);
+                let passed = transmission::transmitted(data, rays, start, listener.position);
                 let Some((passed, _)) = passed else {
                     continue;
                 };
@@ -282,11 +284,11 @@ impl RayTracer<'_> {
             return;
         }
         // Nothing of furniture keeps rooms apart.
-        let panel = self.scene.table().panel(self.scene.house(), hit);
+        let panel = self.data.table().panel(self.data.house(), hit);
         if panel.area_m2 < WALL_M2 {
             return;
         }
-        let Some(exit) = transmission::beyond(self.scene, self.rays, &one.ray, hit) else {
+        let Some(exit) = transmission::beyond(self.data, self.rays, &one.ray, hit) else {
             return;
         };
         let mut energy = one.energy;

@@ -1,6 +1,7 @@
 //! What a receiver is to the rays: a point that is shone upon, and balls around it that are crossed.
 
-use super::{OPEN_AIR_M, fibonacci_direction};
+use super::OPEN_AIR_M;
+use crate::sphere_sequences::fibonacci_direction;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::Vec3;

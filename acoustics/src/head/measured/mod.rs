@@ -88,7 +88,7 @@ impl HeadResponses {
         }
         let measured = directions.len();
         for k in 0..FILLERS {
-            let direction = crate::tail::fibonacci_direction(k, FILLERS).as_dvec3();
+            let direction = crate::sphere_sequences::fibonacci_direction(k, FILLERS).as_dvec3();
             let direction = direction / direction.length();
             let nearest = directions[..measured].iter().map(|d| d.dot(direction));
             if nearest.fold(-1.0, f64::max) < GAP_COSINE {

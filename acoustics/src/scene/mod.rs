@@ -1,6 +1,9 @@
 //! A house as sound sees it.
 
-use crate::bands::{BAND_COUNT, BandValues, NOMINAL_CENTRES_HZ};
+mod early_paths;
+
+pub use early_paths::EarlyPath;
+
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, PropagationPath};
 use crate::error::{AcousticsError, finite};
@@ -8,28 +11,24 @@ use crate::head::{Head, HeadSet};
 use crate::laws::{self, PathEffects, microphone_stage::StageContext};
 use crate::material_report::AcousticReport;
 use crate::microphone_chain::MicrophoneChain;
-use crate::planes::{DiffractionEdge, Plane, PlaneTable, WALL_M2};
-use crate::receiver::{Receiver, SoundSourcePose};
+use crate::planes::{DiffractionEdge, Plane};
+use crate::propagation_data::PropagationData;
+use crate::receiver::{Receiver, ReceiverKind, SoundSourcePose};
 use crate::response::ImpulseResponse;
-use crate::surface::AcousticSurface;
 use crate::synthesis::{CachedGains, HearingContext, Synthesizer, UpperAir, Wavelet};
 use crate::tail::LateReverberation;
 use crate::{image_sources, tail};
-use dwell_scene::bvh::Hit;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Address, House, LawSpec, MaterialId, Pose, State};
+use dwell_scene::{House, LawSpec, State};
 use glam::Vec3;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Places within a cell of this size have the same random arrivals, m.
 const CELL_M: f64 = 0.1;
 /// Where cells begin: off the round numbers that things are put at.
 const CELL_START: f64 = 0.32;
-/// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
-const NEXT_WAY_M: f64 = 3.0;
 
 /// A house prepared for sound, as it stands in one world.
 ///
@@ -37,27 +36,14 @@ const NEXT_WAY_M: f64 = 3.0;
 /// planes) is not, and is small. Make one, and clone it for each world.
 #[derive(Clone, Debug)]
 pub struct AcousticScene {
-    house: Arc<House>,
     /// As it was asked for.
     stated: AcousticConfig,
-    /// As laws make it.
-    config: AcousticConfig,
-    effects: PathEffects,
     laws: Vec<LawSpec>,
-    table: Arc<PlaneTable>,
+    data: PropagationData,
     synthesizer: Arc<Synthesizer>,
     heads: Arc<HeadSet>,
     /// What air takes above the highest band, where that can be heard.
     upper_air: Option<Arc<UpperAir>>,
-    /// Where all planes are now.
-    planes: Vec<Plane>,
-    /// Where the edges of moving parts are now.
-    moving_edges: Vec<DiffractionEdge>,
-    /// Where the moving parts are now. Shape (moving part,).
-    poses: Vec<Pose>,
-    /// Shape (material,).
-    surfaces: Vec<AcousticSurface>,
-    overrides: BTreeMap<Address, f64>,
 }
 
 impl AcousticScene {
@@ -67,28 +53,15 @@ impl AcousticScene {
     /// [`AcousticsError::Range`] for a setting out of range.
     pub fn new(house: Arc<House>, config: AcousticConfig) -> Result<Self, AcousticsError> {
         config.check()?;
-        let table = Arc::new(PlaneTable::new(&house));
-        tracing::debug!(planes = table.len(), "acoustic planes built");
+        let data = PropagationData::new(house, config);
         let synthesizer = Synthesizer::shared(&config);
         Ok(Self {
-            planes: table.at_start.clone(),
-            moving_edges: table.edges().at_start(&house),
-            poses: table.poses_at_start(&house),
-            surfaces: house
-                .materials
-                .ids()
-                .map(|id| AcousticSurface::new(&house, None, id, &config))
-                .collect(),
             upper_air: synthesizer.upper_air(&config, 1.0).map(Arc::new),
             synthesizer,
             heads: Arc::new(HeadSet::new(&config)),
-            overrides: BTreeMap::new(),
             stated: config,
-            effects: PathEffects::default(),
             laws: Vec::new(),
-            table,
-            config,
-            house,
+            data,
         })
     }
 
@@ -98,32 +71,21 @@ impl AcousticScene {
             self.laws.clone_from(&state.laws);
             self.apply_laws(laws::path_effects(&self.laws));
         }
-        if state.overrides != self.overrides {
-            self.overrides.clone_from(&state.overrides);
-            let ids = self.house.materials.ids();
-            self.surfaces = ids
-                .map(|id| AcousticSurface::new(&self.house, Some(state), id, &self.config))
-                .collect();
-        }
-        if self.table.update(&mut self.planes, &mut self.poses, state) {
-            self.moving_edges = self.table.edges().in_state(&self.house, state);
-        }
+        self.data.update(state);
     }
 
     fn apply_laws(&mut self, effects: PathEffects) {
-        let (air, absorption) = (self.config.air, self.effects.air_absorption());
-        self.config = effects.config(&self.stated);
-        self.effects = effects;
-        if self.config.air != air {
+        let air = self.config().air;
+        let absorption = self.effects().air_absorption();
+        self.data.apply(effects, &self.stated);
+        let config = *self.config();
+        if config.air != air {
             // Ears are as far apart as sound is slow.
-            self.heads = Arc::new(self.heads.in_air(&self.config));
+            self.heads = Arc::new(self.heads.in_air(&config));
         }
-        let share = self.effects.air_absorption();
-        if self.config.air != air || share != absorption {
-            self.upper_air = self
-                .synthesizer
-                .upper_air(&self.config, share)
-                .map(Arc::new);
+        let share = self.effects().air_absorption();
+        if config.air != air || share != absorption {
+            self.upper_air = self.synthesizer.upper_air(&config, share).map(Arc::new);
         }
     }
 
@@ -143,106 +105,37 @@ impl AcousticScene {
 
     /// Returns what laws do to air and sources.
     pub(crate) fn effects(&self) -> &PathEffects {
-        &self.effects
+        self.data.effects()
+    }
+
+    /// Returns what rays, images and edges read.
+    pub(crate) fn data(&self) -> &PropagationData {
+        &self.data
     }
 
     /// The house.
     pub fn house(&self) -> &Arc<House> {
-        &self.house
+        self.data.house()
     }
 
     /// The settings, with the air as laws make it.
     pub fn config(&self) -> &AcousticConfig {
-        &self.config
+        self.data.config()
     }
 
     /// All planes where they are now, largest of the static ones first.
     pub fn planes(&self) -> &[Plane] {
-        &self.planes
+        self.data.planes()
     }
 
     /// All edges that sound bends around, where they are now.
     pub fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
-        let fixed = self.table.edges().fixed.iter();
-        fixed.chain(&self.moving_edges)
-    }
-
-    pub(crate) fn table(&self) -> &PlaneTable {
-        &self.table
-    }
-
-    pub(crate) fn surface(&self, id: MaterialId) -> &AcousticSurface {
-        use dwell_scene::Id;
-        // An id of another house counts as a hard wall; houses are compared where calls come in.
-        self.surfaces
-            .get(id.index())
-            .unwrap_or(&AcousticSurface::HARD)
-    }
-
-    /// The fraction of reflected energy that a surface scatters where a ray meets it, after `straight_m` from the source or the
-    /// last scattering and with a cosine of incidence. Shape (band,).
-    ///
-    /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
-    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
-    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. What goes around a panel that
-    /// hangs at a wall, or leans out of one as folds do, meets the wall: waves that are long against the heights find one mirror.
-    ///
-    /// # Source
-    /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
-    /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`. W. S. Ament, Proc. IRE 41,
-    /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy.
-    pub(crate) fn scattering(
-        &self,
-        material: &AcousticSurface,
-        hit: &Hit,
-        cosine: f32,
-        straight_m: f64,
-    ) -> BandValues {
-        let mut scattering = material.scattering;
-        if !self.config.panel_size {
-            return scattering;
-        }
-        let panel = self.table.panel(&self.house, hit);
-        if panel.area_m2 >= WALL_M2 {
-            return scattering;
-        }
-        let cosine = cosine.max(0.05);
-        let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
-        let speed = self.config.air.speed_of_sound_m_s();
-        let limit_hz = (speed * way_m) as f32 / (2.0 * panel.area_m2 * cosine).max(1e-6);
-        let rough_s = 2.0 * std::f32::consts::TAU / speed as f32 * panel.relief_m * cosine;
-        for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
-            let ratio = centre_hz / limit_hz;
-            if ratio < 1.0 {
-                let rough = rough_s * centre_hz;
-                let behind = libm::expf(-rough * rough);
-                let mirrored = ratio * ratio + (1.0 - ratio * ratio) * behind;
-                *s = 1.0 - (1.0 - *s) * mirrored;
-            }
-        }
-        scattering
-    }
-
-    /// Returns whether the state overrides a number of the material called `name`.
-    pub(crate) fn is_overridden(&self, name: &str) -> bool {
-        let prefix = format!("material/{name}/");
-        let mut addresses = self.overrides.keys();
-        addresses.any(|address| address.as_str().starts_with(&prefix))
-    }
-
-    /// Energy decay of air in each band, 1/m; zeros where air does not absorb.
-    pub(crate) fn air_decay_per_m(&self) -> [f64; BAND_COUNT] {
-        if self.config.air_absorption {
-            let whole = self.config.air.energy_decay_per_m();
-            self.effects.air_decay_per_m(whole)
-        } else {
-            [0.0; BAND_COUNT]
-        }
+        self.data.edges()
     }
 
     /// Returns what sound meets: areas, mean absorption, which materials are guesses.
     pub fn explain(&self) -> AcousticReport {
-        AcousticReport::new(self)
+        AcousticReport::new(&self.data)
     }
 
     /// Returns whether source and receiver are somewhere, and rays meet this house.
@@ -256,10 +149,11 @@ impl AcousticScene {
         for receiver in receivers {
             finite("the receiver", *receiver)?;
         }
-        if !Arc::ptr_eq(rays.house(), &self.house) && **rays.house() != *self.house {
+        let house = self.house();
+        if !Arc::ptr_eq(rays.house(), house) && **rays.house() != **house {
             return Err(AcousticsError::OtherHouse {
                 rays: rays.house().name.clone(),
-                scene: self.house.name.clone(),
+                scene: house.name.clone(),
             });
         }
         Ok(())
@@ -302,7 +196,7 @@ impl AcousticScene {
         threads: Threads,
     ) -> Result<Vec<Echogram>, AcousticsError> {
         self.check(rays, source, receivers)?;
-        Ok(self.echograms_of(rays, source, receivers, self.config.rays, key, threads))
+        Ok(self.echograms_of(rays, source, receivers, self.config().rays, key, threads))
     }
 
     /// As [`Self::echograms`] with so many rays.
@@ -317,10 +211,10 @@ impl AcousticScene {
     ) -> Vec<Echogram> {
         let position = source.position();
         let early = threads.map(receivers.len(), |k| {
-            image_sources::find(self, rays, source, receivers[k])
+            image_sources::find(&self.data, rays, source, receivers[k])
         });
         let late = tail::trace(
-            self,
+            &self.data,
             rays,
             source,
             receivers,
@@ -347,9 +241,9 @@ impl AcousticScene {
             trace: late.statistics,
             source,
             direct_length_m: source.as_dvec3().distance(receiver.as_dvec3()),
-            speed_m_s: self.config.air.speed_of_sound_m_s(),
+            speed_m_s: self.config().air.speed_of_sound_m_s(),
         };
-        self.effects.at_source(&mut echogram);
+        self.effects().at_source(&mut echogram);
         echogram
     }
 
@@ -393,7 +287,7 @@ impl AcousticScene {
         key: RandomKey,
         threads: Threads,
     ) -> Result<Vec<ImpulseResponse>, AcousticsError> {
-        let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects.placed(r)).collect();
+        let placed: Vec<Receiver> = receivers.iter().map(|r| self.effects().placed(r)).collect();
         let noise = |receiver: &Receiver| between(key, source.position(), receiver.position());
         let arrived = self.arrivals(rays, source, &placed, key, noise, threads)?;
         let both = arrived.into_iter().zip(&placed);
@@ -413,7 +307,7 @@ impl AcousticScene {
         receiver: &Receiver,
         key: RandomKey,
     ) -> ImpulseResponse {
-        let receiver = &self.effects.placed(receiver);
+        let receiver = &self.effects().placed(receiver);
         let noise = between(key, echogram.source, receiver.position());
         self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
     }
@@ -427,7 +321,7 @@ impl AcousticScene {
     ) -> ImpulseResponse {
         let own = key.child("microphone").child(0);
         let listener = self.listener(receiver, key.child("room"), own);
-        let rate_hz = f64::from(self.config.rate_hz);
+        let rate_hz = f64::from(self.config().rate_hz);
         ImpulseResponse {
             samples: MicrophoneChain::record(&self.laws, rate_hz, &listener, response.samples),
             ..response
@@ -444,7 +338,7 @@ impl AcousticScene {
         StageContext {
             receiver,
             heads: &self.heads,
-            speed_m_s: self.config.air.speed_of_sound_m_s(),
+            speed_m_s: self.config().air.speed_of_sound_m_s(),
             room,
             own,
         }
@@ -453,7 +347,12 @@ impl AcousticScene {
     /// Returns whether a receiver is in range, and its head known.
     pub(crate) fn check_receiver(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
         receiver.check()?;
-        self.heads.check(receiver)
+        match receiver.kind {
+            ReceiverKind::Head(id) if !self.heads.knows(id) => {
+                Err(AcousticsError::UnknownHead { id: id.0 })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The impulse responses up to the microphones, without their laws; `noise` keys the random arrivals at a receiver. Shape
@@ -489,8 +388,8 @@ impl AcousticScene {
     ) -> Option<Vec<Vec<PropagationPath>>> {
         let positions = receiver.microphone_positions()?;
         let found = positions.iter().map(|position| {
-            let mut paths = image_sources::find(self, rays, source, *position);
-            self.effects.on_paths(&mut paths);
+            let mut paths = image_sources::find(&self.data, rays, source, *position);
+            self.effects().on_paths(&mut paths);
             paths
         });
         Some(found.collect())
@@ -505,8 +404,8 @@ impl AcousticScene {
         receiver: Vec3,
         known: &[PropagationPath],
     ) -> Vec<PropagationPath> {
-        let mut paths = image_sources::follow(self, rays, source, receiver, known);
-        self.effects.on_paths(&mut paths);
+        let mut paths = image_sources::follow(&self.data, rays, source, receiver, known);
+        self.effects().on_paths(&mut paths);
         paths
     }
 
@@ -578,7 +477,7 @@ impl AcousticScene {
         let samples = synthesizer.render(&echogram, &hearing, early, &mut levels, key);
         ImpulseResponse {
             channels: receiver.channels(),
-            rate_hz: self.config.rate_hz,
+            rate_hz: self.config().rate_hz,
             samples,
             echogram,
             levels,

@@ -1,10 +1,10 @@
-//! Where early sound goes: the corners of its paths.
+//! Early paths with their corners.
 
-use super::sequences::mirror;
+use super::AcousticScene;
 use crate::echogram::PropagationPath;
 use crate::error::AcousticsError;
+use crate::image_sources;
 use crate::receiver::SoundSourcePose;
-use crate::scene::AcousticScene;
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -30,38 +30,14 @@ impl AcousticScene {
         receiver: Vec3,
     ) -> Result<Vec<EarlyPath>, AcousticsError> {
         self.check(rays, source, &[receiver])?;
-        let paths = super::find(self, rays, source, receiver).into_iter();
+        let position = source.position();
+        let paths = image_sources::find(self.data(), rays, source, receiver).into_iter();
         Ok(paths
             .map(|path| EarlyPath {
-                points: self.corners(&path, source.position(), receiver),
+                points: image_sources::corners(self.planes(), &path, position, receiver),
                 path,
             })
             .collect())
-    }
-
-    fn corners(&self, path: &PropagationPath, source: Vec3, receiver: Vec3) -> Vec<Vec3> {
-        if !path.bends.is_empty() {
-            let bends = path.bends.iter().copied();
-            return std::iter::once(source)
-                .chain(bends)
-                .chain([receiver])
-                .collect();
-        }
-        let mut images = Vec::new();
-        let found = mirror(self.planes(), source.as_dvec3(), &path.planes, &mut images);
-        let mut points = vec![receiver];
-        let mut target = receiver.as_dvec3();
-        if found {
-            for (plane, image) in path.planes.iter().zip(&images).rev() {
-                let plane = &self.planes()[*plane as usize];
-                let (here, there) = (plane.distance_m(target), plane.distance_m(*image));
-                target += (image - target) * (here / (here - there));
-                points.push(target.as_vec3());
-            }
-        }
-        points.push(source);
-        points.reverse();
-        points
     }
 }
 

@@ -1,0 +1,184 @@
+//! What sound meets on its way through a house: all that rays, images and edges read, and nothing that they change.
+
+use crate::bands::{BAND_COUNT, BandValues, NOMINAL_CENTRES_HZ};
+use crate::config::AcousticConfig;
+use crate::echogram::NEAREST_M;
+use crate::laws::PathEffects;
+use crate::planes::{DiffractionEdge, Plane, PlaneTable, WALL_M2};
+use crate::surface::AcousticSurface;
+use dwell_scene::bvh::Hit;
+use dwell_scene::{Address, House, Id, MaterialId, Pose, State};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
+const NEXT_WAY_M: f64 = 3.0;
+
+/// Planes, edges, materials and air of a house as they are in one world.
+///
+/// What belongs to the house (its planes) is shared by clones; what belongs to the world (overridden materials, moved
+/// planes) is not, and is small.
+#[derive(Clone, Debug)]
+pub(crate) struct PropagationData {
+    house: Arc<House>,
+    /// The settings, with the air as laws make it.
+    config: AcousticConfig,
+    effects: PathEffects,
+    table: Arc<PlaneTable>,
+    /// Where all planes are now.
+    planes: Vec<Plane>,
+    /// Where the edges of moving parts are now.
+    moving_edges: Vec<DiffractionEdge>,
+    /// Where the moving parts are now. Shape (moving part,).
+    poses: Vec<Pose>,
+    /// Shape (material,).
+    surfaces: Vec<AcousticSurface>,
+    overrides: BTreeMap<Address, f64>,
+}
+
+impl PropagationData {
+    /// `house` with everything where it stands at the start.
+    pub(crate) fn new(house: Arc<House>, config: AcousticConfig) -> Self {
+        let table = Arc::new(PlaneTable::new(&house));
+        tracing::debug!(planes = table.len(), "acoustic planes built");
+        Self {
+            planes: table.at_start.clone(),
+            moving_edges: table.edges().at_start(&house),
+            poses: table.poses_at_start(&house),
+            surfaces: house
+                .materials
+                .ids()
+                .map(|id| AcousticSurface::new(&house, None, id, &config))
+                .collect(),
+            overrides: BTreeMap::new(),
+            effects: PathEffects::default(),
+            table,
+            config,
+            house,
+        }
+    }
+
+    /// Takes over overridden materials and moved parts; cheap when nothing changed.
+    pub(crate) fn update(&mut self, state: &State) {
+        if state.overrides != self.overrides {
+            self.overrides.clone_from(&state.overrides);
+            let ids = self.house.materials.ids();
+            self.surfaces = ids
+                .map(|id| AcousticSurface::new(&self.house, Some(state), id, &self.config))
+                .collect();
+        }
+        if self.table.update(&mut self.planes, &mut self.poses, state) {
+            self.moving_edges = self.table.edges().in_state(&self.house, state);
+        }
+    }
+
+    /// Takes over what laws do to air and sources; `stated` as it was asked for.
+    pub(crate) fn apply(&mut self, effects: PathEffects, stated: &AcousticConfig) {
+        self.config = effects.config(stated);
+        self.effects = effects;
+    }
+
+    pub(crate) fn house(&self) -> &Arc<House> {
+        &self.house
+    }
+
+    /// The settings, with the air as laws make it.
+    pub(crate) fn config(&self) -> &AcousticConfig {
+        &self.config
+    }
+
+    /// Returns what laws do to air and sources.
+    pub(crate) fn effects(&self) -> &PathEffects {
+        &self.effects
+    }
+
+    pub(crate) fn table(&self) -> &PlaneTable {
+        &self.table
+    }
+
+    /// All planes where they are now, largest of the static ones first.
+    pub(crate) fn planes(&self) -> &[Plane] {
+        &self.planes
+    }
+
+    /// All edges that sound bends around, where they are now.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
+        let fixed = self.table.edges().fixed.iter();
+        fixed.chain(&self.moving_edges)
+    }
+
+    pub(crate) fn surface(&self, id: MaterialId) -> &AcousticSurface {
+        // An id of another house counts as a hard wall; houses are compared where calls come in.
+        self.surfaces
+            .get(id.index())
+            .unwrap_or(&AcousticSurface::HARD)
+    }
+
+    /// The fraction of reflected energy that a surface scatters where a ray meets it, after `straight_m` from the source or the
+    /// last scattering and with a cosine of incidence. Shape (band,).
+    ///
+    /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
+    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
+    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. What goes around a panel that
+    /// hangs at a wall, or leans out of one as folds do, meets the wall: waves that are long against the heights find one mirror.
+    ///
+    /// # Source
+    /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
+    /// `f_g = c a / (2 S cos theta)` with `a = 2 d1 d2 / (d1 + d2)`, the amplitude falls with `f / f_g`. W. S. Ament, Proc. IRE 41,
+    /// 142 (1953): a surface whose height varies by sigma (rms) mirrors `exp(-(2 k sigma cos theta)^2)` of the energy.
+    pub(crate) fn scattering(
+        &self,
+        material: &AcousticSurface,
+        hit: &Hit,
+        cosine: f32,
+        straight_m: f64,
+    ) -> BandValues {
+        let mut scattering = material.scattering;
+        if !self.config.panel_size {
+            return scattering;
+        }
+        let panel = self.table.panel(&self.house, hit);
+        if panel.area_m2 >= WALL_M2 {
+            return scattering;
+        }
+        let cosine = cosine.max(0.05);
+        let way_m = 2.0 * straight_m * NEXT_WAY_M / (straight_m + NEXT_WAY_M);
+        let speed = self.config.air.speed_of_sound_m_s();
+        let limit_hz = (speed * way_m) as f32 / (2.0 * panel.area_m2 * cosine).max(1e-6);
+        let rough_s = 2.0 * std::f32::consts::TAU / speed as f32 * panel.relief_m * cosine;
+        for (s, centre_hz) in scattering.iter_mut().zip(NOMINAL_CENTRES_HZ) {
+            let ratio = centre_hz / limit_hz;
+            if ratio < 1.0 {
+                let rough = rough_s * centre_hz;
+                let behind = libm::expf(-rough * rough);
+                let mirrored = ratio * ratio + (1.0 - ratio * ratio) * behind;
+                *s = 1.0 - (1.0 - *s) * mirrored;
+            }
+        }
+        scattering
+    }
+
+    /// Returns whether the state overrides a number of the material called `name`.
+    pub(crate) fn is_overridden(&self, name: &str) -> bool {
+        let prefix = format!("material/{name}/");
+        let mut addresses = self.overrides.keys();
+        addresses.any(|address| address.as_str().starts_with(&prefix))
+    }
+
+    /// Energy decay of air in each band, 1/m; zeros where air does not absorb.
+    pub(crate) fn air_decay_per_m(&self) -> [f64; BAND_COUNT] {
+        if self.config.air_absorption {
+            let whole = self.config.air.energy_decay_per_m();
+            self.effects.air_decay_per_m(whole)
+        } else {
+            [0.0; BAND_COUNT]
+        }
+    }
+
+    /// Energy of a free path: 1/d² and what air leaves of it.
+    pub(crate) fn spread(&self, length_m: f64) -> [f64; BAND_COUNT] {
+        let distance = length_m.max(NEAREST_M);
+        self.air_decay_per_m()
+            .map(|m| libm::exp(-m * length_m) / (distance * distance))
+    }
+}
