@@ -1,9 +1,10 @@
 //! Washbasin, bathtub, shower screen.
 
-use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use crate::finishes::{chrome, glass, lacquer, oak, sanitary};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{SolidMesh, block, cylinder, extrude, rod, tube};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// Height of a washbasin's rim, m.

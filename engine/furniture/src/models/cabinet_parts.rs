@@ -3,6 +3,7 @@
 use crate::finishes::Finish;
 use crate::model::PartBuilder;
 use crate::shapes::{SolidMesh, block, cylinder, frame, rod};
+use crate::style::FrontStyle;
 use std::f32::consts::FRAC_PI_2;
 
 /// Thickness of boards, m.
@@ -90,30 +91,7 @@ impl Carcass {
     }
 }
 
-/// How a front is opened.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrontStyle {
-    /// The board's finish.
-    pub board: Finish,
-    /// The handle's finish.
-    pub handle: Finish,
-    /// Round knobs instead of bars.
-    pub knobs: bool,
-    /// A frame around a panel instead of a plain board.
-    pub panelled: bool,
-}
-
 impl FrontStyle {
-    /// A plain board with a bar to pull.
-    pub fn plain(board: Finish, handle: Finish) -> Self {
-        Self {
-            board,
-            handle,
-            knobs: false,
-            panelled: false,
-        }
-    }
-
     /// Adds the frame of a panel to a leaf between two corners whose face is at `z`.
     fn trim(&self, leaf: PartBuilder, low: [f32; 2], high: [f32; 2], z: f32) -> PartBuilder {
         const BAR_M: f32 = 0.045;

@@ -1,9 +1,10 @@
 //! A desk with drawers on one side.
 
-use super::cabinet_parts::{Carcass, FrontStyle, GAP_M, drawer, drawer_space};
+use super::cabinet_parts::{Carcass, GAP_M, drawer, drawer_space};
 use crate::finishes::{Finish, black, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// A writing desk: a top, a side panel, a block of three drawers.

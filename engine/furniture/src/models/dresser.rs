@@ -1,9 +1,10 @@
 //! A chest of drawers.
 
-use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, drawer, drawer_space};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, drawer, drawer_space};
 use crate::finishes::{Finish, brass, walnut};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block, tapered_leg};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// Two columns of drawers under one top, on legs.

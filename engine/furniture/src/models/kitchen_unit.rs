@@ -1,9 +1,10 @@
 //! Fitted kitchens: base units with worktop and sink, and cabinets on the wall.
 
-use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, TOP, door, drawer, drawer_space};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, TOP, door, drawer, drawer_space};
 use crate::finishes::{Finish, black, granite, lacquer, steel};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{SolidMesh, block};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// Height of worktops, m.

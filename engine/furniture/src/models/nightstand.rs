@@ -1,9 +1,10 @@
 //! A bedside table with a drawer.
 
-use super::cabinet_parts::{Carcass, FrontStyle, drawer, drawer_space};
+use super::cabinet_parts::{Carcass, drawer, drawer_space};
 use crate::finishes::{Finish, brass};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::tapered_leg;
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// A small cupboard on legs: an open shelf below a drawer.

@@ -6,6 +6,7 @@ use crate::finishes::{
     upholstery, walnut,
 };
 use crate::model::Model;
+use crate::style::FrontStyle;
 use dwell_scene::random::RandomKey;
 
 /// The list: a new model is one line here.
@@ -115,12 +116,7 @@ pub fn all() -> Vec<Model> {
         gadgets::telephone(),
         gadgets::wall_clock(0.15),
         kitchen_unit::KitchenUnit::default().build(),
-        kitchen_unit::wall_cabinet(
-            2,
-            0.6,
-            0.7,
-            &cabinet_parts::FrontStyle::plain(oak(), steel()),
-        ),
+        kitchen_unit::wall_cabinet(2, 0.6, 0.7, &FrontStyle::plain(oak(), steel())),
         lamps::candle(0.12),
         lamps::ceiling_dome(0.2, 12.0),
         lamps::desk_lamp(&painted_steel("yellow", [230, 190, 60])),

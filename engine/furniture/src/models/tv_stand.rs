@@ -1,9 +1,10 @@
 //! A low cabinet for a television.
 
-use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use crate::finishes::{Finish, black, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rounded_block};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// A sideboard or media cabinet: doors left and right, open shelves between.

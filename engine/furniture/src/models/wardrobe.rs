@@ -1,9 +1,10 @@
 //! A wardrobe with hinged doors.
 
-use super::cabinet_parts::{BOARD_M, Carcass, FrontStyle, GAP_M, door};
+use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
 use crate::finishes::{Finish, black, chrome, oak, white_lacquer};
 use crate::model::{Model, PartBuilder};
 use crate::shapes::{block, rod};
+use crate::style::FrontStyle;
 use glam::Vec3;
 
 /// Doors in pairs over a carcass with a rail and a hat shelf.

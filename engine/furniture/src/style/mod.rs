@@ -1,10 +1,12 @@
 //! The taste of one house: what its things are made of and coloured in, so that what stands together goes together.
 
+mod front_style;
 mod held_out;
 mod train;
 
+pub use front_style::FrontStyle;
+
 use super::finishes::Finish;
-use super::models::cabinet_parts::FrontStyle;
 use super::shapes::{SolidMesh, rod, surface_of_revolution, tapered_leg};
 use super::textures::Srgb;
 use dwell_scene::random::RandomStream;

@@ -1,0 +1,28 @@
+//! How doors and drawers look.
+
+use crate::finishes::Finish;
+
+/// How a front is opened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrontStyle {
+    /// The board's finish.
+    pub board: Finish,
+    /// The handle's finish.
+    pub handle: Finish,
+    /// Round knobs instead of bars.
+    pub knobs: bool,
+    /// A frame around a panel instead of a plain board.
+    pub panelled: bool,
+}
+
+impl FrontStyle {
+    /// A plain board with a bar to pull.
+    pub fn plain(board: Finish, handle: Finish) -> Self {
+        Self {
+            board,
+            handle,
+            knobs: false,
+            panelled: false,
+        }
+    }
+}
