@@ -1,12 +1,11 @@
 //! The report: what was measured against what was simulated, in numbers, words and pictures.
 
-mod box_plot;
 mod build;
 mod data;
 mod html;
 pub(crate) mod page;
 mod plot;
-mod svg;
+pub(crate) mod svg;
 mod write;
 
 pub(crate) use build::build;

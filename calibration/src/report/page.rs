@@ -4,7 +4,6 @@ use super::html::STYLE;
 use super::svg;
 use std::fmt::Write as _;
 
-pub(crate) use super::box_plot::{picture, to_svg_file};
 pub(crate) use super::html::escape;
 
 /// Colours of curves, in order.

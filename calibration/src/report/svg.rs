@@ -4,7 +4,7 @@ use super::data::{CandidateCause, ResidualPlot};
 use crate::format_number::number;
 use std::fmt::Write as _;
 
-pub(super) const WIDTH: f64 = 640.0;
+pub(crate) const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 220.0;
 const LEFT: f64 = 64.0;
 const RIGHT: f64 = 12.0;
@@ -12,15 +12,15 @@ const TOP: f64 = 12.0;
 const BOTTOM: f64 = 34.0;
 
 /// A scale from data to the page.
-pub(super) struct AxisScale {
-    pub(super) low: f64,
-    pub(super) high: f64,
-    pub(super) from: f64,
-    pub(super) to: f64,
+pub(crate) struct AxisScale {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
 }
 
 impl AxisScale {
-    pub(super) fn at(&self, value: f64) -> f64 {
+    pub(crate) fn at(&self, value: f64) -> f64 {
         let span = self.high - self.low;
         let share = if span > 0.0 {
             (value - self.low) / span
@@ -31,7 +31,7 @@ impl AxisScale {
     }
 
     /// Round values on it: 1, 2 or 5 times a power of ten apart.
-    pub(super) fn ticks(&self) -> Vec<f64> {
+    pub(crate) fn ticks(&self) -> Vec<f64> {
         let span = self.high - self.low;
         if span <= 0.0 || !span.is_finite() {
             return vec![self.low];

@@ -1,5 +1,6 @@
 //! Parts of a page that every study of roll-outs has.
 
+use super::box_plot;
 use super::residuals::ResidualGroups;
 use super::{HORIZONS, Regime, WindowScore};
 use crate::format_number::number;
@@ -65,7 +66,7 @@ pub(crate) fn residuals(out: &mut String, residuals: &[ResidualGroups]) {
             out,
             "<p>{}</p>{}",
             page::escape(&one.title),
-            page::picture(one)
+            box_plot::picture(one)
         );
     }
 }

@@ -5,6 +5,7 @@
 //! ([`drive`]), falling balls ([`mod@drop`]). Models of tosses are compared by a [`study`], those of the others by [`series`].
 
 mod board_rig;
+mod box_plot;
 pub mod drive;
 pub mod drop;
 pub(crate) mod html;

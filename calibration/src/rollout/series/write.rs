@@ -2,7 +2,8 @@
 
 use super::SeriesReport;
 use crate::error::CalibrationError;
-use crate::report::{page, whole};
+use crate::report::whole;
+use crate::rollout::box_plot;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -37,7 +38,7 @@ impl SeriesReport {
         let found = serde_json::to_value(&self.found).unwrap_or(Value::Null);
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, page::to_svg_file(residuals).as_bytes())?;
+            whole(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
         }
         whole(folder, "report.json", pretty(&self.value()).as_bytes())?;
         whole(folder, "report.html", self.to_html().as_bytes())?;

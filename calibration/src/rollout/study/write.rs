@@ -2,7 +2,8 @@
 
 use super::StudyReport;
 use crate::error::CalibrationError;
-use crate::report::{page, whole};
+use crate::report::whole;
+use crate::rollout::box_plot;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -41,7 +42,7 @@ impl StudyReport {
         )?;
         for residuals in &self.residuals {
             let name = format!("{}.svg", residuals.name);
-            whole(folder, &name, page::to_svg_file(residuals).as_bytes())?;
+            whole(folder, &name, box_plot::to_svg_file(residuals).as_bytes())?;
         }
         whole(folder, "report.html", self.to_html().as_bytes())?;
         whole(folder, "found.json", format!("{found:#}\n").as_bytes())

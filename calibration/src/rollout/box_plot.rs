@@ -1,10 +1,9 @@
 //! Boxes: how residuals of several models spread in several groups.
 
-use super::html::escape;
-use super::page::COLOURS;
-use super::svg::{self, AxisScale};
+use super::residuals::ResidualGroups;
 use crate::format_number::number;
-use crate::rollout::ResidualGroups;
+use crate::report::page::{COLOURS, escape};
+use crate::report::svg::{self, AxisScale};
 use std::fmt::Write as _;
 
 const LEFT: f64 = 56.0;
