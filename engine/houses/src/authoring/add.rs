@@ -22,6 +22,7 @@ use super::edits::{AddObject, ObjectAttributes, ObjectSource, Placement, UpAxis}
 use super::{describe, fixtures, mesh_file, place, surfaces};
 use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
+use crate::formats::{FORMATS, open_by};
 use crate::import::{CategoryRow, category, convex_pieces};
 use crate::name_suggestions::nearest;
 
@@ -183,7 +184,7 @@ fn copy(
             if let Some(known) = desk.houses.get(&house) {
                 known.clone()
             } else {
-                let (opened, _) = crate::formats::open_with(&house, desk.threads)?;
+                let (opened, _) = open_by(FORMATS, &house, desk.threads)?;
                 let opened = Arc::new(opened);
                 desk.houses.insert(house, opened.clone());
                 opened

@@ -11,12 +11,12 @@ use super::edit_errors::{fault, inside};
 use super::edits::Edit;
 use super::files::FileAccess;
 use super::floor_plan::{BuildingPlan, construct};
-use super::name_mapping::NameMapping;
 use crate::data_root::UserFile;
 use crate::error::HousesError;
-use crate::formats::{Opened, open_with};
+use crate::formats::{FORMATS, open_by};
 use crate::json;
 use crate::limits::MAX_TEXT_BYTES;
+use crate::opened::Opened;
 use crate::report::{FileLocation, LoadReport};
 
 /// What the field `format` of a plan file holds.
@@ -118,7 +118,7 @@ fn build_with(
     threads: Threads,
 ) -> Result<(House, LoadReport), HousesError> {
     let (base, mut report) = match (&plan.house, &plan.building) {
-        (Some(house), None) => open_with(&files.house("house", house)?, threads)?,
+        (Some(house), None) => open_by(FORMATS, &files.house("house", house)?, threads)?,
         (None, Some(building)) => {
             let data = construct(&plan.name, building).map_err(inside("building"))?;
             let house =
@@ -157,15 +157,4 @@ pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
         name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
     }
     build_with(&plan, &FileAccess::Below(root), threads)
-}
-
-/// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
-pub(crate) fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
-    if house.contains("?map=") {
-        return Err(fault("map", "two maps", "one"));
-    }
-    let map = NameMapping::read(Path::new(map))?;
-    let (house, mut report) = open_with(house, threads)?;
-    let house = map.apply(&house, &mut report)?;
-    Ok((house, report))
 }

@@ -23,7 +23,7 @@ pub use spec::{AssetSplit, DoorStates, HomeKind, HouseSpec};
 
 use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
-use crate::formats::Opened;
+use crate::opened::Opened;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 use dwell_furniture::style::{STYLES, Style};

@@ -21,35 +21,10 @@ pub(crate) use model::{
     LinkInertia, LinkShape, RobotJoint, RobotJointKind, RobotLink, ShapeGeometry,
 };
 
-use std::path::Path;
-
 use dwell_scene::{House, Pose};
 
 use crate::error::HousesError;
-use crate::report::{FileLocation, LoadReport};
-
-/// Opens a robot: a `.urdf`, or a `.xml` of MuJoCo. Meshes are read below the folder of the file, or below the folder of
-/// its package when a `package.xml` stands up to three folders above it.
-///
-/// # Errors
-/// [`HousesError`] with the file, the node and the field: [`HousesError::Syntax`] for what is no XML or not this format,
-/// [`HousesError::Field`] for a loop, a mass that is not above 0, a number that is not finite, a mesh that is missing or of a
-/// form that is not read, [`HousesError::PathLeavesRoot`] for a path out of the data root.
-pub fn open_robot(path: &Path) -> Result<(Robot, LoadReport), HousesError> {
-    let mut report = LoadReport::new();
-    let robot = if crate::urdf::recognizes(path) {
-        crate::urdf::read(path, &mut report)?
-    } else if crate::mjcf::recognizes(path) {
-        crate::mjcf::read(path, &mut report)?
-    } else {
-        let found = path.display().to_string();
-        return Err(HousesError::UnknownHouse {
-            house: found,
-            allowed: "a path to a .urdf, or to a .xml of MuJoCo".to_owned(),
-        });
-    };
-    Ok((robot, report))
-}
+use crate::report::FileLocation;
 
 /// A house with a robot in it. `name` must be free; `fixed_base` holds its base for good, else the base is a body that
 /// stands and falls. Meshes are shared with the house.

@@ -1,0 +1,136 @@
+//! HOUSE strings: the list of all formats, and the one function that opens them all.
+
+use std::ops::Range;
+use std::path::Path;
+use std::sync::LazyLock;
+
+use dwell_scene::House;
+use dwell_scene::parallel::Threads;
+
+use crate::authoring::{self, NameMapping};
+use crate::error::HousesError;
+use crate::formats::{FORMATS, Format, open_by};
+use crate::opened::Opened;
+use crate::report::LoadReport;
+
+/// How many formats are tried before plans.
+const BEFORE_PLANS: usize = 2;
+
+/// All formats, in the order in which they are tried.
+pub fn formats() -> &'static [Format] {
+    static ALL: LazyLock<Vec<Format>> = LazyLock::new(|| {
+        let mut all = FORMATS.to_vec();
+        all.insert(BEFORE_PLANS, PLAN);
+        all
+    });
+    &ALL
+}
+
+/// Plans, which may rest on a house of any other format.
+const PLAN: Format = Format {
+    name: "plan",
+    spelling: "a path to a .plan.json",
+    recognizes: |house| authoring::recognizes(Path::new(house)),
+    open: |house, threads| authoring::open(Path::new(house), threads),
+};
+
+/// Opens the house that `house` names, on as many threads as the machine gives. `HOUSE?map=FILE` opens it with a map of its
+/// foreign names ([`crate::authoring::NameMapping`]).
+///
+/// # Errors
+/// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
+///
+/// # Determinism
+/// The same files give the same house and report for any number of threads.
+pub fn open(house: &str) -> Result<(House, LoadReport), HousesError> {
+    open_with(house, Threads::default())
+}
+
+/// The seeds and the fields of a HOUSE string that stands for several houses: `seed:3..6?home=studio` is
+/// `seed:3?home=studio`, `seed:4?home=studio` and `seed:5?home=studio`. Nothing for any other string, which is one house.
+///
+/// # Errors
+/// [`HousesError::Spec`] for a range that is empty or none of whole numbers, and for fields that no house can have.
+///
+/// ```
+/// let found = dwell_houses::seed_range("seed:3..5?home=studio")?;
+/// assert_eq!(found, Some((3..5, "?home=studio")));
+/// # Ok::<(), dwell_houses::HousesError>(())
+/// ```
+pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError> {
+    let seeds = house.strip_prefix("seed:").unwrap_or_default();
+    let (range, fields) = seeds.find('?').map_or((seeds, ""), |at| seeds.split_at(at));
+    let Some((from, to)) = range.split_once("..") else {
+        return Ok(None);
+    };
+    let ends = from.parse::<u64>().ok().zip(to.parse::<u64>().ok());
+    let Some((from, to)) = ends.filter(|(from, to)| from < to) else {
+        return Err(HousesError::Spec {
+            field: "seed".to_owned(),
+            found: range.to_owned(),
+            possible: format!("A..B with whole numbers A < B, up to {}", u64::MAX),
+        });
+    };
+    crate::generate::spec_of(fields.strip_prefix('?').unwrap_or(fields))?;
+    Ok(Some((from..to, fields)))
+}
+
+/// [`open`] on `threads` threads.
+///
+/// # Errors
+/// Those of [`open`].
+pub fn open_with(house: &str, threads: Threads) -> Result<(House, LoadReport), HousesError> {
+    let Some((foreign, map)) = house.rsplit_once("?map=") else {
+        return open_by(formats(), house, threads);
+    };
+    let _span = tracing::debug_span!("open", house).entered();
+    open_mapped(foreign, map, threads)
+}
+
+/// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
+fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
+    if house.contains("?map=") {
+        return Err(HousesError::Spec {
+            field: "map".to_owned(),
+            found: "two maps".to_owned(),
+            possible: "one".to_owned(),
+        });
+    }
+    let map = NameMapping::read(Path::new(map))?;
+    let (house, mut report) = open_with(house, threads)?;
+    let house = map.apply(&house, &mut report)?;
+    Ok((house, report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_of_seeds_is_its_houses_and_all_else_is_itself() {
+        let one = |house: &str| seed_range(house).unwrap().is_none();
+        assert!(one("seed:7") && one("seed:7?home=studio") && one("a..b/house.json"));
+        let all = "seed:0..18446744073709551615";
+        assert_eq!(seed_range("seed:0..3").unwrap(), Some((0..3, "")));
+        assert_eq!(seed_range(all).unwrap(), Some((0..u64::MAX, "")));
+        for wrong in [
+            "seed:3..3",
+            "seed:4..3",
+            "seed:..3",
+            "seed:a..b",
+            "seed:0..18446744073709551616",
+        ] {
+            let told = seed_range(wrong).unwrap_err().to_string();
+            assert!(told.starts_with("seed: found"), "{told}");
+        }
+        // What no house of it can have is told before any of them is made.
+        let told = seed_range("seed:0..3?home=studio&storeys=99").unwrap_err();
+        assert_eq!(told.to_string(), "storeys: found 99; possible: 1 to 3");
+    }
+
+    #[test]
+    fn a_range_opened_as_one_house_says_where_ranges_are_taken() {
+        let told = open("seed:0..3").unwrap_err().to_string();
+        assert!(told.contains("0..3") && told.contains("several"), "{told}");
+    }
+}
