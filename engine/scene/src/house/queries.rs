@@ -3,9 +3,8 @@
 use super::House;
 use super::data::Room;
 use crate::bounds::Aabb;
-use crate::ids::{AgentId, Entity, EntityId, Id, JointId, ObjectId, PartId, RoomId, StructureId};
+use crate::ids::{AgentId, Entity, EntityId, Id, JointId, ObjectId, RoomId, StructureId};
 use crate::random::RandomKey;
-use crate::state::State;
 use glam::{Vec2, Vec3};
 
 impl Room {
@@ -154,31 +153,6 @@ impl House {
             .iter_ids()
             .filter(move |(_, joint)| joint.object == object)
             .map(|(id, _)| id)
-    }
-
-    /// The box around a part where it stands in `state`, m.
-    pub fn part_bounds(&self, state: &State, id: PartId) -> Aabb {
-        let part = &self.parts[id];
-        let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
-        let mesh = &self.meshes[part.mesh];
-        Aabb::from_points(
-            mesh.positions
-                .iter()
-                .map(|p| world_from_mesh.transform_point3(*p)),
-        )
-    }
-
-    /// The box around an object where it stands in `state`, m.
-    pub fn object_bounds(&self, state: &State, id: ObjectId) -> Aabb {
-        self.objects[id].parts().fold(Aabb::EMPTY, |bounds, part| {
-            bounds.union(&self.part_bounds(state, part))
-        })
-    }
-
-    /// The boxes around all objects where they stand in `state`, m. Shape (object,).
-    pub fn object_boxes(&self, state: &State) -> Vec<Aabb> {
-        let ids = self.objects.ids();
-        ids.map(|id| self.object_bounds(state, id)).collect()
     }
 
     /// The number of triangles that a picture of the whole house shows: structure and every instance.

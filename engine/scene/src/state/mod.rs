@@ -4,6 +4,7 @@ mod address;
 mod agent;
 mod agent_address;
 mod body;
+mod bounds;
 mod canonical;
 mod joint;
 mod law_address;
