@@ -2,13 +2,10 @@
 
 use crate::color::{MaterialColors, paints};
 use crate::doorways::RoomDoorway;
-use crate::error::SemanticsError;
 use crate::facts::ObjectFacts;
 use crate::geometry::{Extent, Hull};
 use crate::noun_index::NounIndex;
-use crate::predicates;
 use crate::rooms::RoomProperties;
-use crate::scene::{SemanticScene, Term, Viewer};
 use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
@@ -134,25 +131,5 @@ impl Semantics {
     /// The numbers of the kinds of things that may be called `noun`.
     pub(crate) fn kinds_called(&self, noun: &str) -> Vec<u32> {
         self.kinds.with_noun(&self.facts, noun)
-    }
-
-    /// The house in `state`, ready for questions.
-    pub fn scene<'a>(&'a self, state: &'a State) -> SemanticScene<'a> {
-        SemanticScene::new(self, state)
-    }
-
-    /// Returns whether the relation `predicate` holds between two things.
-    ///
-    /// # Errors
-    /// [`SemanticsError::UnknownPredicate`] for a name that [`predicates::all`] lacks.
-    pub fn evaluate(
-        &self,
-        state: &State,
-        predicate: &str,
-        subject: Term,
-        object: Term,
-        viewer: Option<&Viewer>,
-    ) -> Result<bool, SemanticsError> {
-        Ok(predicates::find(predicate)?.holds(&self.scene(state), subject, object, viewer))
     }
 }

@@ -4,8 +4,10 @@
 
 mod find_object;
 mod go_to_room;
+mod needed_words;
 mod task;
 
+pub use needed_words::needed_words;
 pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgress};
 
 use crate::error::SemanticsError;

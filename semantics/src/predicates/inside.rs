@@ -14,8 +14,16 @@ const BESIDE_M: f32 = 0.025;
 /// than 32 things are around it, those about its middle count.
 pub(super) struct Inside;
 
+impl SemanticScene<'_> {
+    /// Returns what the object is in, rising; at most 32 things.
+    pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
+        let around = &self.cache(object).around;
+        around.get_or_init(|| containers(self, object))
+    }
+}
+
 /// Returns what `thing` is in, rising.
-pub(crate) fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
+fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {
         return Vec::new();

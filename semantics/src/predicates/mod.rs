@@ -12,16 +12,14 @@ mod on;
 mod right_of;
 mod support;
 
-pub(crate) use inside::containers;
+pub use crate::scene::SurfaceSupport;
 pub(crate) use left_of::is_in_front;
 pub(crate) use mount::mount_of;
-pub(crate) use next_to::{neighbour_candidates, neighbours};
-pub use support::SurfaceSupport;
-pub(crate) use support::supports_of;
 
 use crate::error::SemanticsError;
 use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
+use crate::semantics::Semantics;
+use dwell_scene::{ObjectId, State};
 
 /// What always holds of a relation; checked for every relation by the tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -111,4 +109,21 @@ pub fn find(name: &str) -> Result<&'static dyn Predicate, SemanticsError> {
             name: name.to_owned(),
             known: known(),
         })
+}
+
+impl Semantics {
+    /// Returns whether the relation `predicate` holds between two things.
+    ///
+    /// # Errors
+    /// [`SemanticsError::UnknownPredicate`] for a name that [`all`] lacks.
+    pub fn evaluate(
+        &self,
+        state: &State,
+        predicate: &str,
+        subject: Term,
+        object: Term,
+        viewer: Option<&Viewer>,
+    ) -> Result<bool, SemanticsError> {
+        Ok(find(predicate)?.holds(&self.scene(state), subject, object, viewer))
+    }
 }

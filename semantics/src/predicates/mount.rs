@@ -1,7 +1,6 @@
 //! What holds things that no surface below them carries: walls, ceilings, windows.
 
-use super::SurfaceSupport;
-use crate::scene::{MOST_NEAR, SemanticScene, Term};
+use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
 
 /// The largest gap between a thing and the wall or ceiling it hangs on, m.

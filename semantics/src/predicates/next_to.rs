@@ -20,8 +20,22 @@ fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
     (shared, 0.5 * p.size().y.min(q.size().y))
 }
 
+impl SemanticScene<'_> {
+    /// Returns what may be next to the object, rising; at most [`MOST_NEAR`] things.
+    pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
+        let near = &self.cache(object).near;
+        near.get_or_init(|| neighbour_candidates(self, object))
+    }
+
+    /// Returns what is next to the object, rising.
+    pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
+        let beside = &self.cache(object).beside;
+        beside.get_or_init(|| neighbours(self, object))
+    }
+}
+
 /// Returns what may be next to `object`, rising.
-pub(crate) fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
+fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
     scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
         let (shared, least) = shared_m(&own, &scene.extent(other).bounds);
@@ -30,7 +44,7 @@ pub(crate) fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) 
 }
 
 /// Returns what is next to `object`, rising.
-pub(crate) fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
+fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
     let holds = |other: &ObjectId| {
         let (a, b) = (Term::Object(object), Term::Object(*other));

@@ -2,7 +2,7 @@
 
 use super::mount::hangs_despite;
 use crate::geometry::{height_under, object_triangles_near, structure_triangles};
-use crate::scene::{MOST_NEAR, SemanticScene, Term};
+use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
 use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
@@ -15,17 +15,6 @@ const CARRIER_RISE_M: f32 = 0.005;
 const UNDERSIDE_M: f32 = 0.005;
 /// The share of a sole that something must carry to count: a board across two chairs rests on both.
 pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
-
-/// Something that carries a thing.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceSupport {
-    /// What carries: an object or a structure piece.
-    pub by: Term,
-    /// The share of the sole's points that rest on it, 0 to 1.
-    pub share: f32,
-    /// How far those points are above it where they are nearest, m; at most 0 where they touch it or sink in.
-    pub gap_m: f32,
-}
 
 /// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
 struct SupportSearch {
@@ -60,12 +49,20 @@ impl SupportSearch {
     }
 }
 
+impl SemanticScene<'_> {
+    /// Returns what the object rests on, the largest share first.
+    pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
+        let supports = &self.cache(object).supports;
+        supports.get_or_init(|| supports_of(self, object))
+    }
+}
+
 /// Returns what `object` rests on, the largest share first; empty when it is held, hangs or floats.
 ///
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they
 /// hang. Where the boxes of more than 128 others touch its own, those about its middle count.
-pub(crate) fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSupport> {
+fn supports_of(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<SurfaceSupport> {
     interrupt::check();
     let house = scene.house();
     let extent = scene.extent(object);

@@ -2,8 +2,9 @@
 
 use super::expression::{ReferringExpression, Relation};
 use crate::predicates;
-use crate::scene::SemanticScene;
-use crate::size::SizeClass;
+use crate::scene::{
+    Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs, SemanticScene,
+};
 use dwell_scene::interrupt::PollEvery;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::{OnceCell, RefCell};
@@ -14,42 +15,6 @@ use std::rc::Rc;
 pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
 /// Things between looks at whether they are still wanted.
 const THINGS_PER_CHECK: usize = 64;
-
-/// Something that a description says of a thing beside its noun.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Attribute {
-    Color(String),
-    Material(String),
-    Size(SizeClass),
-    Room(String),
-}
-
-/// A relation to something called `noun` that shows `colors`.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct LandmarkQuery {
-    predicate: String,
-    noun: String,
-    colors: Vec<String>,
-}
-
-/// Rising.
-pub(super) type ObjectList = Rc<[ObjectId]>;
-/// Things with what they stand in a relation to, by things.
-type RelatedPairs = Vec<(ObjectId, ObjectId)>;
-
-/// The things that may be called by one noun. Who has a trait is listed once for each trait, so that a description costs no look
-/// at all of them.
-pub(crate) struct DistractorSet {
-    /// Rising.
-    things: ObjectList,
-    in_rooms: BTreeMap<RoomId, usize>,
-    having: OnceCell<BTreeMap<Attribute, ObjectList>>,
-    /// Those that have some traits together.
-    having_all: RefCell<BTreeMap<Vec<Attribute>, ObjectList>>,
-    /// By predicate and the kind of what it leads to.
-    pairs: OnceCell<BTreeMap<(&'static str, u32), RelatedPairs>>,
-    marked: RefCell<BTreeMap<LandmarkQuery, ObjectList>>,
-}
 
 /// At most `most` of what all lists have, which are rising; shorter lists are faster.
 pub(super) fn common(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
@@ -68,8 +33,21 @@ fn push(lists: &mut BTreeMap<Attribute, Vec<ObjectId>>, key: Attribute, id: Obje
     }
 }
 
+impl SemanticScene<'_> {
+    /// The things that may be called `noun`.
+    pub(crate) fn distractors(&self, noun: &str) -> Rc<DistractorSet> {
+        if let Some(known) = self.distractor_cache().borrow().get(noun) {
+            return known.clone();
+        }
+        let alike = Rc::new(DistractorSet::gather(self, noun));
+        let mut all = self.distractor_cache().borrow_mut();
+        all.insert(noun.to_owned(), alike.clone());
+        alike
+    }
+}
+
 impl DistractorSet {
-    pub(crate) fn gather(scene: &SemanticScene<'_>, noun: &str) -> Self {
+    fn gather(scene: &SemanticScene<'_>, noun: &str) -> Self {
         let semantics = scene.semantics;
         let things = semantics.kinds().things(&semantics.kinds_called(noun));
         let mut pace = PollEvery::new(THINGS_PER_CHECK);

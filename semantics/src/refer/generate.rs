@@ -1,9 +1,9 @@
 //! The shortest description that means exactly one thing.
 
-use super::distractors::{ObjectList, TELLING, common};
+use super::distractors::{TELLING, common};
 use super::expression::{ReferringExpression, Relation};
 use crate::predicates;
-use crate::scene::SemanticScene;
+use crate::scene::{ObjectList, SemanticScene};
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use std::collections::BTreeSet;

@@ -5,7 +5,6 @@ mod expression;
 mod generate;
 mod room;
 
-pub(crate) use distractors::DistractorSet;
 pub use expression::{ReferringExpression, Relation};
 pub use generate::refer;
 pub use room::{RoomExpression, refer_to_room};

@@ -156,13 +156,4 @@ pub(crate) const WALLS: &[DependencyWall] = &[
 ];
 
 /// Crates whose modules still use each other in circles.
-pub(crate) const CIRCLES_HELD_BACK: &[&str] = &[
-    "dwell",
-    "dwell-calibration",
-    "dwell-furniture",
-    "dwell-houses",
-    "dwell-physics",
-    "dwell-python",
-    "dwell-scene",
-    "dwell-semantics",
-];
+pub(crate) const CIRCLES_HELD_BACK: &[&str] = &["dwell", "dwell-physics", "dwell-python"];

@@ -1,11 +1,16 @@
 //! A house in one state, as predicates see it.
 
+mod distractor_set;
+mod object_cache;
+
+pub(crate) use distractor_set::{
+    Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs,
+};
+pub(crate) use object_cache::ObjectCache;
+pub use object_cache::SurfaceSupport;
+
 use crate::facts::ObjectFacts;
 use crate::geometry::Extent;
-use crate::predicates::{
-    SurfaceSupport, containers, neighbour_candidates, neighbours, supports_of,
-};
-use crate::refer::DistractorSet;
 use crate::semantics::Semantics;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
@@ -99,19 +104,8 @@ pub struct SemanticScene<'a> {
     alike: RefCell<BTreeMap<String, Rc<DistractorSet>>>,
 }
 
-/// What was measured of an object.
-#[derive(Default)]
-struct ObjectCache {
-    extent: OnceCell<Extent>,
-    room: OnceCell<Option<RoomId>>,
-    supports: OnceCell<Vec<SurfaceSupport>>,
-    around: OnceCell<Vec<ObjectId>>,
-    near: OnceCell<Vec<ObjectId>>,
-    beside: OnceCell<Vec<ObjectId>>,
-}
-
 impl<'a> SemanticScene<'a> {
-    pub(crate) fn new(semantics: &'a Semantics, state: &'a State) -> Self {
+    fn new(semantics: &'a Semantics, state: &'a State) -> Self {
         let count = semantics.house().objects.len();
         Self {
             semantics,
@@ -171,31 +165,9 @@ impl<'a> SemanticScene<'a> {
         found.map(ObjectId::from_index).collect()
     }
 
-    /// Returns what the object rests on, the largest share first.
-    pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
-        let supports = &self.known[object].supports;
-        supports.get_or_init(|| supports_of(self, object))
-    }
-
-    /// Returns what the object is in, rising; at most 32 things.
-    pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
-        self.known[object]
-            .around
-            .get_or_init(|| containers(self, object))
-    }
-
-    /// Returns what may be next to the object, rising; at most [`MOST_NEAR`] things.
-    pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
-        self.known[object]
-            .near
-            .get_or_init(|| neighbour_candidates(self, object))
-    }
-
-    /// Returns what is next to the object, rising.
-    pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
-        self.known[object]
-            .beside
-            .get_or_init(|| neighbours(self, object))
+    /// What was measured of an object so far.
+    pub(crate) fn cache(&self, object: ObjectId) -> &ObjectCache {
+        &self.known[object]
     }
 
     /// Returns whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
@@ -266,15 +238,9 @@ impl<'a> SemanticScene<'a> {
         rooms[room]
     }
 
-    /// The things that may be called `noun`.
-    pub(crate) fn distractors(&self, noun: &str) -> Rc<DistractorSet> {
-        if let Some(known) = self.alike.borrow().get(noun) {
-            return known.clone();
-        }
-        let alike = Rc::new(DistractorSet::gather(self, noun));
-        let mut all = self.alike.borrow_mut();
-        all.insert(noun.to_owned(), alike.clone());
-        alike
+    /// The things that may be called by the nouns that were asked for so far.
+    pub(crate) fn distractor_cache(&self) -> &RefCell<BTreeMap<String, Rc<DistractorSet>>> {
+        &self.alike
     }
 
     /// The middle of a thing, m; `None` for a room and for an unknown agent.
@@ -292,5 +258,12 @@ impl<'a> SemanticScene<'a> {
                 .get(id)
                 .map(|agent| agent.position + Vec3::Y * (agent.body.height_m * 0.5)),
         }
+    }
+}
+
+impl Semantics {
+    /// The house in `state`, ready for questions.
+    pub fn scene<'a>(&'a self, state: &'a State) -> SemanticScene<'a> {
+        SemanticScene::new(self, state)
     }
 }

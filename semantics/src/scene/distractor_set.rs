@@ -1,0 +1,43 @@
+//! What a scene remembers of the things of one noun: found at first use by `refer`.
+
+use crate::size::SizeClass;
+use dwell_scene::{ObjectId, RoomId};
+use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// Something that a description says of a thing beside its noun.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Attribute {
+    Color(String),
+    Material(String),
+    Size(SizeClass),
+    Room(String),
+}
+
+/// A relation to something called `noun` that shows `colors`.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct LandmarkQuery {
+    pub(crate) predicate: String,
+    pub(crate) noun: String,
+    pub(crate) colors: Vec<String>,
+}
+
+/// Rising.
+pub(crate) type ObjectList = Rc<[ObjectId]>;
+/// Things with what they stand in a relation to, by things.
+pub(crate) type RelatedPairs = Vec<(ObjectId, ObjectId)>;
+
+/// The things that may be called by one noun. Who has a trait is listed once for each trait, so that a description costs no look
+/// at all of them.
+pub(crate) struct DistractorSet {
+    /// Rising.
+    pub(crate) things: ObjectList,
+    pub(crate) in_rooms: BTreeMap<RoomId, usize>,
+    pub(crate) having: OnceCell<BTreeMap<Attribute, ObjectList>>,
+    /// Those that have some traits together.
+    pub(crate) having_all: RefCell<BTreeMap<Vec<Attribute>, ObjectList>>,
+    /// By predicate and the kind of what it leads to.
+    pub(crate) pairs: OnceCell<BTreeMap<(&'static str, u32), RelatedPairs>>,
+    pub(crate) marked: RefCell<BTreeMap<LandmarkQuery, ObjectList>>,
+}
