@@ -1,10 +1,9 @@
 //! The pictures of a batch: the views of all worlds over one house in one submission.
 
-use crate::camera_capture::PictureRequest;
+use crate::camera_capture::{PendingPicture, PictureRequest};
 use crate::env::Env;
 use crate::error::WorldError;
 use crate::sensor_requests::Picture;
-use crate::shutter::PendingPicture;
 use crate::world::World;
 use dwell_render::{PendingBatch, RenderJob, Renderer};
 use dwell_scene::parallel::Threads;

@@ -1,11 +1,11 @@
 //! What all worlds over one house share: the house, and each engine's view of it, made at first use.
 
+use crate::air_position::emitter_places;
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::initial_state::InitialWorld;
 use crate::recordings::Recordings;
 use crate::release_memory::ReleaseOnDrop;
-use crate::sound::emitter_places;
 use dwell_acoustics::signals::Signal;
 use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
@@ -109,7 +109,7 @@ impl Engines {
         if let Some(start) = shared.and_then(|(_, start)| start.upgrade()) {
             return Ok(start);
         }
-        let start = Arc::new(InitialWorld::new(self, config)?);
+        let start = Arc::new(InitialWorld::new(self.physics(), config)?);
         *latest = Some((config.clone(), Arc::downgrade(&start)));
         Ok(start)
     }

@@ -4,6 +4,7 @@ use crate::action::{DiscreteAction, StepSizes};
 use crate::camera_capture::PictureRequest;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
+use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensor_requests::{Requests, Results};
@@ -13,7 +14,7 @@ use crate::world::World;
 use dwell_render::{Camera, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Id, Pose};
+use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -58,30 +59,6 @@ impl Default for EnvConfig {
             sensors: None,
         }
     }
-}
-
-/// What an episode asks for, and how far it has come.
-#[derive(Clone, Debug)]
-pub struct Episode {
-    /// The instruction as text.
-    pub instruction: String,
-    /// The instruction as tokens, padded with 0.
-    pub tokens: Vec<i32>,
-    /// Where the agent started.
-    pub start: Pose,
-    /// Distance, path, collisions.
-    pub progress: NavigationMetrics,
-}
-
-/// How a step is judged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Verdict {
-    /// The reward of the step.
-    pub reward: f64,
-    /// Whether the task has come to its end, well or badly.
-    pub terminated: bool,
-    /// Whether what was asked is done.
-    pub success: bool,
 }
 
 /// What a step reports beside the observation.

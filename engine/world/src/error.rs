@@ -33,7 +33,7 @@ pub enum WorldError {
         allowed: String,
     },
     /// Settings that cannot be read.
-    #[error("{of}: {found}: {}", crate::parse_settings::plain_json_error(error))]
+    #[error("{of}: {found}: {}", crate::plain_json_error::plain_json_error(error))]
     Settings {
         /// What they are for.
         of: &'static str,
@@ -62,6 +62,9 @@ pub enum WorldError {
         /// Why not, and what would help.
         why: String,
     },
+    /// Who waited for a bench wanted it no more.
+    #[error("stopped before all was measured")]
+    Stopped,
     /// A call out of order or with a wrong count.
     #[error("{0}")]
     Usage(String),

@@ -1,6 +1,7 @@
 //! How a task outside of this crate, one in Python for instance, plays upon an environment: it asks, and it judges.
 
-use crate::env::{Env, Verdict};
+use crate::env::Env;
+use crate::episode::Verdict;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;

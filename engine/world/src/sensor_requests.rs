@@ -1,6 +1,6 @@
 //! What sensors ask of the engines, and what they get.
 
-use crate::sensors::EyeCamera;
+use crate::eye_camera::EyeCamera;
 use crate::world::World;
 use dwell_render::{Camera, Frame, ImageChannels};
 use dwell_scene::AgentId;

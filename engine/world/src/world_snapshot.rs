@@ -3,18 +3,12 @@
 //! A world begins like all worlds of its house and agents; most of it stays as it was. Its bytes are packed beside those of the
 //! beginning, which who restores it has as well: what has not changed since takes next to nothing.
 
-use crate::config::WorldConfig;
-use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::initial_state::InitialWorld;
-use crate::motion_history::MotionHistory;
+use crate::initial_state::{SnapshotBase, SnapshotParts, body};
 use crate::sound::WorldSound;
 use crate::world::World;
-use dwell_physics::PhysicsWorld;
 use dwell_scene::packing::{pack_within, unpack};
-use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, House, Id, State};
-use std::collections::BTreeMap;
+use dwell_scene::{AgentBody, Id, State};
 use xxhash_rust::xxh3::xxh3_64;
 
 /// What a world's snapshot begins with: its kind and version.
@@ -29,65 +23,6 @@ struct SnapshotHeader {
     agents: Vec<AgentBody>,
     /// Of the bytes of the beginning.
     base: u64,
-}
-
-#[derive(serde::Serialize, serde::Deserialize)]
-struct SnapshotParts {
-    state: Vec<u8>,
-    physics: Vec<u8>,
-    sound: Vec<u8>,
-    key: RandomKey,
-    past: MotionHistory,
-}
-
-/// The bytes of worlds' common beginning.
-#[derive(Debug)]
-pub(crate) struct SnapshotBase {
-    bytes: Vec<u8>,
-    sum: u64,
-}
-
-impl SnapshotBase {
-    /// Of worlds with the same house, agents and rates: with whatever parameters and laws.
-    pub(crate) fn of(engines: &Engines, config: &WorldConfig) -> Self {
-        let plain = WorldConfig {
-            parameters: BTreeMap::new(),
-            laws: Vec::new(),
-            renderer: dwell_render::BackEnd::Cpu,
-            ..config.clone()
-        };
-        // Bodies that only the world's own parameters make small enough have no such beginning: theirs has no bytes.
-        let start = InitialWorld::new(engines, &plain);
-        let bytes = start.map_or_else(
-            |_| Vec::new(),
-            |start| {
-                body(
-                    engines.house(),
-                    &start.state,
-                    &start.physics,
-                    (Vec::new(), RandomKey::root(0), MotionHistory::default()),
-                )
-            },
-        );
-        let sum = xxh3_64(&bytes);
-        Self { bytes, sum }
-    }
-}
-
-fn body(
-    house: &House,
-    state: &State,
-    physics: &PhysicsWorld,
-    (sound, key, past): (Vec<u8>, RandomKey, MotionHistory),
-) -> Vec<u8> {
-    let parts = SnapshotParts {
-        state: state.to_bytes(house),
-        physics: physics.moment(),
-        sound,
-        key,
-        past,
-    };
-    postcard::to_stdvec(&parts).expect("plain bytes can always be written to memory")
 }
 
 impl World {
@@ -187,6 +122,7 @@ impl World {
     }
 
     fn base(&self) -> &SnapshotBase {
-        self.start.base(&self.engines, &self.config)
+        let model = self.engines.physics();
+        self.start.base(model, &self.config)
     }
 }

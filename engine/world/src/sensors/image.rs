@@ -1,9 +1,10 @@
 //! What all sensors of pictures have in common.
 
-use super::camera::{CameraConfig, EyeCamera};
+use super::camera::CameraConfig;
 use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
 use crate::camera_capture::PictureRequest;
 use crate::error::WorldError;
+use crate::eye_camera::EyeCamera;
 use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};

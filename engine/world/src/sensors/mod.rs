@@ -27,11 +27,12 @@ mod surfels;
 mod visible_objects;
 mod wheel_odometry;
 
+pub use crate::eye_camera::EyeCamera;
+pub use camera::CameraConfig;
 pub(crate) use camera::mount;
-pub use camera::{CameraConfig, EyeCamera};
 pub use image::{Observation, ObservationData};
 
-use crate::env::Episode;
+use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::sensor_requests::{Requests, Results};
 use crate::world::World;

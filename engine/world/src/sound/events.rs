@@ -1,8 +1,8 @@
 //! What touches, swings and walks becomes sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
 use super::WorldSound;
-use super::air_position::air_position;
 use super::gait::{FootEvent, mass_kg};
+use crate::air_position::air_position;
 use dwell_acoustics::contact::{
     ContactPartner, ContactSound, CreakSound, FootstepSound, FrictionSound, FrictionSoundKind,
     ImpactSound,

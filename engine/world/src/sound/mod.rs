@@ -1,12 +1,9 @@
 //! What sounds in a world, and what its agents hear.
 //!
-//! - `emitters`: the sounds of the house's own objects; `playback`: what was told to play; `api`: how both are told.
+//! - `emitters`: the sounds of the house's own objects; `playback`: what was told to play; `sound_state`: both for people.
 //! - `events`: the one file that turns what touches, swings and walks into sounds; `gait`: when feet come down.
-//! - `air_position`: from where in the air what lies on a surface is heard.
 //! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
 
-mod air_position;
-mod api;
 mod ears;
 mod emitters;
 mod events;
@@ -14,16 +11,17 @@ mod fade;
 mod gait;
 mod playback;
 mod snapshot;
+mod sound_state;
 
-pub(crate) use air_position::emitter_places;
-pub use api::SoundState;
 pub(crate) use events::StepContext;
+pub(crate) use playback::check_level;
 pub use playback::{PlayRequest, SoundName, SoundPlace, usual_level_db};
+pub use sound_state::SoundState;
 
+use crate::air_position::air_position;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
 use crate::error::WorldError;
-use air_position::air_position;
 use dwell_acoustics::{AcousticConfig, HeadId, Stream, StreamConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;

@@ -69,7 +69,7 @@ pub(super) struct Playback {
 }
 
 /// Refuses levels that are none.
-pub(super) fn check_level(level_db: f32) -> Result<(), WorldError> {
+pub(crate) fn check_level(level_db: f32) -> Result<(), WorldError> {
     if (-100.0..=200.0).contains(&level_db) {
         return Ok(());
     }

@@ -6,7 +6,7 @@
 use super::door_leaves::DoorLeaves;
 use super::{Task, TaskKind};
 use crate::action::{DiscreteAction, StepSizes};
-use crate::env::{Episode, Verdict};
+use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::world::World;

@@ -7,7 +7,7 @@ use super::door_leaves::DoorLeaves;
 use super::goal_cells::GoalCells;
 use super::{Task, TaskKind};
 use crate::action::{DiscreteAction, StepSizes};
-use crate::env::{Episode, Verdict};
+use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::expert::{ShortestPathFollower, face};
 use crate::metrics::NavigationMetrics;

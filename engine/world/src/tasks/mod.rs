@@ -6,7 +6,7 @@ mod goal_cells;
 mod instruction_following;
 
 use crate::action::{DiscreteAction, StepSizes};
-use crate::env::{Episode, Verdict};
+use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::random::RandomKey;

@@ -1,6 +1,6 @@
 //! Pictures whose shutter is open or rolls: the moments that they are made of, and how those become one picture.
 
-use crate::camera_capture::{PictureRequest, TimedView};
+use super::{PictureRequest, TimedView};
 use crate::motion_history::between;
 use crate::world::World;
 use dwell_render::laws::mean_color;

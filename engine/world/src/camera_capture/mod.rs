@@ -1,7 +1,10 @@
 //! Pictures of worlds: the views that sensors and callers ask for, taken as the laws of the cameras say.
 
+mod shutter;
+
+pub(crate) use shutter::PendingPicture;
+
 use crate::error::WorldError;
-use crate::shutter::PendingPicture;
 use crate::world::World;
 use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousFrame, View};
 use dwell_scene::parallel::Threads;

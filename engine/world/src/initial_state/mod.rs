@@ -1,13 +1,15 @@
 //! How worlds of one house and one config begin.
 
+mod snapshot_base;
+
+pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, body};
+
 use crate::config::WorldConfig;
-use crate::engines::Engines;
 use crate::error::WorldError;
-use crate::world_snapshot::SnapshotBase;
-use dwell_physics::{PhysicsConfig, PhysicsWorld, StartReport};
+use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld, StartReport};
 use dwell_scene::{Address, AgentStart, AgentState, House, State};
 use glam::Vec3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// The first moment of a world: nothing overlaps, things have come to rest where that was asked for, doors are shut, agents stand
 /// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to one.
@@ -21,14 +23,14 @@ pub(crate) struct InitialWorld {
 
 impl InitialWorld {
     /// Returns what snapshots are packed beside, made when the first one asks.
-    pub(crate) fn base(&self, engines: &Engines, config: &WorldConfig) -> &SnapshotBase {
-        self.base.get_or_init(|| SnapshotBase::of(engines, config))
+    pub(crate) fn base(&self, model: &Arc<PhysicsModel>, config: &WorldConfig) -> &SnapshotBase {
+        self.base.get_or_init(|| SnapshotBase::of(model, config))
     }
 
     /// # Errors
     /// [`WorldError`] names the setting, parameter or law that is wrong.
-    pub(crate) fn new(engines: &Engines, config: &WorldConfig) -> Result<Self, WorldError> {
-        let house = engines.house();
+    pub(crate) fn new(model: &Arc<PhysicsModel>, config: &WorldConfig) -> Result<Self, WorldError> {
+        let house = model.house();
         let mut state = State::new(house);
         // Agents come first: parameters and laws may name them.
         let spot = AgentStart {
@@ -53,8 +55,7 @@ impl InitialWorld {
             physics_rate_hz: config.physics_rate_hz as f32,
             ..PhysicsConfig::default()
         };
-        let (mut physics, report) =
-            PhysicsWorld::over(engines.physics().clone(), &physics_config, &mut state)?;
+        let (mut physics, report) = PhysicsWorld::over(model.clone(), &physics_config, &mut state)?;
         physics.settle(&mut state, config.settle_s.unwrap_or_default())?;
         Ok(Self {
             state,

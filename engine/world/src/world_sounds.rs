@@ -1,29 +1,9 @@
 //! Sounds that are started, stopped and made louder while a world runs.
 
-use super::playback::{PlayRequest, SoundName, check_level};
 use crate::error::WorldError;
+use crate::sound::{PlayRequest, SoundState, check_level};
 use crate::world::World;
 use dwell_scene::AgentId;
-use serde::Serialize;
-
-/// A source of sound, and what it does now.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SoundState {
-    /// What [`World::stop_sound`] and kin call it.
-    pub handle: u64,
-    /// What sounds.
-    pub sound: SoundName,
-    /// m.
-    pub position: [f32; 3],
-    /// Level at 1 m in the free field, dB SPL (RMS).
-    pub level_db: f32,
-    /// Whether it begins again when it is over.
-    pub loops: bool,
-    /// Whether it sounds.
-    pub on: bool,
-    /// The object whose own sound it is.
-    pub object: Option<String>,
-}
 
 impl World {
     /// Plays a sound from the next step on, until it is over or stopped, or the world is reset. Returns its handle, which no

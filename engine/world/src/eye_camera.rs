@@ -1,0 +1,45 @@
+//! Cameras on agents.
+
+use crate::camera_capture::{CameraMount, PictureRequest};
+use dwell_render::{Camera, Preset};
+use dwell_scene::{AgentId, Pose, State};
+
+/// A checked camera on an agent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EyeCamera {
+    /// Which agent's eyes.
+    pub agent: AgentId,
+    /// The camera.
+    pub camera: Camera,
+    /// Its horizontal field of view, degrees; nothing for a camera that was given by its projection.
+    pub fov_deg: Option<f32>,
+    /// Where it is mounted.
+    pub eye_from_camera: Pose,
+    /// Flat or lit.
+    pub preset: Preset,
+}
+
+impl EyeCamera {
+    /// The camera as a world's parameters have it: once `agent/N/camera/fov_deg` is set it goes before its own
+    /// field of view. A camera that was given by its projection keeps it.
+    pub fn camera_in(&self, state: &State) -> Camera {
+        let (Some(fov_deg), Some(_)) = (state.overridden_fov_deg(self.agent), self.fov_deg) else {
+            return self.camera;
+        };
+        let own = &self.camera;
+        Camera::from_fov(own.width(), own.height(), fov_deg)
+            .and_then(|camera| camera.with_range(own.near_m(), own.far_m()))
+            .unwrap_or(self.camera)
+    }
+}
+
+impl EyeCamera {
+    /// The picture that it asks for.
+    pub fn request(&self, state: &State) -> PictureRequest {
+        PictureRequest {
+            camera: self.camera_in(state),
+            place: CameraMount::Agent(self.agent, self.eye_from_camera),
+            preset: self.preset,
+        }
+    }
+}
