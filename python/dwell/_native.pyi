@@ -47,7 +47,6 @@ __all__ = [
     "laws_json",
     "map",
     "max_text_length",
-    "panic_for_tests",
     "response_metrics_json",
     "seed_range",
     "sensors_json",
@@ -188,6 +187,9 @@ class World:
     """A running world with its own state over a shared house."""
 
     def __new__(cls, house: House, config_json: str = ..., seed: int = ...) -> Self: ...
+    @staticmethod
+    def of_env(batch: Batch, env: int) -> World:
+        """The world of environment ``env`` of a batch, which both go on to use."""
     def step(self, controls: NDArray[np.float32]) -> None:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
     def step_json(self, controls_json: str) -> None:
@@ -268,7 +270,7 @@ class Batch:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
     def put(self, env: int, spare: PreparedEnv) -> None:
-        """``spare`` takes the place of environment ``env``, once; worlds of :meth:`world` are its from then on."""
+        """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
         """How many steps each environment's episode has had."""
     def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
@@ -279,8 +281,6 @@ class Batch:
     def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
         """What environment ``env``'s agent sees, lit; ``view_json``: as :meth:`World.render`."""
     def instruction(self, env: int) -> str: ...
-    def world(self, env: int) -> World:
-        """The world of environment ``env``, which both go on to use."""
     def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
     def rule(self, env: int, ruling_json: str) -> str:
@@ -366,9 +366,6 @@ def json_extent(text: bytes) -> tuple[int, int]: ...
 def max_text_length() -> int: ...
 def doctor_json() -> str: ...
 def seed_range(house: str) -> tuple[int, int, str] | None: ...
-def panic_for_tests(world: World | None = None) -> None:
-    """Panics on purpose: in a thread of a pool, or while ``world`` is being changed."""
-
 def response_metrics_json(samples: NDArray[np.float32], rate_hz: float, width_json: str) -> str:
     """For each band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR. ``width_json``: octave or third_octave."""
 

@@ -194,7 +194,7 @@ class Replay:
         with self._named():
             runner = self._runner(task, reward, renderer, house)
             runner.reset([self.seed])
-            world = World.of_env(runner.houses[0], runner.batch.world(0))
+            world = World.of_env(runner.houses[0], _native.World.of_env(runner.batch, 0))
             moment = self._moment(0, runner, world)
         yield moment
         numbers = {name: number for number, name in enumerate(_native.actions())}

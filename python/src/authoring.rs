@@ -1,7 +1,7 @@
 //! Houses that people make and change, for Python: plans and edits come as JSON.
 
 use crate::errors::PyFault;
-use crate::house::PyHouse;
+use dwell::Engines;
 use dwell_acoustics::{Recording, signals};
 use dwell_houses::authoring::{self, FileAccess, HousePlan, UnmappedNames};
 use dwell_houses::{FileLocation, LoadReport};
@@ -20,21 +20,25 @@ pub(crate) fn rows(report: &LoadReport) -> Result<Value, PyFault> {
 }
 
 /// The house of a plan.
-pub(crate) fn built(plan_json: &str) -> Result<PyHouse, PyFault> {
+pub(crate) fn built(plan_json: &str) -> Result<(House, Value), PyFault> {
     let plan = HousePlan::from_json(plan_json.as_bytes(), &FileLocation::file("plan"))?;
     let (house, report) = authoring::build(&plan, &FileAccess::Anywhere)?;
     check_signals(&house, 0)?;
-    Ok(PyHouse::from_house(house, rows(&report)?))
+    Ok((house, rows(&report)?))
 }
 
 /// The same house with edits.
-pub(crate) fn edited(base: &PyHouse, edits_json: &str) -> Result<PyHouse, PyFault> {
+pub(crate) fn edited(
+    base: &House,
+    base_report: &Value,
+    edits_json: &str,
+) -> Result<(House, Value), PyFault> {
     let edits = authoring::edits_from_json(edits_json)?;
-    let (house, report) = authoring::edit(base.house(), &edits, &FileAccess::Anywhere)?;
-    check_signals(&house, base.house().emitters.len())?;
-    let mut all = report_of(base);
+    let (house, report) = authoring::edit(base, &edits, &FileAccess::Anywhere)?;
+    check_signals(&house, base.emitters.len())?;
+    let mut all = report_of(base_report);
     all.append(report);
-    Ok(PyHouse::from_house(house, rows(&all)?))
+    Ok((house, rows(&all)?))
 }
 
 /// Refuses sounds that nobody can make.
@@ -52,22 +56,22 @@ fn check_signals(house: &House, known: usize) -> Result<(), PyFault> {
     Ok(())
 }
 
-fn report_of(house: &PyHouse) -> LoadReport {
-    serde_json::from_value(house.report().clone()).unwrap_or_default()
+fn report_of(rows: &Value) -> LoadReport {
+    serde_json::from_value(rows.clone()).unwrap_or_default()
 }
 
-fn unmapped(house: &PyHouse) -> UnmappedNames {
-    authoring::unmapped(house.house(), &report_of(house))
+fn unmapped(house: &House, report: &Value) -> UnmappedNames {
+    authoring::unmapped(house, &report_of(report))
 }
 
 /// Counts, rooms and categories, with what stayed unmapped, as JSON.
-pub(crate) fn info(house: &PyHouse) -> Result<String, PyFault> {
-    let mut info = dwell::info(&house.engines, house.report());
-    info["unmapped"] = serde_json::to_value(unmapped(house))?;
+pub(crate) fn info(engines: &Engines, report: &Value) -> Result<String, PyFault> {
+    let mut info = dwell::info(engines, report);
+    info["unmapped"] = serde_json::to_value(unmapped(engines.house(), report))?;
     Ok(info.to_string())
 }
 
 /// A map file for what stayed unmapped.
-pub(crate) fn map_template(house: &PyHouse, name: &str) -> String {
-    authoring::map_template(name, &unmapped(house))
+pub(crate) fn map_template(house: &House, report: &Value, name: &str) -> String {
+    authoring::map_template(name, &unmapped(house, report))
 }

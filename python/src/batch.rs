@@ -6,7 +6,6 @@ use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
-use crate::world::PyWorld;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
 use dwell_scene::interrupt;
@@ -82,7 +81,7 @@ fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
 
 impl PyBatch {
     /// The batch for one call. A call that found a bug left it poisoned: then it refuses.
-    fn with<T: Send>(
+    pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Batch) -> Result<T, PyFault> + Send,
@@ -279,13 +278,6 @@ impl PyBatch {
             let refuse = || PyFault::Usage("no episode has begun; call reset first".to_owned());
             Ok(episode.ok_or_else(refuse)?.instruction.clone())
         })
-    }
-
-    /// The world of an environment, which both go on to use.
-    fn world(slf: Bound<'_, Self>, env: usize) -> PyResult<PyWorld> {
-        slf.get()
-            .with(slf.py(), |batch| Ok(batch.env(env).map(|_| ())?))?;
-        Ok(PyWorld::of_env(slf.unbind(), env))
     }
 
     #[pyo3(signature = (env, instruction=None, distance_m=None))]

@@ -37,10 +37,6 @@ impl PyHouse {
     pub(crate) fn house(&self) -> &House {
         self.engines.house()
     }
-
-    pub(crate) fn report(&self) -> &Value {
-        &self.report
-    }
 }
 
 #[pymethods]
@@ -57,17 +53,23 @@ impl PyHouse {
     /// The house of a plan, as `dwell_houses::authoring::HousePlan` in JSON.
     #[staticmethod]
     fn built(py: Python<'_>, plan_json: &str) -> PyResult<Self> {
-        py.engine(|| authoring::built(plan_json))
+        py.engine(|| {
+            let (house, report) = authoring::built(plan_json)?;
+            Ok::<_, PyFault>(Self::from_house(house, report))
+        })
     }
 
     /// The same house with edits, as `dwell_houses::authoring::Edit` in JSON.
     fn edited(&self, py: Python<'_>, edits_json: &str) -> PyResult<Self> {
-        py.engine(|| authoring::edited(self, edits_json))
+        py.engine(|| {
+            let (house, report) = authoring::edited(self.house(), &self.report, edits_json)?;
+            Ok::<_, PyFault>(Self::from_house(house, report))
+        })
     }
 
     /// A map file for what stayed unmapped; `house` stands in its head.
     fn map_template(&self, py: Python<'_>, house: &str) -> PyResult<String> {
-        py.engine(|| Ok::<_, PyFault>(authoring::map_template(self, house)))
+        py.engine(|| Ok::<_, PyFault>(authoring::map_template(self.house(), &self.report, house)))
     }
 
     fn add_head(&self, py: Python<'_>, head: &Bound<'_, PyHead>) -> PyResult<()> {
@@ -180,7 +182,7 @@ impl PyHouse {
     }
 
     fn info_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| authoring::info(self))
+        py.engine(|| authoring::info(&self.engines, &self.report))
     }
 
     fn rooms_json(&self, py: Python<'_>) -> PyResult<String> {

@@ -22,6 +22,8 @@ mod json;
 mod json_rows;
 mod logs;
 mod navigation;
+#[cfg(feature = "panic-for-tests")]
+mod panic_for_tests;
 mod panics;
 mod picture;
 mod pictures_for_people;
@@ -78,6 +80,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(pictures_for_people::surfaces, module)?)?;
     module.add_function(wrap_pyfunction!(pictures_for_people::texture, module)?)?;
     module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
-    module.add_function(wrap_pyfunction!(panics::panic_for_tests, module)?)?;
+    // Beside what `__all__` names: the stubs are those of the wheel.
+    #[cfg(feature = "panic-for-tests")]
+    module.setattr(
+        "panic_for_tests",
+        wrap_pyfunction!(panic_for_tests::panic_for_tests, module)?,
+    )?;
     Ok(())
 }

@@ -3,10 +3,7 @@
 //! The hook prints nothing. The exception says what and where; printing would say it twice, and tear the output of whoever
 //! catches it. The backtrace goes to the log `dwell.python.bugs`, level debug, where `RUST_BACKTRACE=1` asks for one.
 
-use crate::engine_call::EngineCall;
-use crate::errors::{EngineBug, PyFault};
-use crate::world::PyWorld;
-use dwell_scene::parallel::Threads;
+use crate::errors::EngineBug;
 use pyo3::prelude::*;
 use std::any::Any;
 use std::backtrace::{Backtrace, BacktraceStatus};
@@ -52,18 +49,4 @@ pub(crate) fn exception(py: Python<'_>, panic: &(dyn Any + Send)) -> PyErr {
         py,
         format!("a bug of the engine, please report it: {text}{place}"),
     )
-}
-
-/// Panics on purpose, as a bug would: in a pool's thread, or while `world` is being changed. The tests of the border and of
-/// the wheel call it, to see that the unwinding stops at the engine call.
-#[pyfunction]
-#[pyo3(signature = (world=None))]
-pub(crate) fn panic_for_tests(py: Python<'_>, world: Option<&Bound<'_, PyWorld>>) -> PyResult<()> {
-    match world {
-        Some(world) => world.get().with(py, |_| panic!("a world's, on purpose")),
-        None => py.engine(|| {
-            Threads::exactly(2).map(4, |k| assert!(k != 3, "a pool's, on purpose"));
-            Ok::<_, PyFault>(())
-        }),
-    }
 }

@@ -95,14 +95,6 @@ impl PyWorld {
             }
         }
     }
-
-    /// The world of environment `env`.
-    pub(crate) fn of_env(batch: Py<PyBatch>, env: usize) -> Self {
-        Self {
-            source: WorldSource::Env { batch, env },
-            guide: Mutex::default(),
-        }
-    }
 }
 
 fn stopped() -> PyFault {
@@ -129,6 +121,18 @@ impl PyWorld {
         })?;
         Ok(Self {
             source: WorldSource::Own(Box::new(Mutex::new(world))),
+            guide: Mutex::default(),
+        })
+    }
+
+    /// The world of environment `env` of a batch, which both go on to use.
+    #[staticmethod]
+    fn of_env(py: Python<'_>, batch: Py<PyBatch>, env: usize) -> PyResult<Self> {
+        batch
+            .get()
+            .with(py, |batch| Ok(batch.env(env).map(|_| ())?))?;
+        Ok(Self {
+            source: WorldSource::Env { batch, env },
             guide: Mutex::default(),
         })
     }

@@ -560,10 +560,10 @@ def test_the_borders_of_batches_hold() -> None:
     with pytest.raises(dwell.UsageError, match="reset first"):
         batch.rule(0, '{"reward":0.0,"terminated":false,"success":false,"distance_m":null}')
     with pytest.raises(dwell.UsageError, match="no environment 3"):
-        batch.world(3)
+        _native.World.of_env(batch, 3)
     with pytest.raises(dwell.ConfigError):
         batch.rule(0, "{}")
-    assert isinstance(batch.world(0), _native.World)
+    assert isinstance(_native.World.of_env(batch, 0), _native.World)
 
 
 @pytest.mark.parametrize("value", [np.zeros(3), (1, 2), {3: 1.5}, "\ud800", {"a": [{"b": (1,)}]}])

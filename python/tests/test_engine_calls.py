@@ -38,7 +38,9 @@ def test_a_panic_is_an_exception_with_its_place_and_nothing_is_printed(
     capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.DEBUG, "dwell")
-    with pytest.raises(dwell.EngineBug, match=r"a pool's, on purpose \(.*panics\.rs:\d+") as caught:
+    with pytest.raises(
+        dwell.EngineBug, match=r"a pool's, on purpose \(.*panic_for_tests\.rs:\d+"
+    ) as caught:
         _native.panic_for_tests()
     assert isinstance(caught.value, RuntimeError)
     assert isinstance(caught.value, dwell.DwellError)

@@ -375,7 +375,7 @@ def test_agents_tell_every_number_that_is_in_force(shoebox: dwell.House, body: s
     world = dwell.World(shoebox, agents=[{"locomotion": {body: {}}}])
     env = DwellEnv(houses=shoebox, task="Free", sensors=["gps"])
     env.reset(seed=1)
-    of_env = World.of_env(env._shelf[0], env._runner.batch.world(0))
+    of_env = World.of_env(env._shelf[0], _native.World.of_env(env._runner.batch, 0))
     for one, told in ((world, world.agents), (of_env, env.agents)):
         for address, row in one.parameters("agent/0/").items():
             value = (row["value"] + (row["low"] if row["value"] > row["low"] else row["high"])) / 2

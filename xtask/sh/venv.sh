@@ -31,7 +31,7 @@ locked=
 
 # Whatever decides what is installed: a change of it, or a moved checkout, installs again.
 stamp=$({ echo "$here"; cat python/pyproject.toml xtask/sh/venv.sh; grep '^version' Cargo.toml; } | cksum)
-develop() { "$venv/bin/maturin" develop $locked --manifest-path python/Cargo.toml "$@"; }
+develop() { "$venv/bin/maturin" develop $locked --manifest-path python/Cargo.toml --features panic-for-tests "$@"; }
 
 if [ "$(cat "$venv/dwell-stamp" 2>/dev/null)" = "$stamp" ] && "$venv/bin/maturin" --version >/dev/null 2>&1; then
     develop --skip-install

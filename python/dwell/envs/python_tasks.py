@@ -126,7 +126,7 @@ class PythonEpisode:
         """Makes the parts of environment ``env``."""
         self._batch = batch
         self._env = env
-        self._world = World.of_env(house, batch.world(env))
+        self._world = World.of_env(house, _native.World.of_env(batch, env))
         self._task = None if custom.task is None else custom.task()
         self._reward = None if custom.reward is None else custom.reward()
         self.sensors = [make() for make in custom.sensors]
@@ -134,7 +134,7 @@ class PythonEpisode:
 
     def move(self, house: House) -> None:
         """From now on the environment is in another house."""
-        self._world = World.of_env(house, self._batch.world(self._env))
+        self._world = World.of_env(house, _native.World.of_env(self._batch, self._env))
 
     def _parts(self) -> dict[str, Task | Reward | Sensor]:
         parts: dict[str, Task | Reward | Sensor] = {

@@ -32,7 +32,7 @@ pub(crate) fn all(root: &Path) -> Vec<Stage> {
         cargo("rustfmt", "fmt --all --check"),
         cargo(
             "clippy",
-            &format!("clippy {locked} --workspace --all-targets -- -D warnings"),
+            &format!("clippy {locked} --workspace --all-targets --all-features -- -D warnings"),
         ),
         cargo("rustdoc", &format!("doc {locked} --workspace --no-deps")),
         python(root, "ruff", &format!("-m ruff check --config {CONFIG} .")),

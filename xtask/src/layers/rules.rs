@@ -135,11 +135,11 @@ pub(crate) const CRATES: &[Rule] = &[
 pub(crate) const WALLS: &[DependencyWall] = &[
     DependencyWall {
         dependency: "rapier3d",
-        behind: &["dwell-physics", "dwell-python"],
+        behind: &["dwell-physics"],
     },
     DependencyWall {
         dependency: "parry3d",
-        behind: &["dwell-physics", "dwell-python"],
+        behind: &["dwell-physics"],
     },
     DependencyWall {
         dependency: "wgpu",
@@ -156,4 +156,4 @@ pub(crate) const WALLS: &[DependencyWall] = &[
 ];
 
 /// Crates whose modules still use each other in circles.
-pub(crate) const CIRCLES_HELD_BACK: &[&str] = &["dwell-physics", "dwell-python"];
+pub(crate) const CIRCLES_HELD_BACK: &[&str] = &["dwell-physics"];
