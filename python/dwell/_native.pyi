@@ -412,4 +412,9 @@ def surfaces(world: World) -> list[dict[str, Any]]:
 def texture(house: House, texture: int) -> NDArray[np.uint8]:
     """A texture's image, sRGB with opacity (height, width, 4)."""
 
-def bench_json(what: str, house: str, options_json: str = ...) -> str: ...
+def bench_json(
+    what: str,
+    house: str,
+    options_json: str = ...,
+    progress: Any | None = ...,
+) -> str: ...

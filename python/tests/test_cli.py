@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dwell import cli
+from dwell import _native, cli
 from dwell.cli import info
 from dwell.sounds import read_wav
 
@@ -116,6 +116,20 @@ def test_bench_gives_its_figure(stage: str) -> None:
     key = {"load": "load_ms", "render": "views_per_s", "physics": "physics_steps_per_s"}[stage]
     small = ("--repeats", "1", "--steps", "5", "--resolution", "32")
     assert float(str(one_object(dwell("bench", stage, HOUSE, *small, "--json"))[key])) > 0.0
+
+
+def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
+    told: list[tuple[float, str]] = []
+    options = json.dumps({"repeats": 1, "steps": 5, "worlds": 2})
+    _native.bench_json("physics", HOUSE, options, lambda *part: told.append(part))
+    fractions = [fraction for fraction, _ in told]
+    assert fractions[0] == 0.0 and fractions[-1] == 1.0 and fractions == sorted(set(fractions))
+
+    def stop(fraction: float, what: str) -> None:
+        raise KeyboardInterrupt(what)
+
+    with pytest.raises(KeyboardInterrupt, match="coming to rest"):
+        _native.bench_json("physics", HOUSE, options, stop)
 
 
 def test_bench_measures_batches_by_size_and_path() -> None:

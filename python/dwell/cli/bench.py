@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell.camera import PRESETS
-from dwell.cli.common import add_back_end, back_end, count, path, print_json
+from dwell.cli.common import ProgressBar, add_back_end, back_end, count, path, print_json
 from dwell.files import read_json
 
 _STAGES = ("load", "render", "physics", "acoustics", "env")
@@ -86,7 +86,8 @@ def run(args: argparse.Namespace) -> int:
         options["boxes"] = read_json(args.boxes)
         if not isinstance(options["boxes"], dict):
             raise ValueError(f"{args.boxes}: expected one JSON object of fixed and dynamic boxes")
-    figures = json.loads(_native.bench_json(args.stage, args.house, json.dumps(options)))
+    told = _native.bench_json(args.stage, args.house, json.dumps(options), ProgressBar())
+    figures = json.loads(told)
     if args.json:
         print_json(figures)
         return 0

@@ -1,6 +1,6 @@
 //! Impulse responses a second; streams against real time and against the reference.
 
-use super::{BenchOptions, median, open, timed};
+use super::{BenchOptions, BenchProgress, median, open, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
@@ -15,7 +15,11 @@ use glam::Vec3;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
     let engines = open(house)?;
     let rays = RayScene::new(engines.house().clone());
     let spots: Vec<Vec3> = viewpoints(&engines)?
@@ -23,8 +27,16 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .map(|room| Vec3::new(room.stand[0], room.eye[1], room.stand[2]))
         .collect();
     let threads = Threads::requested(options.threads)?;
+    let rooms: Vec<WalkFigure> = spots
+        .iter()
+        .filter_map(|spot| WalkFigure::free(&rays, *spot))
+        .take(ROOMS.min(options.walks))
+        .collect();
+    let walk_count = if rooms.is_empty() { 0 } else { options.walks };
+    progress.begin(options.presets.len() * (1 + walk_count) + rooms.len());
     let mut rates = serde_json::Map::new();
     for preset in &options.presets {
+        progress.part(&format!("impulse responses, {preset}"))?;
         let scene = engines.acoustics(preset, 16_000)?;
         let mut pairs = 0;
         let seconds = timed(options.repeats.min(3), || {
@@ -48,14 +60,12 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
             json!(f64::from(pairs) / median(&seconds)),
         );
     }
-    let rooms: Vec<WalkFigure> = spots
-        .iter()
-        .filter_map(|spot| WalkFigure::free(&rays, *spot))
-        .take(ROOMS.min(options.walks))
-        .collect();
     let wanted: Vec<Metrics> = rooms
         .iter()
-        .map(|figure| wanted(&engines, &rays, *figure, threads))
+        .map(|figure| {
+            progress.part("the reference of a room")?;
+            wanted(&engines, &rays, *figure, threads)
+        })
         .collect::<Result<_, _>>()?;
     for preset in &options.presets {
         // Walks in a room differ by their rays.
@@ -63,6 +73,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         let walks: Vec<WalkBench> = (0..options.walks)
             .zip(walks)
             .map(|(k, (figure, wanted))| {
+                progress.part(&format!("walk {} of {walk_count}, {preset}", k + 1))?;
                 let seed = (k / rooms.len()) as u64;
                 walk(&engines, &rays, preset, *figure, wanted, seed)
             })

@@ -1,6 +1,6 @@
 //! Environments stepped together, with everything they sense.
 
-use super::{BenchOptions, open};
+use super::{BenchOptions, BenchProgress, open};
 use crate::action::DiscreteAction;
 use crate::batch::Batch;
 use crate::env::{Env, EnvConfig};
@@ -10,7 +10,12 @@ use dwell_scene::parallel::Threads;
 use serde_json::{Value, json};
 use std::time::Instant;
 
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
+    progress.part("steps of environments")?;
     let engines = open(house)?;
     let config = EnvConfig::default();
     let envs = (0..options.envs)

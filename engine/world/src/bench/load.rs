@@ -1,13 +1,19 @@
 //! Opening a house with its ray tree, and starting a world over again.
 
-use super::{BenchOptions, median, open, timed};
+use super::{BenchOptions, BenchProgress, median, open, timed};
 use crate::config::WorldConfig;
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use serde_json::{Value, json};
 
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
+    progress.begin(2);
+    progress.part("opening the house")?;
     let mut triangles = 0;
     let seconds = timed(options.repeats, || {
         let (house, _) = dwell_houses::open(house)?;
@@ -15,6 +21,7 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         triangles = house.triangle_count();
         Ok(())
     })?;
+    progress.part("starting over")?;
     let engines = open(house)?;
     let mut world = World::new(engines, &WorldConfig::default())?;
     let reset = timed(options.repeats, || world.reset(RandomKey::root(0)))?;

@@ -4,16 +4,19 @@ mod acoustics;
 mod env;
 mod load;
 mod physics;
+mod progress;
 mod render;
 mod table;
 mod unwinding;
 
 pub use physics::{BenchBoxes, BoxBody};
+pub use progress::BenchListener;
 
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_render::{BackEnd, Preset};
 use dwell_scene::interrupt;
+use progress::BenchProgress;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
@@ -22,7 +25,7 @@ use std::time::Instant;
 /// A stage: its name, and what measures it.
 type BenchStage = (
     &'static str,
-    fn(&str, &BenchOptions) -> Result<Value, WorldError>,
+    fn(&str, &BenchOptions, &mut BenchProgress<'_>) -> Result<Value, WorldError>,
 );
 
 /// All stages. A new one is one file and one line here.
@@ -155,11 +158,17 @@ fn median(sorted: &[f64]) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`.
+/// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`. `listener` hears how far it is.
 ///
 /// # Errors
-/// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened.
-pub fn run(what: &str, house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+/// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened; [`WorldError::Stopped`] where the listener does
+/// not want to go on.
+pub fn run(
+    what: &str,
+    house: &str,
+    options: &BenchOptions,
+    listener: BenchListener<'_>,
+) -> Result<Value, WorldError> {
     options.check()?;
     let stage = STAGES.iter().find(|(name, _)| *name == what);
     let Some((_, run)) = stage else {
@@ -169,7 +178,10 @@ pub fn run(what: &str, house: &str, options: &BenchOptions) -> Result<Value, Wor
             known: STAGES.iter().map(|(name, _)| (*name).to_owned()).collect(),
         });
     };
-    run(house, options)
+    let mut progress = BenchProgress::new(listener);
+    let figures = run(house, options, &mut progress)?;
+    progress.end()?;
+    Ok(figures)
 }
 
 fn open(house: &str) -> Result<Arc<Engines>, WorldError> {

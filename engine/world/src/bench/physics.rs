@@ -1,7 +1,7 @@
 //! Physics steps a second: of one world as it falls to rest, without sleep, asleep, and of many worlds together.
 
 use super::unwinding::DropInBackground;
-use super::{BenchOptions, median};
+use super::{BenchOptions, BenchProgress, median};
 use crate::error::WorldError;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld};
 use dwell_scene::interrupt;
@@ -136,7 +136,13 @@ impl BenchStart {
 
 /// Steps per second of `options.steps` physics steps from the start (`physics_steps_per_s`), the same with sleeping off,
 /// all asleep, and of `options.worlds` worlds together; and whether the things came to rest.
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
+    progress.begin(5);
+    progress.part("coming to rest")?;
     let (mut opened, _) = dwell_houses::open(house)?;
     let mut config = PhysicsConfig::default();
     if let Some(boxes) = &options.boxes {
@@ -154,14 +160,6 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         ..config.clone()
     };
     let (awake, _) = BenchStart::new(&house, &model, &restless)?;
-    let rate = |start: &BenchStart| -> Result<f64, WorldError> {
-        let mut rates = Vec::new();
-        for _ in 0..options.repeats {
-            rates.push(start.clone().run(options.steps)?);
-        }
-        rates.sort_by(f64::total_cmp);
-        Ok(median(&rates))
-    };
     let mut settled = start.clone();
     settled.run((SETTLED_S * config.physics_rate_hz) as usize)?;
     let energy_j = settled.world.kinetic_energy_j();
@@ -175,11 +173,21 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         .count();
     settled.run(10 * config.physics_rate_hz as usize)?;
     let threads = Threads::requested(options.threads)?;
+    progress.part("worlds together")?;
     let together = together(&start, options, threads)?;
+    let mut rate = |what: &str, start: &BenchStart| -> Result<f64, WorldError> {
+        progress.part(what)?;
+        let mut rates = Vec::new();
+        for _ in 0..options.repeats {
+            rates.push(start.clone().run(options.steps)?);
+        }
+        rates.sort_by(f64::total_cmp);
+        Ok(median(&rates))
+    };
     Ok(json!({
-        "physics_steps_per_s": rate(&start)?,
-        "physics_steps_per_s_sleeping_off": rate(&awake)?,
-        "physics_steps_per_s_all_asleep": rate(&settled)?,
+        "physics_steps_per_s": rate("one world", &start)?,
+        "physics_steps_per_s_sleeping_off": rate("sleeping off", &awake)?,
+        "physics_steps_per_s_all_asleep": rate("all asleep", &settled)?,
         "worlds": options.worlds,
         "threads": threads.count(),
         "speed_up_of_worlds_together": together,

@@ -1,6 +1,6 @@
 //! Pictures a second.
 
-use super::{BenchOptions, median, open, table, timed};
+use super::{BenchOptions, BenchProgress, median, open, table, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use crate::info::viewpoints;
@@ -44,10 +44,15 @@ pub(super) fn views(engines: &Engines, options: &BenchOptions) -> Result<Vec<Pos
     Ok(around)
 }
 
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
     if !options.batch.is_empty() {
-        return table::run(house, options);
+        return table::run(house, options, progress);
     }
+    progress.part("pictures")?;
     let engines = open(house)?;
     let (state, scene) = (
         State::new(engines.house()),

@@ -1,6 +1,6 @@
 //! Pictures a second by size of batch and picture, each view of a world of its own: what a graphics card is asked for.
 
-use super::{BenchOptions, median, open, render, timed};
+use super::{BenchOptions, BenchProgress, median, open, render, timed};
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_render::{
@@ -37,7 +37,11 @@ fn back_ends(asked: &BackEnd) -> Vec<BackEnd> {
     }
 }
 
-pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldError> {
+pub(super) fn run(
+    house: &str,
+    options: &BenchOptions,
+    progress: &mut BenchProgress<'_>,
+) -> Result<Value, WorldError> {
     let engines = open(house)?;
     let threads = Threads::requested(options.threads)?;
     let most = options.batch.iter().copied().max().unwrap_or(1);
@@ -45,15 +49,18 @@ pub(super) fn run(house: &str, options: &BenchOptions) -> Result<Value, WorldErr
         poses: render::views(&engines, options)?,
         worlds: (0..most).map(|_| world(&engines)).collect(),
     };
+    let back_ends = back_ends(&options.backend);
+    progress.begin(back_ends.len() * options.resolutions().len() * options.batch.len());
     let mut rows = Vec::new();
     let mut read_back = None;
-    for back_end in back_ends(&options.backend) {
+    for back_end in back_ends {
         let renderer = engines.pictures(&back_end)?;
         if let (Renderer::Gpu(gpu), None) = (&*renderer, read_back) {
             read_back = Some(gpu.gpu().read_back_bytes_per_s()?);
         }
         for resolution in &options.resolutions() {
             for batch in &options.batch {
+                progress.part(&format!("batches of {batch} at {resolution} pixels"))?;
                 let size = BenchSize {
                     batch: *batch,
                     resolution: *resolution,

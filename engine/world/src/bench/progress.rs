@@ -1,0 +1,54 @@
+//! How far a bench is.
+
+use crate::error::WorldError;
+
+/// Takes a fraction (0 to 1) and what is measured next, and answers whether to go on.
+pub type BenchListener<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
+
+/// Counts the parts of a bench, between which nothing is timed, and tells a listener.
+pub(super) struct BenchProgress<'a> {
+    listener: BenchListener<'a>,
+    parts: usize,
+    done: usize,
+}
+
+impl<'a> BenchProgress<'a> {
+    pub(super) fn new(listener: BenchListener<'a>) -> Self {
+        Self {
+            listener,
+            parts: 1,
+            done: 0,
+        }
+    }
+
+    /// Says how many parts there are.
+    pub(super) fn begin(&mut self, parts: usize) {
+        self.parts = parts.max(1);
+    }
+
+    /// Begins the next part.
+    ///
+    /// # Errors
+    /// [`WorldError::Stopped`] where the listener does not want to go on.
+    pub(super) fn part(&mut self, what: &str) -> Result<(), WorldError> {
+        let fraction = self.done as f64 / self.parts as f64;
+        self.done += 1;
+        self.tell(fraction.min(1.0), what)
+    }
+
+    /// Says that all is measured.
+    ///
+    /// # Errors
+    /// As [`Self::part`].
+    pub(super) fn end(&mut self) -> Result<(), WorldError> {
+        self.tell(1.0, "done")
+    }
+
+    fn tell(&mut self, fraction: f64, what: &str) -> Result<(), WorldError> {
+        if (self.listener)(fraction, what) {
+            Ok(())
+        } else {
+            Err(WorldError::Stopped)
+        }
+    }
+}
