@@ -82,11 +82,14 @@ impl Air {
     pub fn attenuation_db_per_m(&self, frequency_hz: f64) -> f64 {
         let (f2, t) = (frequency_hz * frequency_hz, self.temperature_k());
         let (pressure, ratio) = (self.pressure_kpa / REFERENCE_KPA, t / T0_K);
+        // (B.2), (B.3): the saturation pressure; (B.1): the molar concentration of water vapour, %.
         let saturation = libm::pow(10.0, -6.8346 * libm::pow(T01_K / t, 1.261) + 4.6151);
         let h = self.humidity_pct * saturation / pressure;
+        // (3), (4): the relaxation frequencies of oxygen and nitrogen.
         let oxygen_hz = pressure * (24.0 + 4.04e4 * h * (0.02 + h) / (0.391 + h));
         let nitrogen_hz = pressure / ratio.sqrt()
             * (9.0 + 280.0 * h * libm::exp(-4.170 * (libm::cbrt(1.0 / ratio) - 1.0)));
+        // (5): classical and rotational losses, then the vibration of oxygen and of nitrogen.
         let classical = 1.84e-11 * ratio.sqrt() / pressure;
         let oxygen = 0.012_75 * libm::exp(-2239.1 / t) / (oxygen_hz + f2 / oxygen_hz);
         let nitrogen = 0.1068 * libm::exp(-3352.0 / t) / (nitrogen_hz + f2 / nitrogen_hz);

@@ -58,6 +58,7 @@ impl Reflection {
         let cosine = cosine.max(GRAZING);
         std::array::from_fn(|band| {
             let admittance = self.admittance[band];
+            // The reflection factor (zeta cos - 1) / (zeta cos + 1) for an impedance of zeta, 1 over the admittance.
             let pressure = (cosine - admittance) / (cosine + admittance);
             self.most[band] * pressure * pressure
         })

@@ -24,6 +24,7 @@ pub(super) fn passed(n: f64) -> f64 {
     if x < 1e-6 {
         return AT_BORDER;
     }
+    // The shadow: 5 dB + 20 lg(x / tanh x).
     if n >= 0.0 {
         let ratio = libm::tanh(x) / x;
         return AT_BORDER * ratio * ratio;
@@ -31,6 +32,7 @@ pub(super) fn passed(n: f64) -> f64 {
     if x >= FRAC_PI_2 {
         return 1.0;
     }
+    // The lit side: tan in place of tanh.
     let ratio = libm::tan(x) / x;
     (AT_BORDER * ratio * ratio).min(1.0)
 }

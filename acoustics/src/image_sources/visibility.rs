@@ -74,6 +74,7 @@ impl<'a> ImageValidator<'a> {
             // The way from the source, unfolded.
             let straight_m = images[k].distance(points[k]);
             let scattering = self.data.scattering(material, &hit, cosine, straight_m);
+            // Allen and Berkley's product over mirrors, of energy: (1 - alpha)(1 - s).
             let factors = material.absorption.iter().zip(scattering);
             for (e, (absorption, scattering)) in energy.iter_mut().zip(factors) {
                 *e *= f64::from(1.0 - absorption) * (1.0 - f64::from(scattering));

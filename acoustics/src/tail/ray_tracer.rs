@@ -266,6 +266,7 @@ impl RayTracer<'_> {
             }
             let nearest = distance_m.max(NEAREST_M);
             multiply(&mut share, scattered);
+            // Lambert's law, 4 pi E s cos / (pi r²): the limit of diffuse rain for a small receiver.
             let factor = 4.0 * cosine / (nearest * nearest);
             let from = -direction;
             self.deposit(chunk, (receiver, one.origin), way_m, &share, factor, from);
