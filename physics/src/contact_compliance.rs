@@ -1,9 +1,15 @@
 //! How hard contacts are: rapier's parameters for them.
 
 use crate::config::{ContactFriction, ResolvedConfig};
-use crate::laws::ContactCompliance;
 use rapier3d::dynamics::{FrictionModel, IntegrationParameters, SpringCoefficients};
 use std::f64::consts::TAU;
+
+/// Contacts as springs with dampers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ContactCompliance {
+    pub(crate) natural_frequency_hz: f32,
+    pub(crate) damping_ratio: f32,
+}
 
 /// Natural frequency of contacts, as a share of the substep rate. A body sinks by g over its square: 0.04 mm at 4 substeps
 /// and 120 Hz.

@@ -9,9 +9,11 @@ use crate::contact::{
     record_motion,
 };
 use crate::error::PhysicsError;
-use crate::joints::{self, DriveProgress, HandDrive, JointDrivers, TreePrediction};
-use crate::laws::{ExternalWrench, JointLoad, JointResistance, LawContext, LawHooks, LinkStep};
-use crate::motors;
+use crate::joints::{
+    self, DriveProgress, ExternalWrench, HandDrive, JointDrivers, JointLoad, JointResistance,
+    LinkStep, TreePrediction, commanded,
+};
+use crate::laws::{BodyLaw, LawContext};
 use crate::world::{PhysicsWorld, joint_from_state};
 use dwell_scene::{Aabb, AgentState, JointCommand, JointId, State, interrupt};
 use glam::Vec3;
@@ -101,18 +103,17 @@ impl PhysicsWorld {
         }
         let laws = &self.laws;
         let resist = |joint: JointId, load: &JointLoad, resistance: &mut JointResistance| {
-            for installed in laws {
-                installed.law.resist(joint, load, resistance);
+            for law in &laws.resistances {
+                law.effect.resist(joint, load, resistance);
             }
         };
         let time_s = self.tick as f64 * f64::from(self.settings.dt_s);
         let push = |link: LinkStep| {
             let link = LinkStep { time_s, ..link };
-            let pushes = laws.iter().map(|installed| installed.law.push(&link));
+            let pushes = laws.links.iter().map(|law| law.push(&link));
             pushes.fold(ExternalWrench::default(), ExternalWrench::and)
         };
-        let pushing = laws.iter().any(|installed| installed.law.pushes());
-        let resisting = laws.iter().any(|installed| installed.law.resists());
+        let (pushing, resisting) = (!laws.links.is_empty(), !laws.resistances.is_empty());
         let drivers = JointDrivers {
             joints: &self.joints,
             pulls: &self.pulls,
@@ -146,7 +147,8 @@ impl PhysicsWorld {
             properties: ContactProperties {
                 house: &self.model.house,
                 table: &self.table,
-                laws: &self.laws,
+                laws: &self.laws.contacts,
+                soft: self.laws.compliance.is_some(),
             },
             excluded: &self.excluded,
             kept: self.engine.friction_kept(),
@@ -207,7 +209,8 @@ impl PhysicsWorld {
         let properties = ContactProperties {
             house: &model.house,
             table: &self.table,
-            laws: &self.laws,
+            laws: &self.laws.contacts,
+            soft: self.laws.compliance.is_some(),
         };
         let mut changed = false;
         for roller in &model.rollers {
@@ -230,13 +233,13 @@ impl PhysicsWorld {
 
     /// Tells laws that remember it where joints stand.
     fn follow_joints(&mut self) {
-        if !self.laws.iter().any(|installed| installed.law.follows()) {
+        if self.laws.resistances.is_empty() {
             return;
         }
         for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
             let position = joints::stands(&self.engine, joint, *joint_coordinates).position as f32;
-            for installed in &mut self.laws {
-                installed.law.follow(joint.id, position);
+            for law in &mut self.laws.resistances {
+                law.effect.follow(joint.id, position);
             }
         }
     }
@@ -245,7 +248,7 @@ impl PhysicsWorld {
     fn apply_laws(
         &mut self,
         floating_roots: &[u32],
-        mut each: impl FnMut(&mut dyn LawHooks, &mut LawContext<'_>),
+        mut each: impl FnMut(&dyn BodyLaw, &mut LawContext<'_>),
     ) {
         let mut stage = LawContext {
             engine: &mut self.engine,
@@ -258,8 +261,8 @@ impl PhysicsWorld {
             dt_s: self.settings.dt_s,
             tick: self.tick,
         };
-        for installed in &mut self.laws {
-            each(&mut *installed.law, &mut stage);
+        for law in &self.laws.bodies {
+            each(&**law, &mut stage);
         }
     }
 
@@ -267,14 +270,14 @@ impl PhysicsWorld {
     fn drive_joints(&mut self, state: &mut State) {
         let house = self.model.house.clone();
         let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
-        let by_laws = motors::are_driven(&self.laws);
+        let by_laws = !self.laws.motors.is_empty();
         for index in 0..self.joints.len() {
             let joint = self.joints[index];
             let articulation = &house.joints[joint.id];
             if by_laws && articulation.servo.is_some() {
                 continue;
             }
-            let command = motors::commanded(state, joint.id);
+            let command = commanded(state, joint.id);
             let child = joint.child as usize;
             let now = (
                 state.joint_position[joint.id],

@@ -2,8 +2,7 @@
 
 use crate::config::ResolvedConfig;
 use crate::contact::FrictionStorage;
-use crate::contact_compliance;
-use crate::laws::ContactCompliance;
+use crate::contact_compliance::{self, ContactCompliance};
 use crate::sleeping_cache::SleepingIslandCache;
 use crate::workspace::Workspace;
 use glam::Vec3;

@@ -83,3 +83,26 @@ pub enum PhysicsError {
     #[error(transparent)]
     Scene(#[from] dwell_scene::SceneError),
 }
+
+impl PhysicsError {
+    /// Returns the error of a law whose target names none of those `known`.
+    pub(crate) fn no_target<'a>(
+        law: &'static str,
+        kind: &'static str,
+        name: &str,
+        known: impl Iterator<Item = &'a str>,
+    ) -> Self {
+        let mut names: Vec<String> = Vec::new();
+        for known in known {
+            if names.len() < 12 && !names.iter().any(|name| name == known) {
+                names.push(known.to_owned());
+            }
+        }
+        Self::LawTarget {
+            law,
+            kind,
+            name: name.to_owned(),
+            known: names,
+        }
+    }
+}

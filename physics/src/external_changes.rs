@@ -49,7 +49,8 @@ impl PhysicsWorld {
         let values = ContactProperties {
             house: &self.model.house,
             table: &self.table,
-            laws: &self.laws,
+            laws: &self.laws.contacts,
+            soft: self.laws.compliance.is_some(),
         };
         let inserted = agents::insert(
             &mut self.engine,
@@ -161,9 +162,7 @@ impl PhysicsWorld {
             let put = !stand.shut && !joints::matches_bodies(&self.engine, joint, &stand, there);
             if put {
                 self.engine.wake_around(body.handle);
-                for installed in &mut self.laws {
-                    installed.law.placed(joint.id, position);
-                }
+                self.laws.placed(joint.id, position);
             }
             if self.holds[child] == BodyStatus::Frozen && put {
                 self.holds[child] = BodyStatus::Free;

@@ -1,10 +1,11 @@
 //! Mass, centre of mass and inertia of a body.
 
-use crate::laws::InstalledLaw;
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::{House, State};
 use glam::{Mat3, Vec3};
 use rapier3d::dynamics::MassProperties;
+use std::fmt::Debug;
+use std::sync::Arc;
 
 /// Mass, centre of mass and inertia of a body, in the body's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,12 +51,18 @@ impl BodyInertia {
     }
 }
 
+/// A law that changes what bodies weigh.
+pub(crate) trait MassLaw: Debug + Send + Sync {
+    /// Changes mass, centre of mass or inertia of a body, once when laws or masses change.
+    fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia);
+}
+
 /// The inertia of each body whose parts state it or some law changes it; the colliders of such a body have no density. Shape (body,).
 pub(crate) fn altered(
     model: &PhysicsModel,
     state: &State,
     factors: &[Vec<f32>],
-    laws: &[InstalledLaw],
+    laws: &[Arc<dyn MassLaw>],
 ) -> Vec<Option<BodyInertia>> {
     let bodies = model.bodies.iter().zip(factors).enumerate();
     bodies
@@ -65,10 +72,8 @@ pub(crate) fn altered(
             }
             let own = BodyInertia::of(&model.house, plan, state, factor);
             let mut changed = own;
-            for installed in laws {
-                installed
-                    .law
-                    .modify_mass_properties(index as u32, &mut changed);
+            for law in laws {
+                law.modify_mass_properties(index as u32, &mut changed);
             }
             (changed != own || plan.states_inertia).then_some(changed)
         })

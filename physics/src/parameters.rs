@@ -35,7 +35,8 @@ impl PhysicsWorld {
         let values = ContactProperties {
             house: &model.house,
             table: &table,
-            laws: &laws,
+            laws: &laws.contacts,
+            soft: laws.compliance.is_some(),
         };
         let (mut longer, mut shifted) = (false, Vec::new());
         let statics = model.statics.iter().map(|piece| (piece, None));
@@ -99,14 +100,9 @@ impl PhysicsWorld {
             }
         }
         longer |= self.preserve_part_motion(state, &shifted);
-        let acts_anew = gravity != self.engine.gravity
-            || laws.len() != self.laws.len()
-            || laws
-                .iter()
-                .zip(&self.laws)
-                .any(|(new, old)| new.spec != old.spec);
+        let acts_anew = gravity != self.engine.gravity || laws.specs() != self.laws.specs();
         self.engine.gravity = gravity;
-        self.engine.soften(&self.settings, laws::compliance(&laws));
+        self.engine.soften(&self.settings, laws.compliance);
         self.table = table;
         self.weights = weights;
         self.applied.clone_from(&state.overrides);

@@ -100,11 +100,7 @@ impl PhysicsWorld {
         }
         self.adopt(state)?;
         for set in joints {
-            for installed in &mut self.laws {
-                installed
-                    .law
-                    .placed(set.joint, state.joint_position[set.joint]);
-            }
+            self.laws.placed(set.joint, state.joint_position[set.joint]);
         }
         let children = joints
             .iter()

@@ -17,7 +17,7 @@ use crate::contact::{
 use crate::engine::RapierWorld;
 use crate::error::PhysicsError;
 use crate::joints::{self, HandDrives, JointActuation};
-use crate::laws::{self, InstalledLaw};
+use crate::laws::{self, LawSet};
 use crate::limits::Crowding;
 use crate::sleeping_cache::SleepingIslandCache;
 use crate::world::{AssembledWorld, BodyMasses, PhysicsWorld, assemble, pose_of};
@@ -131,11 +131,7 @@ impl PhysicsWorld {
                 pulls: self.pulls.clone(),
                 contact_tracker: self.contact_tracker.clone(),
                 sleeping_cache: self.engine.sleeping_cache.clone(),
-                laws: self
-                    .laws
-                    .iter()
-                    .map(|installed| installed.law.memory())
-                    .collect(),
+                laws: self.laws.memory(),
             },
             islands: CowField(Cow::Borrowed(&self.engine.islands)),
             broad_phase: CowField(Cow::Borrowed(&self.engine.broad_phase)),
@@ -197,23 +193,21 @@ impl PhysicsWorld {
             ));
         }
         let model = self.model.clone();
-        let mut laws = laws::install(&model, state, &[])?;
-        if laws.len() != memory.laws.len() {
+        let mut laws = laws::install(&model, state, &LawSet::default())?;
+        if laws.specs().len() != memory.laws.len() {
             return refuse("it was taken with other laws than the state has");
         }
-        for (installed, remembered) in laws.iter_mut().zip(&memory.laws) {
-            installed.law.restore_memory(remembered);
+        for (law, remembered) in memory.laws.iter().enumerate() {
+            laws.restore_memory(law, remembered);
         }
         // The same overrides and laws give the same values.
-        let specs =
-            |laws: &[InstalledLaw]| laws.iter().map(|law| law.spec.clone()).collect::<Vec<_>>();
         let same = state.overrides == self.applied;
         let table = if same {
             self.table.clone()
         } else {
             ContactTable::new(&model.house, state)
         };
-        let weights = if same && specs(&laws) == specs(&self.laws) {
+        let weights = if same && laws.specs() == self.laws.specs() {
             self.weights.clone()
         } else {
             BodyMasses::new(&model, state, &laws)
@@ -221,7 +215,8 @@ impl PhysicsWorld {
         let values = ContactProperties {
             house: &model.house,
             table: &table,
-            laws: &laws,
+            laws: &laws.contacts,
+            soft: laws.compliance.is_some(),
         };
         // Bodies stand at the places of the snapshot for the moment in which colliders are built.
         let place = |index: usize| {
@@ -233,7 +228,15 @@ impl PhysicsWorld {
         };
         let gravity = state.gravity_m_s2();
         let sizes = (gravity, state.agents.len(), Crowding::Few);
-        let mut built = assemble(&model, &self.settings, values, sizes, place, &weights);
+        let mut built = assemble(
+            &model,
+            &self.settings,
+            values,
+            laws.compliance,
+            sizes,
+            place,
+            &weights,
+        );
         let mut agents = Vec::with_capacity(state.agents.len());
         for (id, agent) in state.agents.iter_ids() {
             let force = self.settings.event_force_n();
@@ -250,7 +253,7 @@ impl PhysicsWorld {
             ..
         } = built;
         let mut engine = RapierWorld::new(&self.settings, gravity);
-        engine.soften(&self.settings, laws::compliance(&laws));
+        engine.soften(&self.settings, laws.compliance);
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();

@@ -8,6 +8,7 @@ use crate::contact::{
     BodyMotion, ColliderEntry, CollisionExclusions, ContactEntity, ContactHooks, ContactProperties,
     ContactTable, ContactTracker, MergedEvents,
 };
+use crate::contact_compliance::ContactCompliance;
 use crate::convert::{from_rapier, to_rapier};
 use crate::engine::RapierWorld;
 use crate::error::PhysicsError;
@@ -15,7 +16,7 @@ use crate::inertia::{self, BodyInertia};
 use crate::joints::{
     self, HandDrives, JointActuation, JointCoordinate, KinematicTree, PhysicsJoint,
 };
-use crate::laws::{self, InstalledLaw};
+use crate::laws::{self, LawSet};
 use crate::limits::{self, Crowding};
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
@@ -65,7 +66,7 @@ pub struct PhysicsWorld {
     pub(crate) released_overlapping: Vec<(u32, AgentId)>,
     pub(crate) drives: HandDrives,
     pub(crate) ongoing_pushes: Vec<OngoingPush>,
-    pub(crate) laws: Vec<InstalledLaw>,
+    pub(crate) laws: LawSet,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
     pub(crate) contact_tracker: ContactTracker,
@@ -85,9 +86,9 @@ pub(crate) struct BodyMasses {
 }
 
 impl BodyMasses {
-    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &[InstalledLaw]) -> Self {
+    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
         let factors = body::mass_factors(model, state);
-        let altered = inertia::altered(model, state, &factors, laws);
+        let altered = inertia::altered(model, state, &factors, &laws.masses);
         Self { factors, altered }
     }
 }
@@ -109,6 +110,7 @@ pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &ResolvedConfig,
     values: ContactProperties<'_>,
+    compliance: Option<ContactCompliance>,
     (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
     places: impl Fn(usize) -> (RapierPose, BodyStatus),
     weights: &BodyMasses,
@@ -119,7 +121,7 @@ pub(crate) fn assemble(
     let pieces: usize = pieces.sum::<usize>() + model.statics.len();
     engine.colliders = ColliderSet::with_capacity(pieces + agents);
     engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + STANDING + agents);
-    engine.soften(settings, laws::compliance(values.laws));
+    engine.soften(settings, compliance);
     let mut entries = body::insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
@@ -184,7 +186,7 @@ impl PhysicsWorld {
         let settings = config.build()?;
         check_counts(&model.house, state)?;
         let table = ContactTable::new(&model.house, state);
-        let laws = laws::install(&model, state, &[])?;
+        let laws = laws::install(&model, state, &LawSet::default())?;
         let weights = BodyMasses::new(&model, state, &laws);
         align_joints(&model, state);
         let crowding = limits::check(&model, state)?;
@@ -196,10 +198,19 @@ impl PhysicsWorld {
         let values = ContactProperties {
             house: &model.house,
             table: &table,
-            laws: &laws,
+            laws: &laws.contacts,
+            soft: laws.compliance.is_some(),
         };
         let sizes = (gravity, state.agents.len(), crowding);
-        let assembly = assemble(&model, &settings, values, sizes, places, &weights);
+        let assembly = assemble(
+            &model,
+            &settings,
+            values,
+            laws.compliance,
+            sizes,
+            places,
+            &weights,
+        );
         let mut world = Self {
             holds: vec![BodyStatus::Free; model.bodies.len()],
             model,
@@ -388,7 +399,8 @@ impl PhysicsWorld {
             properties: ContactProperties {
                 house: &self.model.house,
                 table: &self.table,
-                laws: &self.laws,
+                laws: &self.laws.contacts,
+                soft: self.laws.compliance.is_some(),
             },
             excluded: &self.excluded,
             kept: self.engine.friction_kept(),

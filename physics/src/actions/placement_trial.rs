@@ -72,7 +72,8 @@ impl PhysicsWorld {
             properties: ContactProperties {
                 house: &self.model.house,
                 table: &self.table,
-                laws: &self.laws,
+                laws: &self.laws.contacts,
+                soft: self.laws.compliance.is_some(),
             },
             excluded: &self.excluded,
             kept: self.engine.friction_kept(),

@@ -48,8 +48,8 @@ impl PhysicsWorld {
             let mut agent = state.agents[id];
             control.look(&mut agent, dt_s);
             let laws = |rolling: &mut WheelMotion| {
-                for installed in &self.laws {
-                    installed.law.roll(id, rolling);
+                for law in &self.laws.bases {
+                    law.roll(id, rolling);
                 }
             };
             let driven = bases::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
@@ -243,8 +243,9 @@ impl PhysicsWorld {
                 Locomotion::Walking(_) => rate,
                 _ => self
                     .laws
+                    .bases
                     .iter()
-                    .fold(rate, |rate, installed| installed.law.gyro(id, rate)),
+                    .fold(rate, |rate, law| law.gyro(id, rate)),
             };
         }
     }

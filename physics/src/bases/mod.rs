@@ -7,11 +7,13 @@
 //! their odometry counts a way that was not made, as a real robot's does. A body that leaves the floor keeps its
 //! velocity and its heading until it lands. Along a wall that it meets at an angle it scrapes as a walker does.
 
+mod base_law;
 mod differential;
 mod holonomic;
 mod planar;
 mod wheeled_step;
 
+pub(crate) use base_law::BaseLaw;
 pub use differential::WheelGeometry;
 pub(crate) use differential::WheelMotion;
 pub use planar::{PlanarPose, PlanarTwist};

@@ -1,10 +1,10 @@
 //! What rapier asks during a step: which pairs meet, and with what friction.
 
 use super::collider_entry::{ColliderEntry, entry_index};
+use super::contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
 use super::friction::FrictionStorage;
 use super::rolling;
 use super::substances::ContactTable;
-use crate::laws::{self, ContactSide, ContactValues, InstalledLaw, LawContact};
 use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};
@@ -15,6 +15,7 @@ use rapier3d::pipeline::{
     ContactModificationContext, ModifiableManifold, PairFilterContext, PhysicsHooks,
 };
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Distance below which two points of a contact plane are one, m.
 const SAME_POINT_M: f32 = 0.002;
@@ -58,25 +59,23 @@ impl CollisionExclusions {
 pub(crate) struct ContactProperties<'a> {
     pub(crate) house: &'a House,
     pub(crate) table: &'a ContactTable,
-    pub(crate) laws: &'a [InstalledLaw],
+    pub(crate) laws: &'a [Arc<dyn ContactLaw>],
+    /// Whether a law makes contacts give.
+    pub(crate) soft: bool,
 }
 
 impl ContactProperties<'_> {
     /// The values of a collider on itself, for rapier's own rule, and whether rapier asks about its pairs instead.
     pub(crate) fn rule(&self, entry: &ColliderEntry) -> (PairContact, bool) {
         let (mut own, mut special) = self.table.rule(&entry.surface);
-        if self.laws.is_empty() {
-            return (own, special);
-        }
-        if laws::compliance(self.laws).is_some() {
+        if self.soft {
             own.restitution = 0.0;
             special |= entry.body.is_some();
         }
         special |= self
             .laws
             .iter()
-            .filter_map(|installed| installed.law.scope())
-            .any(|scope| scope.asks(self.house, self.table, entry));
+            .any(|law| law.scope().asks(self.house, self.table, entry));
         (own, special)
     }
 }
@@ -108,7 +107,9 @@ impl PhysicsHooks for ContactHooks<'_> {
         let (Some(a), Some(b)) = (self.entries.get(a), self.entries.get(b)) else {
             return;
         };
-        let ContactProperties { table, laws, .. } = self.properties;
+        let ContactProperties {
+            table, laws, soft, ..
+        } = self.properties;
         let (bodies, body_a, body_b) = (context.bodies, context.rigid_body1, context.rigid_body2);
         let Some(manifold) = context.rigid_mut() else {
             return;
@@ -124,12 +125,12 @@ impl PhysicsHooks for ContactHooks<'_> {
         let pair = table.pair(class_a, class_b);
         *manifold.friction = pair.friction;
         *manifold.restitution = pair.restitution;
-        if laws.is_empty() {
-            return;
-        }
-        if laws::compliance(laws).is_some() {
+        if soft {
             *manifold.restitution = 0.0;
             merge_coincident_points(manifold.solver_contacts);
+        }
+        if laws.is_empty() {
+            return;
         }
         let side = |entry: &ColliderEntry, class: u16, body: Option<RigidBodyHandle>| ContactSide {
             toucher: entry.toucher,
@@ -173,10 +174,7 @@ impl ContactHooks<'_> {
         (a, b): (ContactSide<'_>, ContactSide<'_>),
     ) {
         let count = plane.solver_contacts.len();
-        let turns = |installed: &InstalledLaw| {
-            let scope = installed.law.scope()?;
-            scope.turns(self.properties.house, &a, &b)
-        };
+        let turns = |law: &Arc<dyn ContactLaw>| law.scope().turns(self.properties.house, &a, &b);
         if count == 0 || self.properties.laws.iter().all(|law| turns(law).is_none()) {
             return;
         }
@@ -203,12 +201,12 @@ impl ContactHooks<'_> {
             restitution: *plane.restitution,
             surface_velocity: Vec3::ZERO,
         };
-        for installed in self.properties.laws {
-            match turns(installed) {
-                Some(false) => installed.law.shape_contact(&touch, &mut values),
+        for law in self.properties.laws {
+            match turns(law) {
+                Some(false) => law.shape_contact(&touch, &mut values),
                 Some(true) => {
                     values.surface_velocity *= -1.0;
-                    installed.law.shape_contact(&touch.turned(), &mut values);
+                    law.shape_contact(&touch.turned(), &mut values);
                     values.surface_velocity *= -1.0;
                 }
                 None => {}

@@ -1,7 +1,7 @@
 //! Efforts along joints that answer to the velocity at the end of a step.
 
+use super::SlipSpring;
 use super::convex_solver::EffortTerm;
-use crate::laws::SlipSpring;
 use dwell_scene::JointKind;
 use serde::{Deserialize, Serialize};
 

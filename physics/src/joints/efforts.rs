@@ -12,8 +12,8 @@ use super::integration::{AT_REST, TreeIntegration, TreeSolver};
 use super::joint_state::{JointCoordinate, JointReading, is_untouched};
 use super::tree::KinematicTree;
 use super::tree_step::TreeStep;
+use super::{ExternalWrench, JointLoad, JointResistance, LinkStep};
 use crate::engine::RapierWorld;
-use crate::laws::{ExternalWrench, JointLoad, JointResistance, LinkStep};
 use dwell_scene::JointId;
 use glam::Vec3;
 

@@ -15,7 +15,7 @@ use super::effort_term::JointDof;
 use super::tree::KinematicTree;
 use super::tree_dynamics::TreeDynamics;
 use super::{JointDrivers, PhysicsJoint};
-use crate::laws::{JointLoad, JointResistance};
+use super::{JointLoad, JointResistance};
 
 /// A way within a step, rad or m, below which a tree counts as standing.
 pub(super) const AT_REST: f64 = 1e-5;

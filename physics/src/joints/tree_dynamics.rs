@@ -4,12 +4,12 @@
 //! R. Featherstone, Rigid Body Dynamics Algorithms (2008): the composite-rigid-body method (6.2) and the recursive
 //! Newton-Euler method (5.3), written here in world coordinates about centres of mass.
 
+use super::ExternalWrench;
 use super::base_contacts::BaseResponse;
 use super::convex_solver::SymmetricMatrix;
 use super::external_contact::ExternalContact;
 use super::floating_base::FloatingBase;
 use super::support::{self, SupportPoint};
-use crate::laws::ExternalWrench;
 use dwell_scene::JointKind;
 use glam::{DMat3, DVec3};
 use rapier3d::dynamics::RigidBody;

@@ -1,24 +1,23 @@
 //! Physical effects that the basic model lacks. One file each, one line in the list.
 //!
-//! A law at its default is not installed, so that nothing changes bit for bit. What a law can reach is `LawHooks`: forces on
-//! bodies, the values of contacts, mass and inertia, how stiff contacts are, where servos go. What wakes a body that
+//! A law at its default is not installed, so that nothing changes bit for bit. A law has one effect or more, each a trait of
+//! the stage of the step at which it acts: mass and inertia (`MassLaw`), bodies between steps (`BodyLaw`), forces on trees
+//! of joints (`LinkLaw`), the values of contacts (`ContactLaw`) and how they give, motors (`MotorLaw`), what joints resist
+//! with (`ResistanceLaw`), bases on wheels (`BaseLaw`). What wakes a body that
 //! sleeps: laws of air and of contact act on what moves, and leave asleep what sleeps, apart from wind, which wakes what
 //! it is strong enough to move.
 
 mod actuators;
 mod bases;
 mod bodies;
+mod body_law;
 mod contacts;
-mod law_hooks;
-mod link_wrench;
+mod law_set;
 mod target;
 
-pub(crate) use law_hooks::{
-    ContactCompliance, ContactSide, ContactValues, JointLoad, JointResistance, LawContact,
-    LawContext, LawHooks, MotorStep, SlipSpring,
-};
-
-pub(crate) use link_wrench::{ExternalWrench, LinkStep};
+pub(crate) use body_law::{BodyLaw, LawContext};
+use law_set::LawEffect;
+pub(crate) use law_set::LawSet;
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
@@ -33,7 +32,7 @@ struct PhysicsLaw {
 
 /// Puts a law to work on what its spec names.
 type InstallFn =
-    fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Box<dyn LawHooks>, PhysicsError>;
+    fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Vec<LawEffect>, PhysicsError>;
 
 /// The laws of this engine.
 static LAWS: &[PhysicsLaw] = &[
@@ -77,31 +76,16 @@ pub fn all() -> &'static [LawInfo] {
     &INFOS
 }
 
-/// An installed law with the words it was installed by.
-#[derive(Debug)]
-pub(crate) struct InstalledLaw {
-    pub(crate) spec: LawSpec,
-    pub(crate) law: Box<dyn LawHooks>,
-}
-
-impl Clone for InstalledLaw {
-    fn clone(&self) -> Self {
-        Self {
-            spec: self.spec.clone(),
-            law: self.law.clone_box(),
-        }
-    }
-}
-
 /// Installs the state's laws that belong to this engine and differ from their default. A law that was there before, on
 /// the same target, keeps its memory.
 pub(crate) fn install(
     model: &PhysicsModel,
     state: &State,
-    before: &[InstalledLaw],
-) -> Result<Vec<InstalledLaw>, PhysicsError> {
+    before: &LawSet,
+) -> Result<LawSet, PhysicsError> {
     LawSpec::check_targets(&model.house, &all().iter().collect::<Vec<_>>(), &state.laws)?;
-    let mut installed: Vec<InstalledLaw> = Vec::new();
+    let mut installed = LawSet::default();
+    let mut remembered = before.memory();
     for spec in &state.laws {
         let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id) else {
             continue;
@@ -110,26 +94,18 @@ pub(crate) fn install(
         if spec.is_default(&law.info) {
             continue;
         }
-        let mut acts = (law.install)(spec, &law.info, model, state)?;
+        let effects = (law.install)(spec, &law.info, model, state)?;
         // Two laws of one kind on one target are told apart by their order.
-        let same = |old: &&InstalledLaw| old.spec.id == spec.id && old.spec.target == spec.target;
-        let earlier = installed.iter().filter(same).count();
-        if let Some(old) = before.iter().filter(same).nth(earlier) {
-            acts.restore_memory(&old.law.memory());
+        let same = |old: &LawSpec| old.id == spec.id && old.target == spec.target;
+        let number = installed.specs().len();
+        let earlier = installed.specs().iter().filter(|old| same(old)).count();
+        installed.add(spec.clone(), effects);
+        let old = before.specs().iter().enumerate();
+        if let Some((old, _)) = old.filter(|(_, old)| same(old)).nth(earlier) {
+            installed.restore_memory(number, &std::mem::take(&mut remembered[old]));
         }
-        installed.push(InstalledLaw {
-            spec: spec.clone(),
-            law: acts,
-        });
     }
     Ok(installed)
-}
-
-/// Returns how contacts give under the laws; the last law that says so wins.
-pub(crate) fn compliance(laws: &[InstalledLaw]) -> Option<ContactCompliance> {
-    laws.iter()
-        .rev()
-        .find_map(|installed| installed.law.compliance())
 }
 
 /// The value of a law's parameter.

@@ -1,11 +1,8 @@
-//! What a law's target names: objects, and contacts.
+//! The bodies that a law's target names.
 
-use crate::contact::{ColliderEntry, ContactEntity, ContactTable};
 use crate::error::PhysicsError;
-use crate::laws::ContactSide;
 use crate::model::{BodyPlan, PhysicsModel};
-use dwell_scene::material::library;
-use dwell_scene::{House, LawInfo, LawSpec, ObjectId, PartId, StructureId};
+use dwell_scene::{LawInfo, LawSpec, PartId};
 
 /// The bodies that a spec acts on, free or moved by joints: those of the object that it names, the one of the part that it
 /// names as `OBJECT/PART`, or all; in order.
@@ -40,7 +37,7 @@ pub(super) fn moving_bodies<'a>(
                 });
             }
             let kind = "object that moves (or OBJECT/PART of one)";
-            Err(no_target(
+            Err(PhysicsError::no_target(
                 info.id,
                 kind,
                 name,
@@ -48,148 +45,5 @@ pub(super) fn moving_bodies<'a>(
             ))
         }
         _ => Ok(found),
-    }
-}
-
-pub(super) fn no_target<'a>(
-    law: &'static str,
-    kind: &'static str,
-    name: &str,
-    known: impl Iterator<Item = &'a str>,
-) -> PhysicsError {
-    let mut names: Vec<String> = Vec::new();
-    for known in known {
-        if names.len() < 12 && !names.iter().any(|name| name == known) {
-            names.push(known.to_owned());
-        }
-    }
-    PhysicsError::LawTarget {
-        law,
-        kind,
-        name: name.to_owned(),
-        known: names,
-    }
-}
-
-/// What one name of a contact's target stands for: all objects, structure pieces and the substance of that name.
-#[derive(Clone, Debug, PartialEq)]
-struct NamedContactTarget {
-    objects: Vec<ObjectId>,
-    structure: Vec<StructureId>,
-    substance: Option<&'static str>,
-}
-
-impl NamedContactTarget {
-    fn of(house: &House, name: &str) -> Option<Self> {
-        let objects = house.objects.iter_ids();
-        let structure = house.structure.iter_ids();
-        let named = Self {
-            objects: objects
-                .filter(|(_, object)| object.name == name)
-                .map(|(id, _)| id)
-                .collect(),
-            structure: structure
-                .filter(|(_, piece)| piece.name == name)
-                .map(|(id, _)| id)
-                .collect(),
-            substance: library().get(name).map(|substance| substance.name.as_str()),
-        };
-        let nothing =
-            named.objects.is_empty() && named.structure.is_empty() && named.substance.is_none();
-        (!nothing).then_some(named)
-    }
-
-    fn is_thing(&self, house: &House, toucher: Option<ContactEntity>) -> bool {
-        match toucher {
-            Some(ContactEntity::Part(part)) => self.objects.contains(&house.parts[part].object),
-            Some(ContactEntity::Structure(id)) => self.structure.contains(&id),
-            _ => false,
-        }
-    }
-
-    fn is(&self, house: &House, side: &ContactSide<'_>) -> bool {
-        self.substance == Some(side.substance) || self.is_thing(house, side.toucher)
-    }
-}
-
-/// The contacts that a law shapes. A target is `NAME` (all contacts of what it names) or `NAME~NAME` (those between the
-/// two, in either order); a name is that of an object, of a piece of the structure or of a substance of the materials
-/// library. No target: all contacts.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct ContactScope {
-    one: Option<NamedContactTarget>,
-    other: Option<NamedContactTarget>,
-}
-
-impl ContactScope {
-    pub(super) fn of(
-        spec: &LawSpec,
-        info: &LawInfo,
-        model: &PhysicsModel,
-    ) -> Result<Self, PhysicsError> {
-        let house = &model.house;
-        let Some(target) = &spec.target else {
-            return Ok(Self {
-                one: None,
-                other: None,
-            });
-        };
-        let named = |name: &str| {
-            NamedContactTarget::of(house, name).ok_or_else(|| {
-                let objects = house.objects.iter().map(|object| object.name.as_str());
-                let structure = house.structure.iter().map(|piece| piece.name.as_str());
-                let kind = "object, structure or substance";
-                no_target(info.id, kind, name, objects.chain(structure))
-            })
-        };
-        // An object's own name may hold the sign.
-        if let Some(whole) = NamedContactTarget::of(house, target) {
-            return Ok(Self {
-                one: Some(whole),
-                other: None,
-            });
-        }
-        Ok(match target.split_once('~') {
-            Some((one, other)) => Self {
-                one: Some(named(one)?),
-                other: Some(named(other)?),
-            },
-            None => Self {
-                one: Some(named(target)?),
-                other: None,
-            },
-        })
-    }
-
-    /// Returns whether rapier must ask about the pairs of a collider.
-    pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &ColliderEntry) -> bool {
-        let Some(one) = &self.one else {
-            return entry.body.is_some();
-        };
-        let made_of = |class: u16| one.substance == Some(table.substance(class));
-        entry.surface.any_class(made_of) || one.is_thing(house, entry.toucher)
-    }
-
-    /// Returns whether a contact is within, and if so, whether `b` is the surface and not `a`.
-    pub(crate) fn turns(
-        &self,
-        house: &House,
-        a: &ContactSide<'_>,
-        b: &ContactSide<'_>,
-    ) -> Option<bool> {
-        let is = |named: &Option<NamedContactTarget>, side: &ContactSide<'_>| {
-            named.as_ref().is_none_or(|named| named.is(house, side))
-        };
-        let (forth, back) = (
-            is(&self.one, a) && is(&self.other, b),
-            is(&self.one, b) && is(&self.other, a),
-        );
-        match (forth, back) {
-            (false, false) => None,
-            (true, false) => Some(false),
-            (false, true) => Some(true),
-            // Structure sorts before parts, parts before agents.
-            (true, true) => Some(a.toucher > b.toucher),
-        }
     }
 }

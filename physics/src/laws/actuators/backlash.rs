@@ -2,7 +2,8 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
+use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
@@ -73,15 +74,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let motors = TargetMotors::of(spec, info, model)?.0.into_iter();
-    Ok(Box::new(Backlash {
+    Ok(vec![LawEffect::Motor(Box::new(Backlash {
         half_width: value(spec, info, "half_width"),
         motor_inertia: value(spec, info, "motor_inertia"),
         motors: motors
             .map(|id| (id, BacklashState::at(state.joint_position[id])))
             .collect(),
-    }))
+    }))])
 }
 
 /// The play operator.
@@ -124,11 +125,7 @@ impl BacklashState {
     }
 }
 
-impl LawHooks for Backlash {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for Backlash {
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let (half_width, inertia) = (self.half_width, self.motor_inertia);
         let Some(gear) = self.motors.get_mut(&motor.joint) else {
@@ -158,6 +155,12 @@ impl LawHooks for Backlash {
         }
     }
 
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
+        Box::new(self.clone())
+    }
+}
+
+impl LawMemory for Backlash {
     fn placed(&mut self, joint: JointId, position: f32) {
         if let Some(play) = self.motors.get_mut(&joint) {
             *play = BacklashState::at(position);
@@ -179,10 +182,6 @@ impl LawHooks for Backlash {
                 velocity: remembered[2],
             };
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{ActuationGain, JointActuation};
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::joints::{ActuationGain, JointActuation, LawMemory, MotorLaw};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
@@ -51,18 +51,14 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(JointCompliance {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Motor(Box::new(JointCompliance {
         motors: TargetMotors::of(spec, info, model)?,
         compliance: value(spec, info, "compliance"),
-    }))
+    }))])
 }
 
-impl LawHooks for JointCompliance {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for JointCompliance {
     fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
@@ -75,7 +71,9 @@ impl LawHooks for JointCompliance {
         }
     }
 
-    fn clone_box(&self) -> Box<dyn LawHooks> {
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
         Box::new(self.clone())
     }
 }
+
+impl LawMemory for JointCompliance {}

@@ -2,7 +2,8 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
+use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
@@ -55,19 +56,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(Deadband {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Motor(Box::new(Deadband {
         motors: TargetMotors::of(spec, info, model)?,
         half_width: value(spec, info, "half_width"),
         min_effort: value(spec, info, "min_effort"),
-    }))
+    }))])
 }
 
-impl LawHooks for Deadband {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for Deadband {
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         if !self.motors.hold(motor.joint) {
             return;
@@ -82,7 +79,9 @@ impl LawHooks for Deadband {
         }
     }
 
-    fn clone_box(&self) -> Box<dyn LawHooks> {
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
         Box::new(self.clone())
     }
 }
+
+impl LawMemory for Deadband {}

@@ -2,7 +2,8 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
+use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State, math};
@@ -45,11 +46,11 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(FirstOrderLag {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Motor(Box::new(FirstOrderLag {
         tau_s: value(spec, info, "tau_s"),
         outputs: FilteredCommands::of(spec, info, model)?,
-    }))
+    }))])
 }
 
 /// The output at the end of a step and its mean over it, with the input `u` held.
@@ -59,27 +60,25 @@ fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
     (end, u + (y - u) * (1.0 - left) / steps)
 }
 
-impl LawHooks for FirstOrderLag {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for FirstOrderLag {
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let steps = motor.dt_s / self.tau_s;
         self.outputs
             .follow(motor, command, |y, told| relax(y, told, steps));
     }
 
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
+        Box::new(self.clone())
+    }
+}
+
+impl LawMemory for FirstOrderLag {
     fn memory(&self) -> Vec<f32> {
         self.outputs.memory()
     }
 
     fn restore_memory(&mut self, memory: &[f32]) {
         self.outputs.restore_memory(memory);
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, SlipSpring, value};
+use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw, SlipSpring};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
@@ -68,17 +69,17 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let spring = |joint: JointId| HysteresisSpring {
         effort: 0.0,
         position: state.joint_position[joint],
     };
     let hinges = TargetJoints::of(spec, info, model)?.0.into_iter();
-    Ok(Box::new(Hysteresis {
+    Ok(vec![LawEffect::Resistance(Box::new(Hysteresis {
         max_effort: value(spec, info, "max_effort"),
         stiffness: value(spec, info, "stiffness"),
         springs: hinges.map(|joint| (joint, spring(joint))).collect(),
-    }))
+    }))])
 }
 
 impl Hysteresis {
@@ -89,30 +90,13 @@ impl Hysteresis {
     }
 }
 
-impl LawHooks for Hysteresis {
-    fn follows(&self) -> bool {
-        true
-    }
-
+impl ResistanceLaw for Hysteresis {
     fn follow(&mut self, joint: JointId, position: f32) {
         if let Some(spring) = self.springs.get(&joint).copied() {
             let effort = self.effort(&spring, position);
             self.springs
                 .insert(joint, HysteresisSpring { effort, position });
         }
-    }
-
-    fn placed(&mut self, joint: JointId, position: f32) {
-        if let Some(spring) = self.springs.get_mut(&joint) {
-            *spring = HysteresisSpring {
-                effort: 0.0,
-                position,
-            };
-        }
-    }
-
-    fn resists(&self) -> bool {
-        true
     }
 
     fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
@@ -122,6 +106,21 @@ impl LawHooks for Hysteresis {
                 stiffness: self.stiffness,
                 max_effort: self.max_effort,
             });
+        }
+    }
+
+    fn clone_box(&self) -> Box<dyn ResistanceLaw> {
+        Box::new(self.clone())
+    }
+}
+
+impl LawMemory for Hysteresis {
+    fn placed(&mut self, joint: JointId, position: f32) {
+        if let Some(spring) = self.springs.get_mut(&joint) {
+            *spring = HysteresisSpring {
+                effort: 0.0,
+                position,
+            };
         }
     }
 
@@ -136,10 +135,6 @@ impl LawHooks for Hysteresis {
         for (spring, remembered) in self.springs.values_mut().zip(memory.chunks_exact(2)) {
             (spring.effort, spring.position) = (remembered[0], remembered[1]);
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::TargetJoints;
 use crate::error::PhysicsError;
-use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, value};
+use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State, math};
@@ -126,9 +127,9 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let number = |name: &str| value(spec, info, name);
-    Ok(Box::new(JointFriction {
+    Ok(vec![LawEffect::Resistance(Box::new(JointFriction {
         hinges: TargetJoints::of(spec, info, model)?,
         friction: Friction {
             coulomb: number("coulomb"),
@@ -145,14 +146,10 @@ fn install(
             motor_quadratic: number("motor_quadratic"),
             external_quadratic: number("external_quadratic"),
         },
-    }))
+    }))])
 }
 
-impl LawHooks for JointFriction {
-    fn resists(&self) -> bool {
-        true
-    }
-
+impl ResistanceLaw for JointFriction {
     fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
         if self.hinges.hold(joint) {
             resistance.friction += self.friction.bound(load);
@@ -160,10 +157,12 @@ impl LawHooks for JointFriction {
         }
     }
 
-    fn clone_box(&self) -> Box<dyn LawHooks> {
+    fn clone_box(&self) -> Box<dyn ResistanceLaw> {
         Box::new(self.clone())
     }
 }
+
+impl LawMemory for JointFriction {}
 
 #[cfg(test)]
 mod tests {

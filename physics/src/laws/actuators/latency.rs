@@ -2,9 +2,9 @@
 
 use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
+use crate::joints::{LawMemory, MotorLaw, MotorStep, commanded};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
-use crate::motors::commanded;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
 use std::collections::{BTreeMap, VecDeque};
@@ -52,16 +52,16 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let mut motors = TargetMotors::of(spec, info, model)?.each(CommandDelayLine::default);
     // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
     for (joint, past) in &mut motors {
         past.0.push_back(commanded(state, *joint));
     }
-    Ok(Box::new(Latency {
+    Ok(vec![LawEffect::Motor(Box::new(Latency {
         delay_s: value(spec, info, "delay_s"),
         past: motors,
-    }))
+    }))])
 }
 
 impl CommandDelayLine {
@@ -85,17 +85,19 @@ impl CommandDelayLine {
     }
 }
 
-impl LawHooks for Latency {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for Latency {
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         if let Some(past) = self.past.get_mut(&motor.joint) {
             *command = past.shift(*command, self.delay_s / motor.dt_s);
         }
     }
 
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
+        Box::new(self.clone())
+    }
+}
+
+impl LawMemory for Latency {
     fn memory(&self) -> Vec<f32> {
         let mut memory = Vec::new();
         for past in self.past.values() {
@@ -116,10 +118,6 @@ impl LawHooks for Latency {
                 }
             }
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

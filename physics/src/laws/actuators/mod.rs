@@ -16,8 +16,7 @@ pub(super) mod rate_limit;
 pub(super) mod saturation;
 
 use crate::error::PhysicsError;
-use crate::laws::MotorStep;
-use crate::laws::target::no_target;
+use crate::joints::MotorStep;
 use crate::model::PhysicsModel;
 use dwell_scene::{Articulation, Id, JointCommand, JointId, LawInfo, LawSpec};
 use std::collections::BTreeMap;
@@ -48,7 +47,7 @@ fn joints(
     match &spec.target {
         Some(target) if found.is_empty() => {
             let names = able().map(|(_, joint)| joint.name.as_str());
-            Err(no_target(info.id, kind, target, names))
+            Err(PhysicsError::no_target(info.id, kind, target, names))
         }
         _ => Ok(found),
     }

@@ -2,8 +2,10 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::{ActuationGain, JointActuation};
-use crate::laws::{JointLoad, JointResistance, LawHooks, PhysicsLaw, value};
+use crate::joints::{
+    ActuationGain, JointActuation, JointLoad, JointResistance, LawMemory, MotorLaw, ResistanceLaw,
+};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
@@ -96,12 +98,12 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let number = |name: &str| value(spec, info, name);
     let geared = number("gear") * number("k_t");
     let resistance = number("resistance_ohm");
     let supply = number("supply_v");
-    Ok(Box::new(MotorConstants {
+    let law = MotorConstants {
         motors: TargetMotors::of(spec, info, model)?,
         torque_scale: number("torque_scale"),
         stall_effort: if supply > 0.0 {
@@ -111,14 +113,14 @@ fn install(
         },
         back_emf: geared * geared / resistance,
         armature: number("gear") * number("gear") * number("rotor_inertia_kg_m2"),
-    }))
+    };
+    Ok(vec![
+        LawEffect::Motor(Box::new(law.clone())),
+        LawEffect::Resistance(Box::new(law)),
+    ])
 }
 
-impl LawHooks for MotorConstants {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for MotorConstants {
     fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if !self.motors.hold(joint) {
             return;
@@ -136,10 +138,12 @@ impl LawHooks for MotorConstants {
         pull.max_effort = (pull.max_effort * scale).min(self.stall_effort);
     }
 
-    fn resists(&self) -> bool {
-        true
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
+        Box::new(self.clone())
     }
+}
 
+impl ResistanceLaw for MotorConstants {
     fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance) {
         if self.motors.hold(joint) {
             resistance.armature += self.armature;
@@ -149,7 +153,9 @@ impl LawHooks for MotorConstants {
         }
     }
 
-    fn clone_box(&self) -> Box<dyn LawHooks> {
+    fn clone_box(&self) -> Box<dyn ResistanceLaw> {
         Box::new(self.clone())
     }
 }
+
+impl LawMemory for MotorConstants {}

@@ -2,7 +2,8 @@
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, MotorStep, PhysicsLaw, value};
+use crate::joints::{LawMemory, MotorLaw, MotorStep};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
@@ -44,11 +45,11 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(RateLimit {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Motor(Box::new(RateLimit {
         max_rate: value(spec, info, "max_rate"),
         outputs: FilteredCommands::of(spec, info, model)?,
-    }))
+    }))])
 }
 
 /// The output at the end of a step in which it can change by `most`, and its mean over the step.
@@ -62,27 +63,25 @@ fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
     }
 }
 
-impl LawHooks for RateLimit {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for RateLimit {
     fn drive(&mut self, motor: &MotorStep, command: &mut JointCommand) {
         let most = self.max_rate * motor.dt_s;
         self.outputs
             .follow(motor, command, |y, told| approach(y, told, most));
     }
 
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
+        Box::new(self.clone())
+    }
+}
+
+impl LawMemory for RateLimit {
     fn memory(&self) -> Vec<f32> {
         self.outputs.memory()
     }
 
     fn restore_memory(&mut self, memory: &[f32]) {
         self.outputs.restore_memory(memory);
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::TargetMotors;
 use crate::error::PhysicsError;
-use crate::joints::JointActuation;
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::joints::{JointActuation, LawMemory, MotorLaw};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{JointId, LawInfo, LawSpec, State};
@@ -44,25 +44,23 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(Saturation {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Motor(Box::new(Saturation {
         motors: TargetMotors::of(spec, info, model)?,
         max_effort: value(spec, info, "max_effort"),
-    }))
+    }))])
 }
 
-impl LawHooks for Saturation {
-    fn drives(&self) -> bool {
-        true
-    }
-
+impl MotorLaw for Saturation {
     fn modify_motor(&self, joint: JointId, pull: &mut JointActuation) {
         if self.motors.hold(joint) {
             pull.max_effort = pull.max_effort.min(self.max_effort);
         }
     }
 
-    fn clone_box(&self) -> Box<dyn LawHooks> {
+    fn clone_box(&self) -> Box<dyn MotorLaw> {
         Box::new(self.clone())
     }
 }
+
+impl LawMemory for Saturation {}

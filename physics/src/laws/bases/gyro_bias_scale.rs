@@ -1,11 +1,13 @@
 //! A gyro that reads something at rest, and too much or too little in a turn.
 
 use super::{RequiredBase, TargetAgents};
+use crate::bases::BaseLaw;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -54,24 +56,20 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(GyroBiasScale {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Base(Arc::new(GyroBiasScale {
         riders: TargetAgents::of(spec, info, state, RequiredBase::Wheels)?,
         bias_rad_s: value(spec, info, "bias_rad_s"),
         scale: value(spec, info, "scale"),
-    }))
+    }))])
 }
 
-impl LawHooks for GyroBiasScale {
+impl BaseLaw for GyroBiasScale {
     fn gyro(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
         if self.riders.holds(agent) {
             self.scale * rate_rad_s + self.bias_rad_s
         } else {
             rate_rad_s
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

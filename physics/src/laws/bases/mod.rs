@@ -6,7 +6,6 @@ pub(super) mod unequal_wheels;
 pub(super) mod wheel_slip;
 
 use crate::error::PhysicsError;
-use crate::laws::target::no_target;
 use dwell_scene::{AgentId, Id, LawInfo, LawSpec, Locomotion, State};
 
 /// How an agent must get about so that a law can act on it.
@@ -72,7 +71,7 @@ impl TargetAgents {
         let Some(index) = found else {
             let numbers: Vec<String> = (0..state.agents.len()).map(|k| k.to_string()).collect();
             let names = numbers.iter().map(String::as_str);
-            return Err(no_target(info.id, "agent", target, names));
+            return Err(PhysicsError::no_target(info.id, "agent", target, names));
         };
         let agent = AgentId::from_index(index);
         if !fits(&agent) {

@@ -1,12 +1,14 @@
 //! Wheels of unequal size, and a wheel base that is not as measured.
 
 use super::{RequiredBase, TargetAgents};
+use crate::bases::BaseLaw;
 use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, PhysicsLaw};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 const fn ratio(name: &'static str, plausible: [f64; 2]) -> ParamInfo {
     ParamInfo {
@@ -56,20 +58,20 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let value = |name: &str| spec.value(info, name).unwrap_or(1.0);
     let (ratio, scale) = (value("radius_ratio"), value("radius_scale"));
-    Ok(Box::new(UnequalWheels {
+    Ok(vec![LawEffect::Base(Arc::new(UnequalWheels {
         riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
         radius_factors: [
             scale * 2.0 / (1.0 + ratio),
             scale * 2.0 * ratio / (1.0 + ratio),
         ],
         base_factor: value("base_ratio"),
-    }))
+    }))])
 }
 
-impl LawHooks for UnequalWheels {
+impl BaseLaw for UnequalWheels {
     fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if self.riders.holds(agent) {
             for (radius, factor) in rolling.wheels.radius_m.iter_mut().zip(self.radius_factors) {
@@ -77,9 +79,5 @@ impl LawHooks for UnequalWheels {
             }
             rolling.wheels.base_m *= self.base_factor;
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -1,12 +1,14 @@
 //! Wheels that slip while they push.
 
 use super::{RequiredBase, TargetAgents};
+use crate::bases::BaseLaw;
 use crate::bases::WheelMotion;
 use crate::error::PhysicsError;
-use crate::laws::{LawHooks, PhysicsLaw};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -46,14 +48,14 @@ fn install(
     info: &LawInfo,
     _model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(WheelSlip {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Base(Arc::new(WheelSlip {
         riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
         slip_per_m_s2: spec.value(info, "slip_per_m_s2").unwrap_or(0.0),
-    }))
+    }))])
 }
 
-impl LawHooks for WheelSlip {
+impl BaseLaw for WheelSlip {
     fn roll(&self, agent: AgentId, rolling: &mut WheelMotion) {
         if !self.riders.holds(agent) {
             return;
@@ -64,9 +66,5 @@ impl LawHooks for WheelSlip {
             let slip = self.slip_per_m_s2 * rolling.wheels.radius_m[side] * gathering;
             rolling.slip[side] = (rolling.slip[side] + slip).clamp(-1.0, 1.0);
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -2,8 +2,9 @@
 
 use super::size::cross_section_m2;
 use crate::error::PhysicsError;
+use crate::joints::LinkStep;
 use crate::laws::target::moving_bodies;
-use crate::laws::{LinkStep, value};
+use crate::laws::value;
 use crate::model::PhysicsModel;
 use dwell_scene::law::ParamInfo;
 use dwell_scene::{LawInfo, LawSpec};

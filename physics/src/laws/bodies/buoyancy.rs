@@ -2,12 +2,13 @@
 
 use super::size::volume_m3;
 use crate::error::PhysicsError;
-use crate::inertia::BodyInertia;
+use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -66,7 +67,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let density = value(spec, info, "fluid_density_kg_m3");
     let volume = value(spec, info, "volume_m3");
     let bodies = moving_bodies(spec, info, model)?
@@ -80,13 +81,13 @@ fn install(
             (index, density * volume)
         })
         .collect();
-    Ok(Box::new(Buoyancy {
+    Ok(vec![LawEffect::Mass(Arc::new(Buoyancy {
         bodies,
         added_mass: value(spec, info, "added_mass"),
-    }))
+    }))])
 }
 
-impl LawHooks for Buoyancy {
+impl MassLaw for Buoyancy {
     fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         let Ok(place) = self.bodies.binary_search_by_key(&body, |(index, _)| *index) else {
             return;
@@ -98,9 +99,5 @@ impl LawHooks for Buoyancy {
             inertia.gravity_scale = weight / moved;
             inertia.mass_kg = moved;
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -1,14 +1,15 @@
 //! A centre of mass that is not where the shape says.
 
 use crate::error::PhysicsError;
-use crate::inertia::BodyInertia;
+use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
+use std::sync::Arc;
 
 /// How far aside a body's centre of mass may be, as a share of its box's edges.
 const FARTHEST: f32 = 0.75;
@@ -54,7 +55,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let plans = moving_bodies(spec, info, model)?;
     let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name)));
     for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
@@ -70,20 +71,16 @@ fn install(
             });
         }
     }
-    Ok(Box::new(CenterOfMassOffset {
+    Ok(vec![LawEffect::Mass(Arc::new(CenterOfMassOffset {
         bodies: plans.into_iter().map(|(index, _)| index).collect(),
         offset,
-    }))
+    }))])
 }
 
-impl LawHooks for CenterOfMassOffset {
+impl MassLaw for CenterOfMassOffset {
     fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         if self.bodies.binary_search(&body).is_ok() {
             inertia.center += self.offset;
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -2,10 +2,12 @@
 
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
+use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -49,16 +51,17 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_d = value(spec, info, "c_d");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * c_d * area
     })?;
-    Ok(Box::new(Drag { bodies }))
+    let law = Arc::new(Drag { bodies });
+    Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }
 
-impl LawHooks for Drag {
-    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
+impl BodyLaw for Drag {
+    fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
             let Some(rigid) = stage.free(*body) else {
                 continue;
@@ -69,11 +72,9 @@ impl LawHooks for Drag {
             rigid.set_linvel(slowed, false);
         }
     }
+}
 
-    fn pushes(&self) -> bool {
-        true
-    }
-
+impl LinkLaw for Drag {
     fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
@@ -82,9 +83,5 @@ impl LawHooks for Drag {
             force: against_air(link, gain, link.velocity),
             ..ExternalWrench::default()
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -1,13 +1,14 @@
 //! An inertia that is not what shape and density say.
 
 use crate::error::PhysicsError;
-use crate::inertia::BodyInertia;
+use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use glam::{Mat3, Vec3};
+use std::sync::Arc;
 
 const fn moment(name: &'static str) -> ParamInfo {
     ParamInfo {
@@ -73,7 +74,7 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
     let all = 1.0 + value(spec, info, "scale");
     let plans = moving_bodies(spec, info, model)?;
@@ -101,10 +102,10 @@ fn install(
             });
         }
     }
-    Ok(Box::new(law))
+    Ok(vec![LawEffect::Mass(Arc::new(law))])
 }
 
-impl LawHooks for InertiaError {
+impl MassLaw for InertiaError {
     fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia) {
         if self.bodies.binary_search(&body).is_err() {
             return;
@@ -120,10 +121,6 @@ impl LawHooks for InertiaError {
         let scaled =
             |by: Vec3, tensor: Mat3| Mat3::from_diagonal(by) * tensor * Mat3::from_diagonal(by);
         inertia.tensor = scaled(self.scale, own + scaled(root, wrong));
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }
 

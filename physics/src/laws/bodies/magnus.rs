@@ -2,12 +2,14 @@
 
 use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
+use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 use glam::Quat;
 use std::f32::consts::PI;
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -52,16 +54,17 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_l = value(spec, info, "c_l");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * area * (area / PI).sqrt() * c_l
     })?;
-    Ok(Box::new(Magnus { bodies }))
+    let law = Arc::new(Magnus { bodies });
+    Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }
 
-impl LawHooks for Magnus {
-    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
+impl BodyLaw for Magnus {
+    fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         for (body, gain) in &self.bodies {
             let Some(rigid) = stage.free(*body) else {
                 continue;
@@ -79,11 +82,9 @@ impl LawHooks for Magnus {
             }
         }
     }
+}
 
-    fn pushes(&self) -> bool {
-        true
-    }
-
+impl LinkLaw for Magnus {
     fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
@@ -92,9 +93,5 @@ impl LawHooks for Magnus {
             force: gain * link.spin.cross(link.velocity),
             ..ExternalWrench::default()
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

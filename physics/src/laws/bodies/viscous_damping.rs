@@ -1,11 +1,13 @@
 //! Damping in proportion to speed.
 
 use crate::error::PhysicsError;
+use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
 use crate::laws::target::moving_bodies;
-use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -56,17 +58,18 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let bodies = moving_bodies(spec, info, model)?;
-    Ok(Box::new(ViscousDamping {
+    let law = Arc::new(ViscousDamping {
         bodies: bodies.into_iter().map(|(index, _)| index).collect(),
         linear_per_s: value(spec, info, "linear_per_s"),
         angular_per_s: value(spec, info, "angular_per_s"),
-    }))
+    });
+    Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }
 
-impl LawHooks for ViscousDamping {
-    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
+impl BodyLaw for ViscousDamping {
+    fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         let linear = math::exp(-self.linear_per_s * half_dt_s);
         let angular = math::exp(-self.angular_per_s * half_dt_s);
         for body in &self.bodies {
@@ -76,11 +79,9 @@ impl LawHooks for ViscousDamping {
             }
         }
     }
+}
 
-    fn pushes(&self) -> bool {
-        true
-    }
-
+impl LinkLaw for ViscousDamping {
     fn push(&self, link: &LinkStep) -> ExternalWrench {
         if self.bodies.binary_search(&link.body).is_err() {
             return ExternalWrench::default();
@@ -90,9 +91,5 @@ impl LawHooks for ViscousDamping {
             force: -linear * link.velocity,
             moment: -link.decay_per_s(self.angular_per_s.into()) * (link.inertia * link.spin),
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -2,11 +2,13 @@
 
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
-use crate::laws::{ExternalWrench, LawContext, LawHooks, LinkStep, PhysicsLaw, value};
+use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Share of its weight with which the air must push a body to keep it awake.
 const WAKING_SHARE: f32 = 1e-3;
@@ -87,18 +89,19 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let c_d = value(spec, info, "c_d");
     let bodies = in_air(spec, info, model, |density, area| {
         0.5 * density * c_d * area
     })?;
     let velocity = ["x_m_s", "y_m_s", "z_m_s"].map(|name| value(spec, info, name));
-    Ok(Box::new(Wind {
+    let law = Arc::new(Wind {
         bodies,
         velocity: Vec3::from_array(velocity),
         period_s: value(spec, info, "period_s"),
         blowing_share: value(spec, info, "blowing_share"),
-    }))
+    });
+    Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }
 
 impl Wind {
@@ -111,8 +114,8 @@ impl Wind {
     }
 }
 
-impl LawHooks for Wind {
-    fn apply_half_step(&mut self, stage: &mut LawContext<'_>, half_dt_s: f32) {
+impl BodyLaw for Wind {
+    fn apply_half_step(&self, stage: &mut LawContext<'_>, half_dt_s: f32) {
         let air = self.air(stage.time_s());
         let gravity = stage.engine.gravity.length();
         for (body, gain) in &self.bodies {
@@ -131,11 +134,9 @@ impl LawHooks for Wind {
             }
         }
     }
+}
 
-    fn pushes(&self) -> bool {
-        true
-    }
-
+impl LinkLaw for Wind {
     fn push(&self, link: &LinkStep) -> ExternalWrench {
         let Some(gain) = gain_of(&self.bodies, link.body) else {
             return ExternalWrench::default();
@@ -145,9 +146,5 @@ impl LawHooks for Wind {
             force: against_air(link, gain, link.velocity - air),
             ..ExternalWrench::default()
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

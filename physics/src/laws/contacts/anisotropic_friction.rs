@@ -1,12 +1,13 @@
 //! Friction that depends on the direction of sliding: wood grain, carpet pile.
 
+use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::target::ContactScope;
-use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Slip below which a thing counts as held, m/s: the direction is then that in which friction holds it.
 const HELD_M_S: f32 = 1e-3;
@@ -73,19 +74,19 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     let (sin, cos) = math::sin_cos(value(spec, info, "axis_rad"));
-    Ok(Box::new(AnisotropicFriction {
+    Ok(vec![LawEffect::Contact(Arc::new(AnisotropicFriction {
         scope: ContactScope::of(spec, info, model)?,
         grain: value(spec, info, "grain"),
         pile: value(spec, info, "pile"),
         axis: Vec3::new(cos, 0.0, -sin),
-    }))
+    }))])
 }
 
-impl LawHooks for AnisotropicFriction {
-    fn scope(&self) -> Option<&ContactScope> {
-        Some(&self.scope)
+impl ContactLaw for AnisotropicFriction {
+    fn scope(&self) -> &ContactScope {
+        &self.scope
     }
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
@@ -104,9 +105,5 @@ impl LawHooks for AnisotropicFriction {
             return;
         }
         values.friction *= 1.0 + self.pile * cos + self.grain * (2.0 * cos * cos - 1.0);
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

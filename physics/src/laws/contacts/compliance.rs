@@ -1,7 +1,8 @@
 //! Contacts that give.
 
+use crate::contact_compliance::ContactCompliance;
 use crate::error::PhysicsError;
-use crate::laws::{ContactCompliance, LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
@@ -56,35 +57,27 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
 /// A natural frequency below this one is none, Hz.
 const LOWEST_HZ: f32 = 0.1;
 
-#[derive(Clone, Debug)]
-struct SoftContacts(ContactCompliance);
-
 fn install(
     spec: &LawSpec,
     info: &LawInfo,
     _model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
+) -> Result<Vec<LawEffect>, PhysicsError> {
     if let Some(target) = &spec.target {
-        return Err(crate::laws::target::no_target(
+        return Err(PhysicsError::no_target(
             info.id,
             "part of the world (it acts on all contacts; leave the target out)",
             target,
             std::iter::empty(),
         ));
     }
-    Ok(Box::new(SoftContacts(ContactCompliance {
+    let compliance = ContactCompliance {
         natural_frequency_hz: value(spec, info, "natural_frequency_hz"),
         damping_ratio: value(spec, info, "damping_ratio"),
-    })))
-}
-
-impl LawHooks for SoftContacts {
-    fn compliance(&self) -> Option<ContactCompliance> {
-        (self.0.natural_frequency_hz >= LOWEST_HZ).then_some(self.0)
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
-    }
+    };
+    let gives = compliance.natural_frequency_hz >= LOWEST_HZ;
+    Ok(gives
+        .then_some(LawEffect::Compliance(compliance))
+        .into_iter()
+        .collect())
 }

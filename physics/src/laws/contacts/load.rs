@@ -1,8 +1,7 @@
 //! What contacts carried in the last step, and torques between the two that touch.
 
-use crate::contact::{ColliderEntry, entry_index};
-use crate::laws::target::ContactScope;
-use crate::laws::{ContactSide, LawContext};
+use crate::contact::{ColliderEntry, ContactScope, ContactSide, entry_index};
+use crate::laws::LawContext;
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use rapier3d::geometry::Collider;

@@ -1,12 +1,13 @@
 //! What brings a rolling thing to rest.
 
 use super::load::loads;
+use crate::contact::ContactScope;
 use crate::error::PhysicsError;
-use crate::laws::target::ContactScope;
-use crate::laws::{LawContext, LawHooks, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -48,15 +49,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(RollingResistance {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Body(Arc::new(RollingResistance {
         scope: ContactScope::of(spec, info, model)?,
         c_rr: value(spec, info, "c_rr"),
-    }))
+    }))])
 }
 
-impl LawHooks for RollingResistance {
-    fn before_step(&mut self, stage: &mut LawContext<'_>) {
+impl BodyLaw for RollingResistance {
+    fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             // The spin at the end of the step, if nothing resisted.
             let spin = load.spin(stage) + load.gravity_turn(stage) * stage.dt_s;
@@ -70,9 +71,5 @@ impl LawHooks for RollingResistance {
             let stops = load.inertia(stage, axis, true) * speed;
             load.turn(stage, -axis * most.min(stops));
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

@@ -1,11 +1,12 @@
 //! Friction that is higher at rest than in motion.
 
+use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::target::ContactScope;
-use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State, math};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -63,26 +64,22 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(StribeckFriction {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Contact(Arc::new(StribeckFriction {
         scope: ContactScope::of(spec, info, model)?,
         ratio: value(spec, info, "static_ratio"),
         speed_m_s: value(spec, info, "stribeck_m_s"),
         shape: value(spec, info, "shape"),
-    }))
+    }))])
 }
 
-impl LawHooks for StribeckFriction {
-    fn scope(&self) -> Option<&ContactScope> {
-        Some(&self.scope)
+impl ContactLaw for StribeckFriction {
+    fn scope(&self) -> &ContactScope {
+        &self.scope
     }
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let share = touch.slip().length() / self.speed_m_s;
         values.friction *= 1.0 + (self.ratio - 1.0) * math::exp(-math::pow(share, self.shape));
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

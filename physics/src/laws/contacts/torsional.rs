@@ -1,12 +1,13 @@
 //! Friction against spinning on the spot.
 
 use super::load::loads;
+use crate::contact::ContactScope;
 use crate::error::PhysicsError;
-use crate::laws::target::ContactScope;
-use crate::laws::{LawContext, LawHooks, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -47,15 +48,15 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(TorsionalFriction {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Body(Arc::new(TorsionalFriction {
         scope: ContactScope::of(spec, info, model)?,
         radius_m: value(spec, info, "radius_m"),
-    }))
+    }))])
 }
 
-impl LawHooks for TorsionalFriction {
-    fn before_step(&mut self, stage: &mut LawContext<'_>) {
+impl BodyLaw for TorsionalFriction {
+    fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             let spin = load.spin(stage).dot(load.normal);
             let most = load.friction * load.normal_force_n * self.radius_m * stage.dt_s;
@@ -63,9 +64,5 @@ impl LawHooks for TorsionalFriction {
             let impulse = -most.min(stops) * spin.signum();
             load.turn(stage, load.normal * impulse);
         }
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

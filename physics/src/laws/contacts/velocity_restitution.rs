@@ -1,11 +1,12 @@
 //! Restitution that depends on how fast things hit.
 
+use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::target::ContactScope;
-use crate::laws::{ContactValues, LawContact, LawHooks, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
+use std::sync::Arc;
 
 /// From 1 on, what lies would bounce.
 const LIVELIEST: f32 = 0.99;
@@ -58,26 +59,22 @@ fn install(
     info: &LawInfo,
     model: &PhysicsModel,
     _state: &State,
-) -> Result<Box<dyn LawHooks>, PhysicsError> {
-    Ok(Box::new(VelocityRestitution {
+) -> Result<Vec<LawEffect>, PhysicsError> {
+    Ok(vec![LawEffect::Contact(Arc::new(VelocityRestitution {
         scope: ContactScope::of(spec, info, model)?,
         slope: value(spec, info, "slope_s_m"),
         reference: value(spec, info, "reference_m_s"),
-    }))
+    }))])
 }
 
-impl LawHooks for VelocityRestitution {
-    fn scope(&self) -> Option<&ContactScope> {
-        Some(&self.scope)
+impl ContactLaw for VelocityRestitution {
+    fn scope(&self) -> &ContactScope {
+        &self.scope
     }
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let speed = touch.approach_speed_m_s().max(0.0);
         let e = values.restitution - self.slope * (speed - self.reference);
         values.restitution = e.clamp(0.0, LIVELIEST);
-    }
-
-    fn clone_box(&self) -> Box<dyn LawHooks> {
-        Box::new(self.clone())
     }
 }

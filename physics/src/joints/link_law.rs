@@ -4,6 +4,14 @@
 //! free body: it says with which force it pushes, and the tree's course is found with all forces at once.
 
 use glam::{DMat3, DVec3};
+use std::fmt::Debug;
+
+/// A law that pushes at bodies of trees of joints.
+pub(crate) trait LinkLaw: Debug + Send + Sync {
+    /// Returns how it pushes at a body that a joint moves, or that joints hang on and that is free. It is asked several
+    /// times in a step, until the tree's course and what pushes at it fit.
+    fn push(&self, link: &LinkStep) -> ExternalWrench;
+}
 
 /// A body of a tree of joints, at the beginning of a step or at its middle.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,73 @@
+//! Laws of contacts: what they see where two things touch, and what they change there.
+
+use super::collider_entry::ContactEntity;
+use super::scope::ContactScope;
+use glam::{Quat, Vec3};
+use std::fmt::Debug;
+
+/// A law that changes the values of contacts before they are solved.
+pub(crate) trait ContactLaw: Debug + Send + Sync {
+    /// Returns the contacts whose values it changes.
+    fn scope(&self) -> &ContactScope;
+
+    /// Changes the values of one contact plane (one manifold) within the scope, before it is solved. rapier has one
+    /// friction, one restitution and one surface velocity for all points of a plane, and no stiffness of its own.
+    fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues);
+}
+
+/// One of the two things that touch.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ContactSide<'a> {
+    pub(crate) toucher: Option<ContactEntity>,
+    /// What it is made of there, as the materials library names it.
+    pub(crate) substance: &'a str,
+    /// How its own frame is turned in the world; the identity for structure and fixed things.
+    pub(crate) rotation: Quat,
+}
+
+/// Two surfaces that touch or are about to, at the beginning of a physics step. The surface is what the law's target names
+/// first; without a name, structure comes before things and things stand in order.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LawContact<'a> {
+    pub(crate) surface: ContactSide<'a>,
+    /// What slides or rolls over the surface, or hits it.
+    pub(crate) other: ContactSide<'a>,
+    /// From the surface to the other, unit length.
+    pub(crate) normal: Vec3,
+    /// The velocity of the other against the surface at the middle of the plane's points, m/s.
+    pub(crate) relative_velocity: Vec3,
+    /// The friction impulse on the other in the last substep, N·s.
+    pub(crate) friction_impulse_n_s: Vec3,
+}
+
+impl LawContact<'_> {
+    /// Returns how fast the two approach, m/s; negative when they part.
+    pub(crate) fn approach_speed_m_s(&self) -> f32 {
+        -self.relative_velocity.dot(self.normal)
+    }
+
+    /// Returns how the other slides over the surface, m/s.
+    pub(crate) fn slip(&self) -> Vec3 {
+        self.relative_velocity + self.normal * self.approach_speed_m_s()
+    }
+
+    /// The same seen from the other side.
+    pub(crate) fn turned(self) -> Self {
+        Self {
+            surface: self.other,
+            other: self.surface,
+            normal: -self.normal,
+            relative_velocity: -self.relative_velocity,
+            friction_impulse_n_s: -self.friction_impulse_n_s,
+        }
+    }
+}
+
+/// The values of one contact plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ContactValues {
+    pub(crate) friction: f32,
+    pub(crate) restitution: f32,
+    /// The slip towards which friction drives, m/s: as of a conveyor belt. 0 where no law says otherwise.
+    pub(crate) surface_velocity: Vec3,
+}

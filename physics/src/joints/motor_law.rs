@@ -1,0 +1,70 @@
+//! Laws of motors: what a motor follows, and what it gives for that.
+
+use super::JointActuation;
+use dwell_scene::{JointCommand, JointId, State};
+use std::fmt::Debug;
+
+/// What a law of a motor or joint remembers from step to step.
+pub(crate) trait LawMemory {
+    /// Notes that a joint was put at `position` (rad or m) from outside, which is no motion.
+    fn placed(&mut self, _joint: JointId, _position: f32) {}
+
+    /// Returns what it remembers, for snapshots.
+    fn memory(&self) -> Vec<f32> {
+        Vec::new()
+    }
+
+    /// Takes back what [`LawMemory::memory`] gave.
+    fn restore_memory(&mut self, _memory: &[f32]) {}
+}
+
+/// A law that changes what motors do in each physics step.
+pub(crate) trait MotorLaw: LawMemory + Debug + Send + Sync {
+    /// Changes the command that a joint's motor follows in one physics step. It is asked for every motor in every step.
+    fn drive(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
+
+    /// Changes what a joint's motor gives for its command in one physics step.
+    fn modify_motor(&self, _joint: JointId, _pull: &mut JointActuation) {}
+
+    /// Returns a copy.
+    fn clone_box(&self) -> Box<dyn MotorLaw>;
+}
+
+impl Clone for Box<dyn MotorLaw> {
+    fn clone(&self) -> Self {
+        self.clone_box()
+    }
+}
+
+/// A joint with a motor before a physics step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MotorStep {
+    pub(crate) joint: JointId,
+    /// rad or m.
+    pub(crate) position: f32,
+    /// rad/s or m/s.
+    pub(crate) velocity: f32,
+    /// Length of the step, s.
+    pub(crate) dt_s: f32,
+}
+
+impl MotorStep {
+    /// The number of a command of this kind that asks for what is there already.
+    pub(crate) fn rest(&self, command: JointCommand) -> f32 {
+        match command {
+            JointCommand::Position(_) => self.position,
+            JointCommand::Velocity(_) => self.velocity,
+            JointCommand::Effort(_) | JointCommand::Off => 0.0,
+        }
+    }
+}
+
+/// Returns what a joint's motor is told in this control step.
+pub(crate) fn commanded(state: &State, joint: JointId) -> JointCommand {
+    let command = state.joint_command[joint];
+    if command.is_finite() {
+        command
+    } else {
+        JointCommand::Off
+    }
+}

@@ -1,0 +1,64 @@
+//! Laws of what joints resist with.
+
+use super::LawMemory;
+use dwell_scene::JointId;
+use std::fmt::Debug;
+
+/// A law that changes how joints resist.
+pub(crate) trait ResistanceLaw: LawMemory + Debug + Send + Sync {
+    /// Notes that a joint stands at `position` (rad or m) at the beginning of a physics step.
+    fn follow(&mut self, _joint: JointId, _position: f32) {}
+
+    /// Changes how a joint resists in one physics step. It is asked several times in a step, until what the joint resists
+    /// with and what loads it fit.
+    fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance);
+
+    /// Returns a copy.
+    fn clone_box(&self) -> Box<dyn ResistanceLaw>;
+}
+
+impl Clone for Box<dyn ResistanceLaw> {
+    fn clone(&self) -> Self {
+        self.clone_box()
+    }
+}
+
+/// What loads a joint in a physics step; efforts are positive along the joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointLoad {
+    /// At the beginning of the step, rad or m.
+    pub(crate) position: f32,
+    /// At the middle of the step, rad/s or m/s.
+    pub(crate) velocity: f32,
+    /// What the motor or the hand gives, N·m or N.
+    pub(crate) motor_effort: f32,
+    /// What acts along the joint besides its motor and what it resists with: weight, air, contacts and stops, and what the
+    /// motion of the other joints and of the root asks of it; N·m or N.
+    pub(crate) external_effort: f32,
+    /// Whether something drives it.
+    pub(crate) is_driven: bool,
+}
+
+/// How a joint resists in one physics step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JointResistance {
+    /// The largest effort with which it holds or brakes whatever the speed, N·m or N.
+    pub(crate) friction: f32,
+    /// N·m·s/rad or N·s/m.
+    pub(crate) damping: f32,
+    /// Inertia of the joint's own, kg·m² or kg.
+    pub(crate) armature: f32,
+    /// A spring that slips.
+    pub(crate) elastic: Option<SlipSpring>,
+}
+
+/// A spring at a joint that slips beyond its largest effort.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SlipSpring {
+    /// At the beginning of the step, N·m or N.
+    pub(crate) effort: f32,
+    /// N·m/rad or N/m.
+    pub(crate) stiffness: f32,
+    /// N·m or N.
+    pub(crate) max_effort: f32,
+}

@@ -1,0 +1,71 @@
+//! Laws that act on bodies between physics steps.
+
+use crate::body::BodyHandle;
+use crate::contact::{ColliderEntry, ContactTable};
+use crate::engine::RapierWorld;
+use crate::model::BodyPlan;
+use dwell_scene::House;
+use rapier3d::dynamics::RigidBody;
+use std::fmt::Debug;
+
+/// A law that acts on bodies between physics steps.
+pub(crate) trait BodyLaw: Debug + Send + Sync {
+    /// Acts on bodies for half a physics step, before and after it (Strang's splitting).
+    fn apply_half_step(&self, _stage: &mut LawContext<'_>, _half_dt_s: f32) {}
+
+    /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
+    fn before_step(&self, _stage: &mut LawContext<'_>) {}
+}
+
+/// The world as a law sees it between steps.
+pub(crate) struct LawContext<'a> {
+    pub(crate) engine: &'a mut RapierWorld,
+    /// By the number of the body's plan in the model.
+    pub(crate) bodies: &'a [BodyHandle],
+    pub(crate) plans: &'a [BodyPlan],
+    /// Bodies that joints hang on and that answer to what these do: laws push at them as at links, through [`LinkLaw`](crate::joints::LinkLaw).
+    pub(crate) floating_roots: &'a [u32],
+    /// What each collider stands for, by its user data.
+    pub(crate) entries: &'a [ColliderEntry],
+    pub(crate) house: &'a House,
+    pub(crate) table: &'a ContactTable,
+    /// Length of a physics step, s.
+    pub(crate) dt_s: f32,
+    /// Physics steps since the world was made.
+    pub(crate) tick: u64,
+}
+
+impl LawContext<'_> {
+    /// Time since the world was made, s.
+    pub(crate) fn time_s(&self) -> f64 {
+        self.tick as f64 * f64::from(self.dt_s)
+    }
+
+    /// A body that moves, freely or with a joint; `None` for one that is shut, frozen or has no mass.
+    pub(crate) fn movable(&mut self, body: u32) -> Option<&RigidBody> {
+        let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
+        let moves = rigid.is_dynamic()
+            || self
+                .engine
+                .sleeping_cache
+                .has(self.bodies[body as usize].handle);
+        (moves && rigid.mass() > 0.0).then_some(rigid)
+    }
+
+    /// A body that is awake and that moves without joints.
+    pub(crate) fn free(&mut self, body: u32) -> Option<&mut RigidBody> {
+        let handle = self.bodies[body as usize].handle;
+        let on_joint = self.plans[body as usize].joint.is_some();
+        let answers = self.floating_roots.contains(&body);
+        if on_joint || answers || self.movable(body).is_none() || self.engine.sleeps(handle) {
+            return None;
+        }
+        self.engine.bodies.get_mut(handle)
+    }
+
+    /// Wakes a body and keeps it awake for as long as one that was just woken.
+    pub(crate) fn wake(&mut self, body: u32) {
+        let handle = self.bodies[body as usize].handle;
+        self.engine.wake(handle);
+    }
+}

@@ -1,0 +1,120 @@
+//! The laws that are at work in a world, by the stage of the step at which they act.
+
+use super::body_law::BodyLaw;
+use crate::bases::BaseLaw;
+use crate::contact::ContactLaw;
+use crate::contact_compliance::ContactCompliance;
+use crate::inertia::MassLaw;
+use crate::joints::{LawMemory, LinkLaw, MotorLaw, ResistanceLaw};
+use dwell_scene::{JointId, LawSpec};
+use std::sync::Arc;
+
+/// What a law does at one stage.
+#[derive(Debug)]
+pub(crate) enum LawEffect {
+    /// What bodies weigh.
+    Mass(Arc<dyn MassLaw>),
+    /// Bodies between steps.
+    Body(Arc<dyn BodyLaw>),
+    /// Forces on the bodies of trees of joints.
+    Link(Arc<dyn LinkLaw>),
+    /// The values of contacts.
+    Contact(Arc<dyn ContactLaw>),
+    /// How all contacts give.
+    Compliance(ContactCompliance),
+    /// What motors do.
+    Motor(Box<dyn MotorLaw>),
+    /// What joints resist with.
+    Resistance(Box<dyn ResistanceLaw>),
+    /// How bases move.
+    Base(Arc<dyn BaseLaw>),
+}
+
+/// An effect that remembers, with the place of its law among those installed.
+#[derive(Clone, Debug)]
+pub(crate) struct NumberedEffect<T> {
+    law: usize,
+    pub(crate) effect: T,
+}
+
+/// The laws that are at work; each list is in the order in which they were installed.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LawSet {
+    /// The words by which each was installed.
+    specs: Vec<LawSpec>,
+    pub(crate) masses: Vec<Arc<dyn MassLaw>>,
+    pub(crate) bodies: Vec<Arc<dyn BodyLaw>>,
+    pub(crate) links: Vec<Arc<dyn LinkLaw>>,
+    pub(crate) contacts: Vec<Arc<dyn ContactLaw>>,
+    /// How contacts give; of several laws the last decides.
+    pub(crate) compliance: Option<ContactCompliance>,
+    pub(crate) motors: Vec<NumberedEffect<Box<dyn MotorLaw>>>,
+    pub(crate) resistances: Vec<NumberedEffect<Box<dyn ResistanceLaw>>>,
+    pub(crate) bases: Vec<Arc<dyn BaseLaw>>,
+}
+
+impl LawSet {
+    pub(super) fn add(&mut self, spec: LawSpec, effects: Vec<LawEffect>) {
+        let law = self.specs.len();
+        self.specs.push(spec);
+        for effect in effects {
+            match effect {
+                LawEffect::Mass(effect) => self.masses.push(effect),
+                LawEffect::Body(effect) => self.bodies.push(effect),
+                LawEffect::Link(effect) => self.links.push(effect),
+                LawEffect::Contact(effect) => self.contacts.push(effect),
+                LawEffect::Compliance(effect) => self.compliance = Some(effect),
+                LawEffect::Motor(effect) => self.motors.push(NumberedEffect { law, effect }),
+                LawEffect::Resistance(effect) => {
+                    self.resistances.push(NumberedEffect { law, effect });
+                }
+                LawEffect::Base(effect) => self.bases.push(effect),
+            }
+        }
+    }
+
+    /// Returns the words by which the laws were installed, in order.
+    pub(crate) fn specs(&self) -> &[LawSpec] {
+        &self.specs
+    }
+
+    /// Notes that a joint was put at `position` (rad or m) from outside.
+    pub(crate) fn placed(&mut self, joint: JointId, position: f32) {
+        for (_, effect) in self.remembering() {
+            effect.placed(joint, position);
+        }
+    }
+
+    /// Returns what each law remembers. Shape (law, number).
+    pub(crate) fn memory(&self) -> Vec<Vec<f32>> {
+        let mut memory = vec![Vec::new(); self.specs.len()];
+        for motor in &self.motors {
+            memory[motor.law].extend(motor.effect.memory());
+        }
+        for resistance in &self.resistances {
+            memory[resistance.law].extend(resistance.effect.memory());
+        }
+        memory
+    }
+
+    /// Gives a law back what it remembered.
+    pub(crate) fn restore_memory(&mut self, law: usize, memory: &[f32]) {
+        for (owner, effect) in self.remembering() {
+            if owner == law {
+                effect.restore_memory(memory);
+            }
+        }
+    }
+
+    fn remembering(&mut self) -> impl Iterator<Item = (usize, &mut dyn LawMemory)> {
+        let motors = self.motors.iter_mut().map(|motor| {
+            let effect: &mut dyn LawMemory = &mut *motor.effect;
+            (motor.law, effect)
+        });
+        let resistances = self.resistances.iter_mut().map(|resistance| {
+            let effect: &mut dyn LawMemory = &mut *resistance.effect;
+            (resistance.law, effect)
+        });
+        motors.chain(resistances)
+    }
+}
