@@ -3,7 +3,7 @@
 use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
 use crate::agents::{self, AgentControl, MovementRecord};
 use crate::body::BodyStatus;
-use crate::contact::rolling::RollingCylinder;
+use crate::contact::rolling;
 use crate::contact::{
     ContactCollector, ContactEvent, ContactHooks, ContactProperties, RestitutionContext, bound,
     record_motion,
@@ -197,7 +197,7 @@ impl PhysicsWorld {
             law.apply_half_step(stage, half);
         });
         self.tick += 1;
-        self.shrink_pair_storage();
+        self.engine.copy_pairs_at(self.tick);
         placed |= self.update_rolling_contacts();
         placed |= self.recover_non_finite();
         placed
@@ -226,7 +226,7 @@ impl PhysicsWorld {
                     .get(index)
                     .is_some_and(|entry| properties.rule(entry).1)
             };
-            changed |= RollingCylinder::follow(&mut self.engine, rolls, own, asked);
+            changed |= rolling::set_rolling_hook(&mut self.engine, rolls, own, asked);
         }
         changed
     }

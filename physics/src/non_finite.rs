@@ -4,39 +4,7 @@
 //! nothing falls out of a world for the rest of an episode.
 
 use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
-use crate::engine::RapierWorld;
 use crate::world::PhysicsWorld;
-use glam::Vec3;
-use rapier3d::dynamics::RigidBodyHandle;
-
-impl RapierWorld {
-    /// Puts a body back that rapier took out, at rest where it stands.
-    fn put_back(&mut self, handle: RigidBodyHandle) {
-        let Some(body) = self.bodies.get_mut(handle) else {
-            return;
-        };
-        if !body.position().translation.is_finite() || !body.position().rotation.is_finite() {
-            // It never had a place.
-            return;
-        }
-        body.set_linvel(Vec3::ZERO, false);
-        body.set_angvel(Vec3::ZERO, false);
-        body.set_enabled(true);
-        body.wake_up(true);
-        for collider in body.colliders().to_vec() {
-            if let Some(collider) = self.colliders.get_mut(collider) {
-                collider.set_enabled(true);
-            }
-        }
-        let attached = self.joints.attached_joints(handle);
-        let joints: Vec<_> = attached.map(|(_, _, joint, _)| joint).collect();
-        for joint in joints {
-            if let Some(joint) = self.joints.get_mut(joint, true) {
-                joint.impulses = Default::default();
-            }
-        }
-    }
-}
 
 impl PhysicsWorld {
     /// Puts back what the last step lost. Returns whether there was anything.
@@ -74,6 +42,7 @@ mod tests {
     use super::*;
     use crate::config::PhysicsConfig;
     use dwell_scene::State;
+    use glam::Vec3;
     use std::sync::Arc;
 
     /// A thing whose speed is no number stands where it stood, and the world goes on, from a snapshot, too.

@@ -1,12 +1,13 @@
 //! Parameters that change while a world runs.
 
 use crate::agents::HeldObject;
-use crate::body::{self, BodyStatus};
+use crate::body::BodyStatus;
 use crate::contact::{ContactProperties, ContactTable};
+use crate::dynamics::{self, BodyMasses};
 use crate::error::PhysicsError;
 use crate::joints::{self, JointPlacement};
 use crate::laws;
-use crate::world::{BodyMasses, PhysicsWorld};
+use crate::world::PhysicsWorld;
 use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
@@ -50,7 +51,7 @@ impl PhysicsWorld {
             self.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
                 let factor = model.bodies[body].factor_of(piece, &weights.factors[body]);
-                body::density(piece, factor, weights.altered[body].as_ref())
+                dynamics::density(piece, factor, weights.altered[body].as_ref())
             });
             changed |= self.redress(index, values, density);
         }
@@ -145,7 +146,7 @@ impl PhysicsWorld {
                 rigid.recompute_mass_properties_from_colliders(&self.engine.colliders);
                 for collider in rigid.colliders() {
                     if let Some(collider) = self.engine.colliders.get_mut(*collider) {
-                        body::invalidate_contacts(collider);
+                        dynamics::invalidate_contacts(collider);
                     }
                 }
             }
@@ -214,7 +215,7 @@ impl PhysicsWorld {
         }
         if let Some(collider) = self.engine.colliders.get_mut(handle) {
             if !same_rule {
-                body::update_collider_properties(collider, rule);
+                dynamics::update_collider_properties(collider, rule);
             }
             if let Some(density) = density
                 && !same_density

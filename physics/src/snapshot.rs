@@ -8,19 +8,20 @@
 use crate::actions::OngoingPush;
 use crate::agents::{self, HeldObject, PassiveVelocity};
 use crate::body::BodyStatus;
+use crate::body::pose_of;
 use crate::config::PhysicsConfig;
 use crate::contact::rolling;
 use crate::contact::{
-    CollisionExclusions, ContactHooks, ContactProperties, ContactTable, ContactTracker,
-    MergedEvents,
+    ColliderEntry, CollisionExclusions, ContactHooks, ContactProperties, ContactTable,
+    ContactTracker, MergedEvents,
 };
-use crate::engine::RapierWorld;
+use crate::dynamics::{AssembledWorld, BodyMasses, assemble};
+use crate::engine::{RapierWorld, SleepingIslandCache};
 use crate::error::PhysicsError;
 use crate::joints::{self, HandDrives, JointActuation};
 use crate::laws::{self, LawSet};
 use crate::limits::Crowding;
-use crate::sleeping_cache::SleepingIslandCache;
-use crate::world::{AssembledWorld, BodyMasses, PhysicsWorld, assemble, pose_of};
+use crate::world::PhysicsWorld;
 use dwell_scene::columnar;
 use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentId, Id, State};
@@ -243,9 +244,9 @@ impl PhysicsWorld {
             let (engine, entries) = (&mut built.engine, &mut built.entries);
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
-        rolling::resume(&model.rollers, &mut built, &bodies, |entry| {
-            values.rule(entry).1
-        });
+        let (engine, handles, entries) = (&mut built.engine, &built.bodies, &built.entries);
+        let asked = |entry: &ColliderEntry| values.rule(entry).1;
+        rolling::resume(&model.rollers, (engine, handles, entries), &bodies, asked);
         flush(&mut built, values, &memory.excluded);
         let AssembledWorld {
             engine: scaffold,

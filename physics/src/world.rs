@@ -2,31 +2,27 @@
 
 use crate::actions::{DelayedOutcome, OngoingPush};
 use crate::agents::{Agent, HeldObject, PassiveVelocity};
-use crate::body::{self, BodyHandle, BodyPlacement, BodyStatus};
+use crate::body::{self, BodyHandle, BodyStatus};
 use crate::config::{PhysicsConfig, ResolvedConfig};
 use crate::contact::{
     BodyMotion, ColliderEntry, CollisionExclusions, ContactEntity, ContactHooks, ContactProperties,
     ContactTable, ContactTracker, MergedEvents,
 };
-use crate::contact_compliance::ContactCompliance;
 use crate::convert::{from_rapier, to_rapier};
-use crate::engine::RapierWorld;
+use crate::dynamics::{BodyMasses, assemble};
+use crate::engine::{PairCounts, RapierWorld};
 use crate::error::PhysicsError;
-use crate::inertia::{self, BodyInertia};
 use crate::joints::{
     self, HandDrives, JointActuation, JointCoordinate, KinematicTree, PhysicsJoint,
 };
 use crate::laws::{self, LawSet};
-use crate::limits::{self, Crowding};
+use crate::limits;
 use crate::model::PhysicsModel;
 use crate::report::StartReport;
 use crate::start::StartResolver;
-use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{Address, AgentId, AgentState, House, JointId, State};
-use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
-use rapier3d::geometry::ColliderSet;
-use rapier3d::math::Pose as RapierPose;
+use rapier3d::dynamics::RigidBodyHandle;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -74,84 +70,6 @@ pub struct PhysicsWorld {
     pub(crate) merged_events: MergedEvents,
     pub(crate) notices: Vec<DelayedOutcome>,
     pub(crate) motion: Vec<BodyMotion>,
-}
-
-/// What bodies weigh in a world.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct BodyMasses {
-    /// What densities are multiplied with. Shape (body, part).
-    pub(crate) factors: Vec<Vec<f32>>,
-    /// What laws make of mass and inertia. Shape (body,).
-    pub(crate) altered: Vec<Option<BodyInertia>>,
-}
-
-impl BodyMasses {
-    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
-        let factors = body::mass_factors(model, state);
-        let altered = inertia::altered(model, state, &factors, &laws.masses);
-        Self { factors, altered }
-    }
-}
-
-/// The parts of a world that its shapes make up.
-pub(crate) struct AssembledWorld {
-    pub(crate) engine: RapierWorld,
-    pub(crate) entries: Vec<ColliderEntry>,
-    pub(crate) bodies: Vec<BodyHandle>,
-    pub(crate) anchor: RigidBodyHandle,
-}
-
-/// The bodies that never move: the house, and what joints hang on.
-const STANDING: usize = 2;
-
-/// Inserts the pieces of a house: statics, then bodies in order, at the given places. `sizes`: gravity, m/s², how many agents will
-/// come, and how many pairs the pieces make.
-pub(crate) fn assemble(
-    model: &PhysicsModel,
-    settings: &ResolvedConfig,
-    values: ContactProperties<'_>,
-    compliance: Option<ContactCompliance>,
-    (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
-    places: impl Fn(usize) -> (RapierPose, BodyStatus),
-    weights: &BodyMasses,
-) -> AssembledWorld {
-    let mut engine = RapierWorld::new(settings, gravity_m_s2);
-    // rapier doubles its lists when they are full.
-    let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
-    let pieces: usize = pieces.sum::<usize>() + model.statics.len();
-    engine.colliders = ColliderSet::with_capacity(pieces + agents);
-    engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + STANDING + agents);
-    engine.soften(settings, compliance);
-    let mut entries = body::insert_statics(&mut engine, model, values);
-    let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
-    let mut bodies = Vec::with_capacity(model.bodies.len());
-    for (index, plan) in model.bodies.iter().enumerate() {
-        interrupt::check();
-        let (world_from_body, hold) = places(index);
-        let place = BodyPlacement {
-            index: index as u32,
-            world_from_body,
-            hold,
-            mass_factors: &weights.factors[index],
-            inertia: weights.altered[index],
-            sleeping_allowed: settings.config.sleeping,
-            asks: plan.joint.is_some() || crowding == Crowding::Many,
-            event_force_n: settings.event_force_n(),
-        };
-        bodies.push(body::insert_body(
-            &mut engine,
-            plan,
-            values,
-            &mut entries,
-            place,
-        ));
-    }
-    AssembledWorld {
-        engine,
-        entries,
-        bodies,
-        anchor,
-    }
 }
 
 impl PhysicsWorld {
@@ -322,7 +240,7 @@ impl PhysicsWorld {
             let moved = tree.root_body().is_some_and(|body| {
                 let body = body as usize;
                 let start = to_rapier(&state.part_pose[self.model.bodies[body].root()]);
-                pose_of(&self.engine, &self.bodies[body]) != Some(from_rapier(&start))
+                body::pose_of(&self.engine, &self.bodies[body]) != Some(from_rapier(&start))
             });
             if moved {
                 joints::place(&mut self.engine, &self.joints, tree, &stands);
@@ -365,6 +283,11 @@ impl PhysicsWorld {
     /// Simulated time since the world was made, s.
     pub fn time_s(&self) -> f64 {
         self.tick as f64 / f64::from(self.settings.config.physics_rate_hz)
+    }
+
+    /// Returns how many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
+    pub fn pair_counts(&self) -> PairCounts {
+        self.engine.pair_counts()
     }
 
     /// Returns how many rigid bodies are awake.
@@ -499,12 +422,4 @@ impl fmt::Debug for PhysicsWorld {
             .field("tick", &self.tick)
             .finish_non_exhaustive()
     }
-}
-
-/// Returns where a body is, in the scene's words.
-pub(crate) fn pose_of(engine: &RapierWorld, body: &BodyHandle) -> Option<dwell_scene::Pose> {
-    engine
-        .bodies
-        .get(body.handle)
-        .map(|rigid| from_rapier(rigid.position()))
 }

@@ -92,7 +92,8 @@ pub(crate) fn insert(
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder = crate::body::set_contact_properties(builder, values.rule(&entry), true, number);
+    let builder =
+        crate::dynamics::set_contact_properties(builder, values.rule(&entry), true, number);
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);

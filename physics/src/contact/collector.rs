@@ -4,7 +4,7 @@ use super::approach::ApproachMotion;
 use super::body_motion::{BodyMotion, before};
 use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use super::friction;
-use crate::engine::points;
+use crate::engine::{FrictionStorage, points};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyHandle, RigidBodySet, SoftBodySet, SoftBodyTearEvent};
 use rapier3d::geometry::{Collider, ColliderSet, CollisionEvent, ContactManifold, ContactPair};
@@ -45,7 +45,7 @@ pub(crate) struct ContactCollector<'a> {
     /// Motion before the step of every body that was awake, by its arena index.
     before: &'a [BodyMotion],
     /// How rapier keeps friction.
-    kept: friction::FrictionStorage,
+    kept: FrictionStorage,
     reports: Mutex<Vec<ContactReport>>,
 }
 
@@ -54,7 +54,7 @@ impl<'a> ContactCollector<'a> {
         entries: &'a [ColliderEntry],
         before: &'a [BodyMotion],
         slowest: f32,
-        kept: friction::FrictionStorage,
+        kept: FrictionStorage,
     ) -> Self {
         Self {
             entries,
@@ -158,7 +158,7 @@ impl ContactReport {
         manifold: &ContactManifold,
         bodies: &RigidBodySet,
         (a, b): &(BodyMotion, BodyMotion),
-        kept: friction::FrictionStorage,
+        kept: FrictionStorage,
     ) -> f32 {
         let normal = manifold.data.normal;
         let mut here = 0.0;

@@ -5,20 +5,11 @@
 //! thing touches tells all of it; where several touch, each is reckoned from the last substep.
 
 use super::collector::ContactReport;
-use crate::engine::points;
+use crate::engine::{FrictionStorage, points};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::ContactManifold;
 use std::collections::BTreeSet;
-
-/// How rapier keeps friction in contact points.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FrictionStorage {
-    /// Each point of a plane holds the friction of the whole plane.
-    pub(crate) by_patch: bool,
-    /// rapier runs once in a physics step.
-    pub(crate) once: bool,
-}
 
 impl FrictionStorage {
     /// The friction of a plane in the last substep, N·s, on its first body.

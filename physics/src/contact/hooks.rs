@@ -2,9 +2,9 @@
 
 use super::collider_entry::{ColliderEntry, entry_index};
 use super::contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
-use super::friction::FrictionStorage;
 use super::rolling;
 use super::substances::ContactTable;
+use crate::engine::FrictionStorage;
 use dwell_scene::interrupt;
 use dwell_scene::material::PairContact;
 use dwell_scene::{AgentId, House};

@@ -24,7 +24,6 @@ pub(crate) use contact_pairs::touching;
 pub(crate) use contact_tracker::ContactTracker;
 pub(crate) use events::bound;
 pub use events::{ContactEvent, ContactKind, ContactPhase, MergedEvents};
-pub(crate) use friction::FrictionStorage;
 pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties};
 pub(crate) use restitution::RestitutionContext;
 pub(crate) use scope::ContactScope;

@@ -4,17 +4,15 @@
 //! of a radian (its distance hardly changes there), and with it a normal that leans: a cart on such wheels jerks, and stops
 //! on a slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
 
-use super::collider_entry::entry_index;
+use super::collider_entry::{ColliderEntry, entry_index};
+use crate::body::BodyHandle;
 use crate::engine::RapierWorld;
-use crate::model::{BodyPlan, CollisionPiece};
-use crate::world::AssembledWorld;
+use crate::model::RollingCylinder;
 use glam::Vec3;
-use rapier3d::dynamics::{RigidBody, RigidBodySet};
+use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
 use rapier3d::pipeline::{ActiveHooks, ModifiableManifold};
 
-/// How fast the side of a cylinder goes round from where on it rolls, m/s.
-const ROLLS_M_S: f32 = 0.01;
 /// How far a cylinder may stand up that still lies on its side: the sine.
 const LYING: f32 = 0.2;
 /// How much the normal found and a face's own may differ: the cosine.
@@ -23,98 +21,53 @@ const SAME_WAY: f32 = 0.99;
 /// rate only. This share of the way at the end of a step keeps it nearest over all substeps.
 const LIFTED: f32 = 0.75;
 
-/// A cylinder of a body that may move.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RollingCylinder {
-    body: u32,
-    /// Its number among the body's pieces.
-    piece: usize,
-    axis_in_body: Vec3,
-    radius_m: f32,
-}
-
-/// All cylinders of bodies, in order.
-pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
-    let of_body = |(index, plan): (usize, &BodyPlan)| {
-        let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
-            let cylinder = shaped.shape.as_cylinder()?;
-            Some(RollingCylinder {
-                body: index as u32,
-                piece,
-                axis_in_body: shaped.place.rotation * Vec3::Y,
-                radius_m: cylinder.radius,
-            })
-        };
-        let pieces = plan.pieces.iter().enumerate();
-        pieces.filter_map(roller).collect::<Vec<_>>()
+/// Lets rapier ask about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times. Returns
+/// whether that changed.
+pub(crate) fn set_rolling_hook(
+    engine: &mut RapierWorld,
+    rolls: bool,
+    own: Option<ColliderHandle>,
+    asked: impl Fn(usize) -> bool,
+) -> bool {
+    let Some(own) = own else {
+        return false;
     };
-    bodies.iter().enumerate().flat_map(of_body).collect()
+    let Some(collider) = engine.colliders.get(own) else {
+        return false;
+    };
+    let hooks = collider.active_hooks();
+    let flag = ActiveHooks::MODIFY_SOLVER_CONTACTS;
+    if rolls == hooks.contains(flag) {
+        return false;
+    }
+    let wanted = rolls || asked(entry_index(collider));
+    if wanted == hooks.contains(flag) {
+        return false;
+    }
+    if let Some(collider) = engine.colliders.get_mut(own) {
+        let mut hooks = hooks;
+        hooks.set(flag, wanted);
+        collider.set_active_hooks(hooks);
+    }
+    true
 }
 
-impl RollingCylinder {
-    /// Returns whether it turns about its axis.
-    pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
-        let axis = body.position().rotation * self.axis_in_body;
-        (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S
-    }
-
-    /// The place in a list of bodies.
-    pub(crate) fn body(&self) -> usize {
-        self.body as usize
-    }
-
-    /// Lets rapier ask about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times. Returns
-    /// whether that changed.
-    pub(crate) fn follow(
-        engine: &mut RapierWorld,
-        rolls: bool,
-        own: Option<ColliderHandle>,
-        asked: impl Fn(usize) -> bool,
-    ) -> bool {
-        let Some(own) = own else {
-            return false;
-        };
-        let Some(collider) = engine.colliders.get(own) else {
-            return false;
-        };
-        let hooks = collider.active_hooks();
-        let flag = ActiveHooks::MODIFY_SOLVER_CONTACTS;
-        if rolls == hooks.contains(flag) {
-            return false;
-        }
-        let wanted = rolls || asked(entry_index(collider));
-        if wanted == hooks.contains(flag) {
-            return false;
-        }
-        if let Some(collider) = engine.colliders.get_mut(own) {
-            let mut hooks = hooks;
-            hooks.set(flag, wanted);
-            collider.set_active_hooks(hooks);
-        }
-        true
-    }
-
-    /// The collider that it is of a body.
-    pub(crate) fn collider(&self, body: &RigidBody) -> Option<ColliderHandle> {
-        body.colliders().get(self.piece).copied()
-    }
-}
-
-/// Lets rapier ask about what rolled at the moment of a snapshot. `bodies`: those of the snapshot.
+/// Lets rapier ask about what rolled at the moment of a snapshot. `built`: the world as it is built again, with its bodies in
+/// order and its entries; `bodies`: those of the snapshot.
 pub(crate) fn resume(
     rollers: &[RollingCylinder],
-    built: &mut AssembledWorld,
+    built: (&mut RapierWorld, &[BodyHandle], &[ColliderEntry]),
     bodies: &RigidBodySet,
-    asked: impl Fn(&super::ColliderEntry) -> bool,
+    asked: impl Fn(&ColliderEntry) -> bool,
 ) {
+    let (engine, handles, entries) = built;
     for roller in rollers {
-        let handle = built.bodies[roller.body()].handle;
-        let own = built.engine.bodies.get(handle);
+        let handle = handles[roller.body()].handle;
+        let own = engine.bodies.get(handle);
         let own = own.and_then(|body| roller.collider(body));
-        let entries = &built.entries;
         let asked = |index: usize| entries.get(index).is_some_and(&asked);
         let rolls = bodies.get(handle).is_some_and(|body| roller.rolls(body));
-        RollingCylinder::follow(&mut built.engine, rolls, own, asked);
+        set_rolling_hook(engine, rolls, own, asked);
     }
 }
 

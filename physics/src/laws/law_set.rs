@@ -3,7 +3,7 @@
 use super::body_law::BodyLaw;
 use crate::bases::BaseLaw;
 use crate::contact::ContactLaw;
-use crate::contact_compliance::ContactCompliance;
+use crate::engine::ContactCompliance;
 use crate::inertia::MassLaw;
 use crate::joints::{LawMemory, LinkLaw, MotorLaw, ResistanceLaw};
 use dwell_scene::{JointId, LawSpec};

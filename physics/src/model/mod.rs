@@ -2,12 +2,13 @@
 
 mod decompose;
 mod plan;
+mod rolling_cylinder;
 pub(crate) mod shapes;
 mod substance;
 
 pub(crate) use plan::{BodyPlan, CollisionPiece, MaterialAssignment, PieceOwner};
+pub(crate) use rolling_cylinder::RollingCylinder;
 
-use crate::contact::rolling::RollingCylinder;
 use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;

@@ -2,9 +2,9 @@
 
 use super::PhysicsModel;
 use super::decompose;
+use super::rolling_cylinder;
 use super::shapes::{self, PlacedShape};
 use super::substance;
-use crate::contact::rolling;
 use crate::convert::to_rapier;
 use dwell_scene::interrupt;
 use dwell_scene::{
@@ -333,7 +333,7 @@ pub(super) fn plan(house: Arc<House>) -> PhysicsModel {
     statics.extend(sides);
     PhysicsModel {
         house,
-        rollers: rolling::rollers(&bodies),
+        rollers: rolling_cylinder::rollers(&bodies),
         statics,
         bodies,
         body_of_part,

@@ -1,6 +1,6 @@
 //! Contacts that give.
 
-use crate::contact_compliance::ContactCompliance;
+use crate::engine::ContactCompliance;
 use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw, value};
 use crate::model::PhysicsModel;

@@ -8,12 +8,9 @@
 //!
 //! What joints hold together is laid aside together, and wakes together.
 
-use crate::body::{BodyHandle, BodyStatus};
-use crate::contact::touching;
-use crate::engine::RapierWorld;
-use crate::workspace::Workspace;
-use crate::world::PhysicsWorld;
-use dwell_scene::{Contact, State, SupportRelation};
+use super::RapierWorld;
+use super::workspace::Workspace;
+use dwell_scene::Contact;
 use glam::Vec3;
 use rapier3d::dynamics::{IntegrationParameters, RigidBody, RigidBodyHandle, RigidBodyType};
 use rapier3d::geometry::{Aabb, Collider, ColliderHandle};
@@ -28,8 +25,6 @@ use std::collections::{BTreeMap, BTreeSet};
 const TOUCH_M: f32 = 2e-3;
 /// How much further than it goes in a step at its velocity something is looked ahead of: gravity and pushes add to that.
 const AHEAD: f32 = 1.5;
-/// Physics steps between two looks for what fell asleep: a quarter of a second at the default rate.
-const TICKS_BETWEEN_LOOKS: u64 = 32;
 /// How far a box must move for rapier to notice, m; its margin in units of its length unit.
 const BOX_STEP_M: f32 = 1e-3;
 const RAPIER_SKIN: f32 = 0.04;
@@ -62,6 +57,15 @@ impl SleepingIslandCache {
     /// Returns what those things touch that are laid aside, among themselves and with what stands.
     pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
         self.contacts.iter().map(|kept| kept.contact)
+    }
+
+    /// Remembers what bodies touch that are laid aside.
+    pub(crate) fn keep_contacts(
+        &mut self,
+        contacts: impl Iterator<Item = ([RigidBodyHandle; 2], Contact)>,
+    ) {
+        let kept = contacts.map(|(bodies, contact)| CachedContact { bodies, contact });
+        self.contacts.extend(kept);
     }
 
     fn add(&mut self, body: RigidBodyHandle) {
@@ -268,7 +272,7 @@ impl RapierWorld {
 
     /// Takes out those that touch a free body that stays one, or hang on one: rapier wakes it when what it touches changes. Those
     /// then stay free themselves.
-    fn keep_touching_free_bodies(&self, asleep: &mut Vec<RigidBodyHandle>) {
+    pub(crate) fn keep_touching_free_bodies(&self, asleep: &mut Vec<RigidBodyHandle>) {
         let mut sleeping_cache: BodyIndexSet =
             asleep.iter().map(|body| body.into_raw_parts()).collect();
         let stays = |sleeping_cache: &BodyIndexSet, body: &RigidBodyHandle| {
@@ -314,7 +318,7 @@ impl RapierWorld {
     }
 
     /// Gives back the room of pairs that are gone, which rapier keeps for the next ones.
-    fn shrink_pair_storage(&mut self) {
+    pub(crate) fn shrink_pair_storage(&mut self) {
         let bytes = postcard::to_stdvec(&self.narrow_phase)
             .expect("rapier's sets are plain data that postcard can always write to memory");
         self.narrow_phase = postcard::from_bytes(&bytes).expect("it was written just now");
@@ -324,7 +328,7 @@ impl RapierWorld {
     }
 
     /// Makes bodies that sleep ones that stand.
-    fn cache_bodies(&mut self, bodies: &[RigidBodyHandle]) {
+    pub(crate) fn cache_bodies(&mut self, bodies: &[RigidBodyHandle]) {
         for body in bodies {
             self.sleeping_cache.add(*body);
             if let Some(rigid) = self.bodies.get_mut(*body) {
@@ -337,7 +341,7 @@ impl RapierWorld {
 
     /// Moves the boxes of bodies' colliders in rapier's tree to where they touch nothing, or back. rapier forgets a pair when a
     /// box leaves the other, and does not make it again between two that stand.
-    fn toggle_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
+    pub(crate) fn toggle_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
         let parameters = IntegrationParameters {
             length_unit: BOX_STEP_M / RAPIER_SKIN,
             ..*self.parameters()
@@ -362,99 +366,6 @@ impl RapierWorld {
         let number = collider.into_raw_parts().0 as f32;
         let far = Vector::new(4.0 * number, -1e6, 0.0);
         Some(if away { Aabb::new(far, far) } else { aabb })
-    }
-}
-
-impl PhysicsWorld {
-    /// Now and then lays aside what has fallen asleep since. `joints_before`: the tick at which the control step began.
-    pub(crate) fn cache_sleeping(&mut self, joints_before: u64) {
-        if joints_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
-            return;
-        }
-        let mut asleep: Vec<RigidBodyHandle> = (0..self.bodies.len())
-            .filter(|index| self.is_cacheable(*index))
-            .map(|index| self.bodies[index].handle)
-            .collect();
-        self.engine.keep_touching_free_bodies(&mut asleep);
-        if asleep.is_empty() {
-            return;
-        }
-        asleep.sort_unstable_by_key(|body| body.into_raw_parts());
-        let kept = self.current_contacts().into_iter();
-        let sleeps = |body: &RigidBodyHandle| {
-            let key = |body: &RigidBodyHandle| body.into_raw_parts();
-            asleep.binary_search_by_key(&key(body), key).is_ok()
-        };
-        let kept = kept.filter(|(bodies, _)| bodies.iter().any(sleeps));
-        let kept = kept.map(|(bodies, contact)| CachedContact { bodies, contact });
-        self.engine.sleeping_cache.contacts.extend(kept);
-        self.engine.cache_bodies(&asleep);
-        self.forget_pairs(&asleep);
-    }
-
-    /// Forgets the pairs of bodies that no longer move with others that stand.
-    fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
-        // First they become known as standing, or what they touch would wake when the pairs go.
-        self.flush();
-        self.engine.toggle_broad_phase_proxies(bodies, true);
-        self.flush();
-        self.engine.toggle_broad_phase_proxies(bodies, false);
-        self.flush();
-        self.engine.shrink_pair_storage();
-    }
-
-    /// Forgets the pairs that things made before they were shut or frozen, with others that stand.
-    pub(crate) fn forget_fixed_pairs(&mut self) {
-        let stands = |(_, hold): &(&BodyHandle, &BodyStatus)| **hold != BodyStatus::Free;
-        let bodies = self.bodies.iter().zip(&self.holds).filter(stands);
-        let bodies: Vec<RigidBodyHandle> = bodies.map(|(body, _)| body.handle).collect();
-        if !bodies.is_empty() {
-            self.forget_pairs(&bodies);
-        }
-    }
-
-    /// Returns who touches whom among the pairs that rapier has.
-    fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
-        touching(
-            &self.engine.narrow_phase,
-            &self.engine.colliders,
-            &self.entries,
-            self.settings.config.touch_distance_m,
-        )
-    }
-
-    /// Writes who touches whom into the state: all pairs of parts, and of parts with the structure, each once, sorted.
-    pub(crate) fn write_contacts(&self, state: &mut State) {
-        let contacts = &mut state.contacts;
-        contacts.clear();
-        contacts.extend(
-            self.current_contacts()
-                .into_iter()
-                .map(|(_, contact)| contact),
-        );
-        contacts.extend(self.engine.sleeping_cache.contacts());
-        // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
-        contacts.sort_unstable_by_key(|contact| {
-            (
-                contact.a,
-                contact.b,
-                contact.rest == SupportRelation::Beside,
-            )
-        });
-        contacts.dedup_by_key(|contact| (contact.a, contact.b));
-    }
-
-    /// Returns whether a body sleeps and has nothing to do with hands.
-    fn is_cacheable(&self, index: usize) -> bool {
-        let handle = self.bodies[index].handle;
-        let rigid = self.engine.bodies.get(handle);
-        self.holds[index] == BodyStatus::Free
-            && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
-            && self.grips.iter().all(|grip| grip.body as usize != index)
-            && self
-                .released_overlapping
-                .iter()
-                .all(|(body, _)| *body as usize != index)
     }
 }
 

@@ -1,34 +1,32 @@
 //! rapier's parts in one place.
 
+mod contact_compliance;
+mod contact_points;
+mod lost_bodies;
+mod pair_reduction;
+mod sleeping_cache;
+mod workspace;
+
+pub(crate) use contact_compliance::ContactCompliance;
+pub(crate) use contact_points::{FrictionStorage, points};
+pub use pair_reduction::PairCounts;
+pub(crate) use sleeping_cache::SleepingIslandCache;
+
 use crate::config::ResolvedConfig;
-use crate::contact::FrictionStorage;
-use crate::contact_compliance::{self, ContactCompliance};
-use crate::sleeping_cache::SleepingIslandCache;
-use crate::workspace::Workspace;
 use glam::Vec3;
 use rapier3d::dynamics::{
     FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager, RigidBody,
     RigidBodyHandle, RigidBodySet, RigidBodyType,
 };
 use rapier3d::geometry::{
-    BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, ContactData, ContactManifold,
-    ContactPair, NarrowPhase, SolverContact,
+    BroadPhaseBvh, Collider, ColliderHandle, ColliderSet, ContactPair, NarrowPhase,
 };
 use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, QueryFilter, QueryPipeline};
+use workspace::Workspace;
 
 /// Steps of no length until the tree is back.
 const MOST_FLUSHES: usize = 4;
-
-/// The points of a plane of contact that rapier solves, with what it knows of them.
-pub(crate) fn points(
-    plane: &ContactManifold,
-) -> impl Iterator<Item = (&SolverContact, &ContactData)> {
-    plane.data.solver_contacts.iter().filter_map(|contact| {
-        let point = plane.points.get(contact.contact_indices()[0] as usize)?;
-        Some((contact, &point.data))
-    })
-}
 
 /// The simulation itself.
 #[derive(Clone)]
@@ -39,7 +37,7 @@ pub(crate) struct RapierWorld {
     runs: u32,
     /// Whether contacts give.
     soft: bool,
-    pub(crate) workspace: Workspace,
+    workspace: Workspace,
     /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
     lost: Vec<RigidBodyHandle>,
     pub(crate) sleeping_cache: SleepingIslandCache,

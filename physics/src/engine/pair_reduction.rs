@@ -7,8 +7,7 @@
 //! snapshots for good. So a box is drawn tight when its body falls asleep; the next step forgets the pairs that are gone. A
 //! body that wakes and moves gets its wide box back from rapier at once.
 
-use crate::engine::RapierWorld;
-use crate::world::PhysicsWorld;
+use super::RapierWorld;
 use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
 use rapier3d::geometry::Aabb;
 use rapier3d::math::Vector;
@@ -33,11 +32,11 @@ pub struct PairCounts {
     pub touching: usize,
 }
 
-impl PhysicsWorld {
-    /// Returns how many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
-    pub fn pair_counts(&self) -> PairCounts {
+impl RapierWorld {
+    /// Returns how many pairs of colliders rapier keeps.
+    pub(crate) fn pair_counts(&self) -> PairCounts {
         let mut counts = PairCounts::default();
-        for pair in self.engine.narrow_phase.contact_pairs() {
+        for pair in self.narrow_phase.contact_pairs() {
             counts.near += 1;
             counts.touching += usize::from(pair.has_any_active_contact());
         }
@@ -46,16 +45,15 @@ impl PhysicsWorld {
 
     /// Now and then gives back the room of pairs that are gone. rapier keeps each for the next pair, with all the buffers that
     /// it ever needed, so that in a long run every one of them comes to need the most. A copy has room for what it holds.
-    pub(crate) fn shrink_pair_storage(&mut self) {
-        if self.tick.is_multiple_of(TICKS_BETWEEN_COPIES) {
-            self.engine.narrow_phase = self.engine.narrow_phase.clone();
+    /// `tick`: physics steps made.
+    pub(crate) fn copy_pairs_at(&mut self, tick: u64) {
+        if tick.is_multiple_of(TICKS_BETWEEN_COPIES) {
+            self.narrow_phase = self.narrow_phase.clone();
         }
     }
-}
 
-impl RapierWorld {
     /// Draws the boxes of those bodies tight that were awake and have fallen asleep.
-    pub(crate) fn shrink_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
+    pub(super) fn shrink_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
         let parameters = IntegrationParameters {
             length_unit: SKIN_M / RAPIER_SKIN,
             ..*self.parameters()

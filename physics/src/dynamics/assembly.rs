@@ -1,0 +1,218 @@
+//! Making the rigid bodies and colliders of a house.
+
+use crate::body::{self, BodyHandle, BodyStatus, body_type};
+use crate::config::ResolvedConfig;
+use crate::contact::{ColliderEntry, ContactProperties};
+use crate::engine::{ContactCompliance, RapierWorld};
+use crate::inertia::{self, BodyInertia};
+use crate::laws::LawSet;
+use crate::limits::Crowding;
+use crate::model::{BodyPlan, CollisionPiece, PhysicsModel};
+use dwell_scene::material::PairContact;
+use dwell_scene::{State, interrupt};
+use rapier3d::dynamics::{CoefficientCombineRule, RigidBodyBuilder, RigidBodyHandle, RigidBodySet};
+use rapier3d::geometry::{Collider, ColliderBuilder, ColliderSet, InteractionGroups};
+use rapier3d::math::Pose as RapierPose;
+use rapier3d::pipeline::{ActiveEvents, ActiveHooks};
+
+/// What bodies weigh in a world.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct BodyMasses {
+    /// What densities are multiplied with. Shape (body, part).
+    pub(crate) factors: Vec<Vec<f32>>,
+    /// What laws make of mass and inertia. Shape (body,).
+    pub(crate) altered: Vec<Option<BodyInertia>>,
+}
+
+impl BodyMasses {
+    pub(crate) fn new(model: &PhysicsModel, state: &State, laws: &LawSet) -> Self {
+        let factors = body::mass_factors(model, state);
+        let altered = inertia::altered(model, state, &factors, &laws.masses);
+        Self { factors, altered }
+    }
+}
+
+/// The parts of a world that its shapes make up.
+pub(crate) struct AssembledWorld {
+    pub(crate) engine: RapierWorld,
+    pub(crate) entries: Vec<ColliderEntry>,
+    pub(crate) bodies: Vec<BodyHandle>,
+    pub(crate) anchor: RigidBodyHandle,
+}
+
+/// The bodies that never move: the house, and what joints hang on.
+const STANDING: usize = 2;
+
+/// Inserts the pieces of a house: statics, then bodies in order, at the given places. `sizes`: gravity, m/s², how many agents will
+/// come, and how many pairs the pieces make.
+pub(crate) fn assemble(
+    model: &PhysicsModel,
+    settings: &ResolvedConfig,
+    values: ContactProperties<'_>,
+    compliance: Option<ContactCompliance>,
+    (gravity_m_s2, agents, crowding): (f32, usize, Crowding),
+    places: impl Fn(usize) -> (RapierPose, BodyStatus),
+    weights: &BodyMasses,
+) -> AssembledWorld {
+    let mut engine = RapierWorld::new(settings, gravity_m_s2);
+    // rapier doubles its lists when they are full.
+    let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
+    let pieces: usize = pieces.sum::<usize>() + model.statics.len();
+    engine.colliders = ColliderSet::with_capacity(pieces + agents);
+    engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + STANDING + agents);
+    engine.soften(settings, compliance);
+    let mut entries = insert_statics(&mut engine, model, values);
+    let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
+    let mut bodies = Vec::with_capacity(model.bodies.len());
+    for (index, plan) in model.bodies.iter().enumerate() {
+        interrupt::check();
+        let (world_from_body, hold) = places(index);
+        let place = BodyPlacement {
+            index: index as u32,
+            world_from_body,
+            hold,
+            mass_factors: &weights.factors[index],
+            inertia: weights.altered[index],
+            sleeping_allowed: settings.config.sleeping,
+            asks: plan.joint.is_some() || crowding == Crowding::Many,
+            event_force_n: settings.event_force_n(),
+        };
+        bodies.push(insert_body(&mut engine, plan, values, &mut entries, place));
+    }
+    AssembledWorld {
+        engine,
+        entries,
+        bodies,
+        anchor,
+    }
+}
+
+/// Returns what is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
+pub(crate) fn set_contact_properties(
+    builder: ColliderBuilder,
+    (own, special): (PairContact, bool),
+    filtered: bool,
+    index: usize,
+) -> ColliderBuilder {
+    let mut hooks = ActiveHooks::empty();
+    hooks.set(ActiveHooks::MODIFY_SOLVER_CONTACTS, special);
+    hooks.set(ActiveHooks::FILTER_CONTACT_PAIRS, filtered);
+    builder
+        .friction(own.friction)
+        .restitution(own.restitution)
+        .friction_combine_rule(CoefficientCombineRule::GeometricMean)
+        .restitution_combine_rule(CoefficientCombineRule::GeometricMean)
+        .active_hooks(hooks)
+        .user_data(index as u128)
+}
+
+/// Inserts everything that never moves and returns the entries.
+pub(crate) fn insert_statics(
+    engine: &mut RapierWorld,
+    model: &PhysicsModel,
+    values: ContactProperties<'_>,
+) -> Vec<ColliderEntry> {
+    let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
+    let mut entries = Vec::with_capacity(model.statics.len());
+    for piece in &model.statics {
+        let entry = ColliderEntry::new(piece.owner, None, values.table.surface(&piece.cover));
+        let builder = ColliderBuilder::new(piece.shape.clone())
+            .position(piece.place)
+            .density(0.0);
+        let builder = set_contact_properties(builder, values.rule(&entry), false, entries.len());
+        engine
+            .colliders
+            .insert_with_parent(builder, ground, &mut engine.bodies);
+        entries.push(entry);
+    }
+    entries
+}
+
+/// Inserts a rigid body with its colliders.
+pub(crate) fn insert_body(
+    engine: &mut RapierWorld,
+    plan: &BodyPlan,
+    values: ContactProperties<'_>,
+    entries: &mut Vec<ColliderEntry>,
+    place: BodyPlacement<'_>,
+) -> BodyHandle {
+    let mut builder = RigidBodyBuilder::new(body_type(place.hold))
+        .pose(place.world_from_body)
+        .can_sleep(place.sleeping_allowed)
+        // rapier brakes what turns by more than an eighth of a turn in a step: no wheel and no rotor.
+        .allow_fast_rotation(plan.joint.is_some());
+    if let Some(inertia) = &place.inertia {
+        builder = builder
+            .additional_mass_properties(inertia.properties())
+            .gravity_scale(inertia.gravity_scale);
+    }
+    let handle = engine.bodies.insert(builder);
+    for piece in &plan.pieces {
+        let surface = values.table.surface(&piece.cover);
+        let entry = ColliderEntry::new(piece.owner, Some(place.index), surface);
+        let factor = plan.factor_of(piece, place.mass_factors);
+        let density = density(piece, factor, place.inertia.as_ref());
+        let builder = ColliderBuilder::new(piece.shape.clone())
+            .position(piece.place)
+            .density(density)
+            .active_events(ActiveEvents::CONTACT_FORCE_EVENTS)
+            .contact_force_event_threshold(place.event_force_n);
+        let builder =
+            set_contact_properties(builder, values.rule(&entry), place.asks, entries.len());
+        engine
+            .colliders
+            .insert_with_parent(builder, handle, &mut engine.bodies);
+        entries.push(entry);
+    }
+    BodyHandle { handle }
+}
+
+/// Where and how a body starts.
+#[derive(Clone, Copy)]
+pub(crate) struct BodyPlacement<'a> {
+    pub(crate) index: u32,
+    pub(crate) world_from_body: RapierPose,
+    pub(crate) hold: BodyStatus,
+    /// What its parts' densities are multiplied with. Shape (part,).
+    pub(crate) mass_factors: &'a [f32],
+    /// What a law makes of its mass and inertia.
+    pub(crate) inertia: Option<BodyInertia>,
+    pub(crate) sleeping_allowed: bool,
+    pub(crate) event_force_n: f32,
+    /// Whether rapier asks which of its pairs meet: leaves do; free bodies only against agents, who ask themselves, and where there
+    /// are so many pairs that the call may have to stop between them.
+    pub(crate) asks: bool,
+}
+
+/// The density of a collider, kg/m3: none where the body's mass and inertia are given as a whole.
+pub(crate) fn density(
+    piece: &CollisionPiece,
+    mass_factor: f32,
+    inertia: Option<&BodyInertia>,
+) -> f32 {
+    match inertia {
+        Some(_) => 0.0,
+        None => piece.density_kg_m3 * mass_factor,
+    }
+}
+
+/// Changes a collider's contact values in place.
+pub(crate) fn update_collider_properties(
+    collider: &mut Collider,
+    (own, special): (PairContact, bool),
+) {
+    let mut hooks = collider.active_hooks();
+    hooks.set(ActiveHooks::MODIFY_SOLVER_CONTACTS, special);
+    collider.set_friction(own.friction);
+    collider.set_restitution(own.restitution);
+    collider.set_active_hooks(hooks);
+    invalidate_contacts(collider);
+}
+
+/// Makes rapier compute a collider's contacts anew: it keeps the values, and the arms to the centres of mass, of contacts that
+/// hardly move, but not where a collider's groups changed.
+pub(crate) fn invalidate_contacts(collider: &mut Collider) {
+    let groups = collider.solver_groups();
+    collider.set_solver_groups(InteractionGroups::none());
+    collider.set_solver_groups(groups);
+}

@@ -1,0 +1,22 @@
+//! What rapier keeps in the points of contacts.
+
+use rapier3d::geometry::{ContactData, ContactManifold, SolverContact};
+
+/// The points of a plane of contact that rapier solves, with what it knows of them.
+pub(crate) fn points(
+    plane: &ContactManifold,
+) -> impl Iterator<Item = (&SolverContact, &ContactData)> {
+    plane.data.solver_contacts.iter().filter_map(|contact| {
+        let point = plane.points.get(contact.contact_indices()[0] as usize)?;
+        Some((contact, &point.data))
+    })
+}
+
+/// How rapier keeps friction in contact points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FrictionStorage {
+    /// Each point of a plane holds the friction of the whole plane.
+    pub(crate) by_patch: bool,
+    /// rapier runs once in a physics step.
+    pub(crate) once: bool,
+}

@@ -1,0 +1,55 @@
+//! Cylinders of bodies, which may roll.
+
+use super::{BodyPlan, CollisionPiece};
+use glam::Vec3;
+use rapier3d::dynamics::RigidBody;
+use rapier3d::geometry::ColliderHandle;
+
+/// How fast the side of a cylinder goes round from where on it rolls, m/s.
+const ROLLS_M_S: f32 = 0.01;
+
+/// A cylinder of a body that may move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RollingCylinder {
+    body: u32,
+    /// Its number among the body's pieces.
+    piece: usize,
+    axis_in_body: Vec3,
+    radius_m: f32,
+}
+
+/// All cylinders of bodies, in order.
+pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
+    let of_body = |(index, plan): (usize, &BodyPlan)| {
+        let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
+            let cylinder = shaped.shape.as_cylinder()?;
+            Some(RollingCylinder {
+                body: index as u32,
+                piece,
+                axis_in_body: shaped.place.rotation * Vec3::Y,
+                radius_m: cylinder.radius,
+            })
+        };
+        let pieces = plan.pieces.iter().enumerate();
+        pieces.filter_map(roller).collect::<Vec<_>>()
+    };
+    bodies.iter().enumerate().flat_map(of_body).collect()
+}
+
+impl RollingCylinder {
+    /// Returns whether it turns about its axis.
+    pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
+        let axis = body.position().rotation * self.axis_in_body;
+        (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S
+    }
+
+    /// The place in a list of bodies.
+    pub(crate) fn body(&self) -> usize {
+        self.body as usize
+    }
+
+    /// The collider that it is of a body.
+    pub(crate) fn collider(&self, body: &RigidBody) -> Option<ColliderHandle> {
+        body.colliders().get(self.piece).copied()
+    }
+}

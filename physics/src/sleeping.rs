@@ -1,0 +1,101 @@
+//! What fell asleep is laid aside.
+
+use crate::body::{BodyHandle, BodyStatus};
+use crate::contact::touching;
+use crate::world::PhysicsWorld;
+use dwell_scene::{Contact, State, SupportRelation};
+use rapier3d::dynamics::RigidBodyHandle;
+
+/// Physics steps between two looks for what fell asleep: a quarter of a second at the default rate.
+const TICKS_BETWEEN_LOOKS: u64 = 32;
+impl PhysicsWorld {
+    /// Now and then lays aside what has fallen asleep since. `joints_before`: the tick at which the control step began.
+    pub(crate) fn cache_sleeping(&mut self, joints_before: u64) {
+        if joints_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
+            return;
+        }
+        let mut asleep: Vec<RigidBodyHandle> = (0..self.bodies.len())
+            .filter(|index| self.is_cacheable(*index))
+            .map(|index| self.bodies[index].handle)
+            .collect();
+        self.engine.keep_touching_free_bodies(&mut asleep);
+        if asleep.is_empty() {
+            return;
+        }
+        asleep.sort_unstable_by_key(|body| body.into_raw_parts());
+        let kept = self.current_contacts().into_iter();
+        let sleeps = |body: &RigidBodyHandle| {
+            let key = |body: &RigidBodyHandle| body.into_raw_parts();
+            asleep.binary_search_by_key(&key(body), key).is_ok()
+        };
+        let kept = kept.filter(|(bodies, _)| bodies.iter().any(sleeps));
+        self.engine.sleeping_cache.keep_contacts(kept);
+        self.engine.cache_bodies(&asleep);
+        self.forget_pairs(&asleep);
+    }
+
+    /// Forgets the pairs of bodies that no longer move with others that stand.
+    fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
+        // First they become known as standing, or what they touch would wake when the pairs go.
+        self.flush();
+        self.engine.toggle_broad_phase_proxies(bodies, true);
+        self.flush();
+        self.engine.toggle_broad_phase_proxies(bodies, false);
+        self.flush();
+        self.engine.shrink_pair_storage();
+    }
+
+    /// Forgets the pairs that things made before they were shut or frozen, with others that stand.
+    pub(crate) fn forget_fixed_pairs(&mut self) {
+        let stands = |(_, hold): &(&BodyHandle, &BodyStatus)| **hold != BodyStatus::Free;
+        let bodies = self.bodies.iter().zip(&self.holds).filter(stands);
+        let bodies: Vec<RigidBodyHandle> = bodies.map(|(body, _)| body.handle).collect();
+        if !bodies.is_empty() {
+            self.forget_pairs(&bodies);
+        }
+    }
+
+    /// Returns who touches whom among the pairs that rapier has.
+    fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
+        touching(
+            &self.engine.narrow_phase,
+            &self.engine.colliders,
+            &self.entries,
+            self.settings.config.touch_distance_m,
+        )
+    }
+
+    /// Writes who touches whom into the state: all pairs of parts, and of parts with the structure, each once, sorted.
+    pub(crate) fn write_contacts(&self, state: &mut State) {
+        let contacts = &mut state.contacts;
+        contacts.clear();
+        contacts.extend(
+            self.current_contacts()
+                .into_iter()
+                .map(|(_, contact)| contact),
+        );
+        contacts.extend(self.engine.sleeping_cache.contacts());
+        // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
+        contacts.sort_unstable_by_key(|contact| {
+            (
+                contact.a,
+                contact.b,
+                contact.rest == SupportRelation::Beside,
+            )
+        });
+        contacts.dedup_by_key(|contact| (contact.a, contact.b));
+    }
+
+    /// Returns whether a body sleeps and has nothing to do with hands.
+    fn is_cacheable(&self, index: usize) -> bool {
+        let handle = self.bodies[index].handle;
+        let rigid = self.engine.bodies.get(handle);
+        self.holds[index] == BodyStatus::Free
+            && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
+            && self.grips.iter().all(|grip| grip.body as usize != index)
+            && self
+                .released_overlapping
+                .iter()
+                .all(|(body, _)| *body as usize != index)
+    }
+}
