@@ -14,7 +14,7 @@ from pages.tables import code, number, table
 _ACTION = "engine/world/src/action.rs"
 _REQUEST = "engine/world/src/action_request.rs"
 _HAND = "physics/src/actions/request.rs"
-_OUTCOME = "physics/src/actions/outcome.rs"
+_OUTCOME = "physics/src/outcome.rs"
 _CONTROL = "physics/src/agents/control.rs"
 
 #: The ways of getting about whose limits the page lists.

@@ -21,45 +21,40 @@
 //! # Ok::<(), dwell_physics::PhysicsError>(())
 //! ```
 
+// Each module uses only those before it in this order: what rapier and the house are (convert, error, config, report, model,
+// engine, body, inertia); what acts (joints, contact, bases, laws); the parts of a world (limits, start, dynamics, outcome,
+// articulation, contact_record, agents, hands, actions); world, which joins them.
 mod actions;
-mod agent_placement;
 mod agents;
+mod articulation;
 pub mod bases;
 mod body;
 mod config;
 mod contact;
-mod control_step;
+mod contact_record;
 mod convert;
 mod dynamics;
 mod engine;
 mod error;
-mod external_changes;
+mod hands;
 mod inertia;
 mod joints;
 pub mod laws;
 mod limits;
 mod model;
-mod motors;
-mod non_finite;
-mod parameters;
+mod outcome;
 mod report;
-mod set_state;
-mod settle_start;
-mod sleeping;
-mod snapshot;
 mod start;
 mod world;
 
-pub use actions::{
-    Action, ActionOutcome, DelayedOutcome, Grasp, OutcomeCode, PointedTarget, Target,
-};
-pub use agent_placement::AgentPlacement;
+pub use actions::{Action, Target};
 pub use agents::AgentControl;
 pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEntity, ContactEvent, ContactKind, ContactPhase, MergedEvents};
 pub use engine::PairCounts;
 pub use error::PhysicsError;
+pub use hands::Grasp;
 pub use model::PhysicsModel;
+pub use outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, PointedTarget};
 pub use report::{FrozenObject, MovedAgent, MovedObject, PassingJoint, StartReport};
-pub use set_state::{BodyState, JointState};
-pub use world::PhysicsWorld;
+pub use world::{AgentPlacement, BodyState, JointState, PhysicsWorld};

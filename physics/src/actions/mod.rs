@@ -1,10 +1,8 @@
 //! What an agent's hand does: take, put, throw, push, let go, open, close, switch, point. Each says whether it worked and
 //! why.
 
-mod clearance;
 mod doors;
 mod hand;
-mod outcome;
 mod place;
 mod place_at;
 mod placement_trial;
@@ -18,14 +16,16 @@ mod switch;
 mod target;
 mod throw;
 
-pub use outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, PointedTarget};
-pub(crate) use push::OngoingPush;
-pub use request::{Action, Grasp, Target};
+pub(crate) use push::{OngoingPush, advance_pushes};
+pub use request::{Action, Target};
 
-use crate::world::PhysicsWorld;
+use crate::agents::Agents;
+use crate::articulation::JointSystem;
+use crate::dynamics::Dynamics;
+use crate::hands::Hands;
+use crate::outcome::ActionOutcome;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentId, Id, ObjectId, State};
-use outcome::fail;
+use dwell_scene::{AgentId, State};
 
 /// What an action works with: who does it, and what it sees.
 #[derive(Clone, Copy)]
@@ -35,30 +35,24 @@ struct Actor<'a> {
     rays: &'a RayScene,
 }
 
-impl PhysicsWorld {
-    /// Lets an agent do something with its hand, at once or, for doors and pushes, over the next steps.
-    ///
-    /// `rays` must show `state` as it is. What takes time reports its end through [`PhysicsWorld::notices`]. A state of
-    /// another world or an agent that does not exist is refused like any other action that cannot be.
-    pub fn act(
+/// The parts of a world that actions read and change.
+pub(crate) struct ActionContext<'a> {
+    pub(crate) dynamics: &'a mut Dynamics,
+    pub(crate) articulation: &'a mut JointSystem,
+    pub(crate) agents: &'a Agents,
+    pub(crate) hands: &'a mut Hands,
+    pub(crate) pushes: &'a mut Vec<OngoingPush>,
+}
+
+impl ActionContext<'_> {
+    /// Lets an agent do something with its hand. `rays` must show `state` as it is.
+    pub(crate) fn perform(
         &mut self,
         state: &mut State,
         rays: &RayScene,
         agent: AgentId,
         action: &Action,
     ) -> ActionOutcome {
-        if agent.index() >= self.agents.len() || agent.index() >= state.agents.len() {
-            let count = self.agents.len();
-            let sentence = format!("There is no agent {}; there are {count}.", agent.0);
-            return fail(OutcomeCode::UnknownAgent, sentence, None);
-        }
-        if let Err(error) = self.check_state(state) {
-            return fail(
-                OutcomeCode::ForeignState,
-                format!("Nothing was done: {error}."),
-                None,
-            );
-        }
         let actor = Actor {
             id: agent,
             body: state.agents[agent],
@@ -86,10 +80,6 @@ impl PhysicsWorld {
             Action::Point { target } => self.point(state, actor, &target),
         };
         outcome.unwrap_or_else(|refusal| *refusal)
-    }
-
-    pub(crate) fn call(&self, object: ObjectId) -> String {
-        crate::body::name_of(&self.model().house, object)
     }
 }
 

@@ -1,12 +1,11 @@
 //! Putting what is held down on something.
 
-use super::clearance::SupportFilter;
-use super::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use super::request::Target;
 use super::stable_pose::StablePose;
-use super::{ActionResult, Actor};
-use crate::agents::HeldObject;
-use crate::world::PhysicsWorld;
+use super::{ActionContext, ActionResult, Actor};
+use crate::dynamics::SupportFilter;
+use crate::hands::HeldObject;
+use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{Entity, ObjectId, State, SurfaceOwner};
@@ -31,7 +30,7 @@ struct ObjectPlacement {
     name: String,
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn put_on(
         &mut self,
         state: &mut State,
@@ -47,7 +46,7 @@ impl PhysicsWorld {
         self.put_down(state, actor, &spot.pose);
         let sentence = format!(
             "You put the {} on the {}.",
-            self.call(grip.object),
+            self.dynamics.name_of(grip.object),
             spot.name
         );
         Ok(done(OutcomeCode::Done, sentence, spot.on))
@@ -55,7 +54,7 @@ impl PhysicsWorld {
 
     /// The agent's grip, or the refusal for an empty hand.
     pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<HeldObject, Box<ActionOutcome>> {
-        let grip = self.grips.iter().find(|grip| grip.agent == actor.id);
+        let grip = self.hands.grips.iter().find(|grip| grip.agent == actor.id);
         grip.copied().ok_or_else(|| {
             let sentence = "You hold nothing. Pick something first.";
             Box::new(fail(OutcomeCode::HandEmpty, sentence, None))
@@ -64,18 +63,23 @@ impl PhysicsWorld {
 
     /// Opens a hand and leaves what it held under a pose, at rest.
     pub(super) fn put_down(&mut self, state: &mut State, actor: Actor<'_>, pose: &RapierPose) {
-        let Some(place) = self.grips.iter().position(|grip| grip.agent == actor.id) else {
+        let Some(place) = self
+            .hands
+            .grips
+            .iter()
+            .position(|grip| grip.agent == actor.id)
+        else {
             return;
         };
-        let handle = self.bodies[self.grips[place].body as usize].handle;
-        self.ungrip(state, place);
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+        let handle = self.dynamics.bodies[self.hands.grips[place].body as usize].handle;
+        self.hands.ungrip(self.dynamics, state, place);
+        if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_position(*pose, true);
             rigid.set_linvel(Vec3::ZERO, true);
             rigid.set_angvel(Vec3::ZERO, true);
         }
-        self.flush();
-        self.write_bodies(state);
+        self.dynamics.flush();
+        self.articulation.write(self.dynamics, state);
     }
 
     fn spot_on(
@@ -87,7 +91,7 @@ impl PhysicsWorld {
         target: &Target,
     ) -> Result<ObjectPlacement, Box<ActionOutcome>> {
         let refuse = |code, sentence: String, on| Err(Box::new(fail(code, sentence, on)));
-        let held = self.call(grip.object);
+        let held = self.dynamics.name_of(grip.object);
         let aim = self.resolve_target(state, actor, target)?;
         let (ground, on, name) = match aim.entity {
             Entity::Object(object) if object == grip.object => {
@@ -97,7 +101,7 @@ impl PhysicsWorld {
             Entity::Object(object) => (
                 SupportFilter::Object(object),
                 Some(object),
-                self.call(object),
+                self.dynamics.name_of(object),
             ),
             Entity::Structure(id) => {
                 let name = self.surface_name(SurfaceOwner::Structure(id));
@@ -151,7 +155,7 @@ impl PhysicsWorld {
         grip: &HeldObject,
         stances: &[StablePose],
     ) -> Result<ObjectPlacement, Box<ActionOutcome>> {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let held = house.entity_of_object(grip.object);
         let eye = actor.body.eye_position();
         let (yaw, pitch) = (actor.body.yaw_rad, actor.body.pitch_rad);
@@ -182,6 +186,7 @@ impl PhysicsWorld {
             };
             let foot = ray.at(hit.distance_m) + Vec3::Y * RING_M;
             let feet: Vec<Vec3> = self
+                .dynamics
                 .support_heights(grip.body as usize, ground, foot, 2.0 * RING_M)
                 .into_iter()
                 .map(|height| Vec3::new(foot.x, height, foot.z))
@@ -193,7 +198,7 @@ impl PhysicsWorld {
         }
         let sentence = format!(
             "You see no free surface for the {} within your reach. Turn towards one.",
-            self.call(grip.object)
+            self.dynamics.name_of(grip.object)
         );
         Err(Box::new(fail(OutcomeCode::NoSpace, sentence, None)))
     }
@@ -212,7 +217,7 @@ impl PhysicsWorld {
             feet.iter().find_map(|foot| {
                 let middle = *foot + Vec3::Y * (0.5 * stance.size().y);
                 let near = (*foot - eye).length() <= reach;
-                if !near || self.first_obstacle(eye, middle).is_some() {
+                if !near || self.dynamics.first_obstacle(eye, middle).is_some() {
                     return None;
                 }
                 self.stand_at(body, stance, *foot).ok()
@@ -229,7 +234,7 @@ impl PhysicsWorld {
         eye: Vec3,
         reach_m: f32,
     ) -> Vec<Vec3> {
-        let all = self.model().house.object_bounds(state, object);
+        let all = self.dynamics.model.house.object_bounds(state, object);
         let low = all.min.max(eye - Vec3::splat(reach_m));
         let high = all.max.min(eye + Vec3::splat(reach_m));
         let mut feet = Vec::new();
@@ -239,7 +244,9 @@ impl PhysicsWorld {
             let z = low.z + (high.z - low.z) * share(k / GRID);
             let from = Vec3::new(x, all.max.y + ABOVE_M, z);
             let down_m = all.size().y + 2.0 * ABOVE_M;
-            let levels = self.support_heights(body, SupportFilter::Object(object), from, down_m);
+            let levels =
+                self.dynamics
+                    .support_heights(body, SupportFilter::Object(object), from, down_m);
             feet.extend(levels.into_iter().map(|height| Vec3::new(x, height, z)));
         }
         feet.retain(|foot| (*foot - eye).length() <= reach_m);
@@ -257,7 +264,9 @@ impl PhysicsWorld {
                 let (s, c) = dwell_scene::math::sin_cos(angle);
                 let radius = RING_M * ring as f32;
                 let from = point + Vec3::new(radius * c, RING_M, radius * s);
-                let levels = self.support_heights(body, ground, from, 2.0 * RING_M);
+                let levels = self
+                    .dynamics
+                    .support_heights(body, ground, from, 2.0 * RING_M);
                 feet.extend(levels.first().map(|height| from.with_y(*height)));
             }
         }

@@ -1,16 +1,15 @@
 //! Putting what is held down at a point.
 
-use super::clearance::SupportFilter;
-use super::outcome::{OutcomeCode, done, fail};
-use super::{ActionResult, Actor};
-use crate::world::PhysicsWorld;
+use super::{ActionContext, ActionResult, Actor};
+use crate::dynamics::SupportFilter;
+use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
 
 /// How far above or below the point a surface may lie, m.
 const SURFACE_M: f32 = 0.03;
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn put_at(
         &mut self,
         state: &mut State,
@@ -18,7 +17,7 @@ impl PhysicsWorld {
         point: Vec3,
     ) -> ActionResult {
         let grip = self.grip_of(actor)?;
-        let held = self.call(grip.object);
+        let held = self.dynamics.name_of(grip.object);
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(grip.object)));
         if !point.is_finite() {
             let sentence = format!("{point} is no place; give finite numbers.");
@@ -33,14 +32,16 @@ impl PhysicsWorld {
             return refuse(OutcomeCode::TooFar, sentence);
         }
         let above = point + Vec3::Y * SURFACE_M;
-        if let Some(blocker) = self.first_obstacle(eye, above) {
+        if let Some(blocker) = self.dynamics.first_obstacle(eye, above) {
             let name = self.name_of_entry(blocker);
             let sentence =
                 format!("The {name} is between you and that place. Choose one in the open.");
             return refuse(OutcomeCode::NotVisible, sentence);
         }
         let body = grip.body as usize;
-        let levels = self.support_heights(body, SupportFilter::Any, above, 2.0 * SURFACE_M);
+        let levels =
+            self.dynamics
+                .support_heights(body, SupportFilter::Any, above, 2.0 * SURFACE_M);
         let Some(height) = levels
             .into_iter()
             .min_by(|a, b| (a - point.y).abs().total_cmp(&(b - point.y).abs()))

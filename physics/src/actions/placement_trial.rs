@@ -1,8 +1,8 @@
 //! A trial: does a thing that is put somewhere stay there?
 
-use crate::contact::{ContactHooks, ContactProperties};
+use super::ActionContext;
+use crate::contact::ContactHooks;
 use crate::engine::RapierWorld;
-use crate::world::PhysicsWorld;
 use dwell_scene::math;
 use rapier3d::dynamics::RigidBodyBuilder;
 use rapier3d::geometry::Aabb;
@@ -26,20 +26,23 @@ fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
     (a.translation - b.translation).length() > most_m || turn > most_rad
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// Returns where a body comes to rest that is put under a pose, found by the same solver among what is near, which stands
     /// still meanwhile; `None` when it slides, topples or rolls away.
     pub(super) fn trial_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
-        let plan = &self.model().bodies[body];
+        let plan = &self.dynamics.model.bodies[body];
         let near = plan.bounds(pose).grown(NEAR_M);
-        let mut trial = RapierWorld::new(&self.settings, self.engine.gravity.length());
+        let mut trial = RapierWorld::new(
+            &self.dynamics.settings,
+            self.dynamics.engine.gravity.length(),
+        );
         let ground = trial.bodies.insert(RigidBodyBuilder::fixed());
-        let queries = self.engine.queries(QueryFilter::default());
+        let queries = self.dynamics.engine.queries(QueryFilter::default());
         let mut around: Vec<_> = queries
             .intersect_aabb_conservative(Aabb::new(near.min, near.max))
             .map(|(_, collider)| collider)
             .filter(|collider| {
-                let entry = self.entry_of(collider);
+                let entry = self.dynamics.entry_of(collider);
                 entry.agent().is_none() && entry.body != Some(body as u32)
             })
             .filter(|collider| {
@@ -57,8 +60,8 @@ impl PhysicsWorld {
         }
         let builder = RigidBodyBuilder::dynamic().pose(*pose).can_sleep(false);
         let handle = trial.bodies.insert(builder);
-        for own in crate::body::colliders(&self.engine, &self.bodies[body]) {
-            let collider = self.engine.colliders.get(*own)?;
+        for own in crate::body::colliders(&self.dynamics.engine, &self.dynamics.bodies[body]) {
+            let collider = self.dynamics.engine.colliders.get(*own)?;
             let mut copy = collider.clone();
             if let Some(place) = collider.position_wrt_parent() {
                 copy.set_position_wrt_parent(*place);
@@ -68,19 +71,17 @@ impl PhysicsWorld {
                 .insert_with_parent(copy, handle, &mut trial.bodies);
         }
         let hooks = ContactHooks {
-            entries: &self.entries,
-            properties: ContactProperties {
-                house: &self.model.house,
-                table: &self.table,
-                laws: &self.laws.contacts,
-                soft: self.laws.compliance.is_some(),
-            },
-            excluded: &self.excluded,
-            kept: self.engine.friction_kept(),
-            dt_s: self.settings.dt_s,
+            entries: &self.dynamics.entries,
+            properties: self
+                .dynamics
+                .laws
+                .contact_properties(&self.dynamics.model.house, &self.dynamics.table),
+            excluded: &self.dynamics.excluded,
+            kept: self.dynamics.engine.friction_kept(),
+            dt_s: self.dynamics.settings.dt_s,
         };
-        let steps = (TRIAL_S / self.settings.dt_s).ceil() as u32;
-        let last = (REST_S / self.settings.dt_s).ceil() as u32;
+        let steps = (TRIAL_S / self.dynamics.settings.dt_s).ceil() as u32;
+        let last = (REST_S / self.dynamics.settings.dt_s).ceil() as u32;
         let mut resting = *pose;
         for step in 0..steps {
             if step + last == steps {

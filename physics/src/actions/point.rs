@@ -1,12 +1,11 @@
 //! Pointing.
 
-use super::outcome::{OutcomeCode, PointedTarget, done, fail};
 use super::request::Target;
-use super::{ActionResult, Actor};
-use crate::world::PhysicsWorld;
+use super::{ActionContext, ActionResult, Actor};
+use crate::outcome::{OutcomeCode, PointedTarget, done, fail};
 use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn point(
         &mut self,
         state: &State,
@@ -14,12 +13,12 @@ impl PhysicsWorld {
         target: &Target,
     ) -> ActionResult {
         let aim = self.resolve_target(state, actor, target)?;
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let eye = actor.body.eye_position();
         let (entity, name, object, middle) = match aim.entity {
             Entity::Object(id) => (
                 house.entity_of_object(id),
-                format!("the {}", self.call(id)),
+                format!("the {}", self.dynamics.name_of(id)),
                 Some(id),
                 house.object_bounds(state, id).center(),
             ),

@@ -1,11 +1,11 @@
 //! Pushing and pulling: a force for a short while, and then how far the thing went.
 
-use super::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, done, fail};
 use super::request::Target;
 use super::target::ResolvedTarget;
-use super::{ActionResult, Actor};
+use super::{ActionContext, ActionResult, Actor};
 use crate::body::BodyStatus;
-use crate::world::PhysicsWorld;
+use crate::dynamics::Dynamics;
+use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, done, fail};
 use dwell_scene::{AgentId, ObjectId, State};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
@@ -35,7 +35,7 @@ pub(crate) struct OngoingPush {
     left: bool,
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn start_push(
         &mut self,
         state: &State,
@@ -47,7 +47,7 @@ impl PhysicsWorld {
         let most = actor.body.body.push_force_n;
         let verb = if way > 0.0 { "push" } else { "pull" };
         let (object, aim) = self.resolve_object_target(state, actor, target)?;
-        let name = self.call(object);
+        let name = self.dynamics.name_of(object);
         let wanted = force_n.unwrap_or(most);
         if !wanted.is_finite() || wanted <= 0.0 {
             let sentence = format!("You cannot {verb} with {wanted} N; give a force above 0.");
@@ -71,8 +71,8 @@ impl PhysicsWorld {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        let handle = self.bodies[body].handle;
-        let Some(rigid) = self.engine.bodies.get(handle) else {
+        let handle = self.dynamics.bodies[body].handle;
+        let Some(rigid) = self.dynamics.engine.bodies.get(handle) else {
             return Ok(fail(
                 OutcomeCode::NotMovable,
                 "It does not move.",
@@ -81,8 +81,10 @@ impl PhysicsWorld {
         };
         let eye = actor.body.eye_position();
         // Without a point, a free thing is pushed through its centre of mass, a leaf where its middle is.
-        let middle = self.model().bodies[body].bounds(rigid.position()).center();
-        let jointed = self.model().bodies[body].joint.is_some();
+        let middle = self.dynamics.model.bodies[body]
+            .bounds(rigid.position())
+            .center();
+        let jointed = self.dynamics.model.bodies[body].joint.is_some();
         let point = aim.point.unwrap_or(if jointed {
             middle
         } else {
@@ -95,13 +97,13 @@ impl PhysicsWorld {
         let point_in_body = rigid.position().inverse() * point;
         // One hand, one push: what it pushed until now ends in the next step, and is told of.
         for shove in self
-            .ongoing_pushes
+            .pushes
             .iter_mut()
             .filter(|shove| shove.agent == actor.id)
         {
             shove.left = true;
         }
-        self.ongoing_pushes.push(OngoingPush {
+        self.pushes.push(OngoingPush {
             agent: actor.id,
             object,
             body: body as u32,
@@ -111,7 +113,7 @@ impl PhysicsWorld {
             start: point,
             left: false,
         });
-        self.ongoing_pushes.sort_by_key(|shove| shove.agent);
+        self.pushes.sort_by_key(|shove| shove.agent);
         let limit = if force < wanted { ", all you have" } else { "" };
         let sentence = format!("You {verb} the {name} with {force:.0} N{limit}.");
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
@@ -123,23 +125,23 @@ impl PhysicsWorld {
         object: ObjectId,
         aim: &ResolvedTarget,
     ) -> Result<usize, Box<ActionOutcome>> {
-        let name = self.call(object);
-        let model = self.model();
+        let name = self.dynamics.name_of(object);
+        let model = &self.dynamics.model;
         let refuse = |code, sentence: String| Err(Box::new(fail(code, sentence, Some(object))));
         let bodies = match aim.part {
             Some(part) => model.body_of_part[part]
                 .map(|body| body as usize)
                 .into_iter()
                 .collect(),
-            None => self.bodies_of(object),
+            None => self.dynamics.bodies_of(object),
         };
         if let Some(body) = bodies
             .iter()
-            .find(|body| self.holds[**body] == BodyStatus::Free)
+            .find(|body| self.dynamics.holds[**body] == BodyStatus::Free)
         {
             return Ok(*body);
         }
-        match bodies.first().map(|body| self.holds[*body]) {
+        match bodies.first().map(|body| self.dynamics.holds[*body]) {
             None => refuse(
                 OutcomeCode::NotMovable,
                 format!("The {name} stands firm. Choose something loose."),
@@ -154,61 +156,70 @@ impl PhysicsWorld {
             ),
         }
     }
+}
 
-    /// Applies all pushes for one physics step and tells of those that end.
-    pub(crate) fn advance_pushes(&mut self, state: &State) {
-        let dt_s = self.settings.dt_s;
-        let mut place = 0;
-        while place < self.ongoing_pushes.len() {
-            let shove = self.ongoing_pushes[place];
-            let index = shove.body as usize;
-            let handle = self.bodies[index].handle;
-            let agent = &state.agents[shove.agent];
-            let reach = agent.body.reach_m + SLACK_M;
-            let free =
-                self.holds[index] == BodyStatus::Free && state.held_by[shove.object].is_none();
-            let point = self
+/// Applies all pushes for one physics step and tells of those that end.
+pub(crate) fn advance_pushes(
+    pushes: &mut Vec<OngoingPush>,
+    dynamics: &mut Dynamics,
+    state: &State,
+    notices: &mut Vec<DelayedOutcome>,
+) {
+    let dt_s = dynamics.settings.dt_s;
+    let mut place = 0;
+    while place < pushes.len() {
+        let shove = pushes[place];
+        let index = shove.body as usize;
+        let handle = dynamics.bodies[index].handle;
+        let agent = &state.agents[shove.agent];
+        let reach = agent.body.reach_m + SLACK_M;
+        let free =
+            dynamics.holds[index] == BodyStatus::Free && state.held_by[shove.object].is_none();
+        let point = dynamics
+            .engine
+            .bodies
+            .get(handle)
+            .map(|rigid| *rigid.position() * shove.point_in_body);
+        let near =
+            point.is_some_and(|point| free && (point - agent.eye_position()).length() <= reach);
+        if shove.left_s > 0.5 * dt_s
+            && near
+            && !shove.left
+            && let Some(point) = point
+        {
+            dynamics.engine.wake(handle);
+            if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
+                rigid.apply_impulse_at_point(shove.force * dt_s, point, false);
+            }
+            pushes[place].left_s -= dt_s;
+            place += 1;
+            continue;
+        }
+        pushes.remove(place);
+        let moved = point.map_or(0.0, |point| (point - shove.start).length());
+        let name = dynamics.name_of(shove.object);
+        let outcome = if shove.left {
+            let sentence = format!(
+                "You let go of the {name} and turned to something else; it had moved by {moved:.2} m."
+            );
+            fail(OutcomeCode::Blocked, sentence, Some(shove.object))
+        } else if moved >= MOVED_M {
+            let sentence = format!("The {name} moved by {moved:.2} m.");
+            done(OutcomeCode::Done, sentence, Some(shove.object))
+        } else {
+            let mass = dynamics
                 .engine
                 .bodies
                 .get(handle)
-                .map(|rigid| *rigid.position() * shove.point_in_body);
-            let near =
-                point.is_some_and(|point| free && (point - agent.eye_position()).length() <= reach);
-            if shove.left_s > 0.5 * dt_s
-                && near
-                && !shove.left
-                && let Some(point) = point
-            {
-                self.engine.wake(handle);
-                if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-                    rigid.apply_impulse_at_point(shove.force * dt_s, point, false);
-                }
-                self.ongoing_pushes[place].left_s -= dt_s;
-                place += 1;
-                continue;
-            }
-            self.ongoing_pushes.remove(place);
-            let moved = point.map_or(0.0, |point| (point - shove.start).length());
-            let name = self.call(shove.object);
-            let outcome = if shove.left {
-                let sentence = format!(
-                    "You let go of the {name} and turned to something else; it had moved by {moved:.2} m."
-                );
-                fail(OutcomeCode::Blocked, sentence, Some(shove.object))
-            } else if moved >= MOVED_M {
-                let sentence = format!("The {name} moved by {moved:.2} m.");
-                done(OutcomeCode::Done, sentence, Some(shove.object))
-            } else {
-                let mass = self.engine.bodies.get(handle).map_or(0.0, RigidBody::mass);
-                let sentence = format!(
-                    "The {name} ({mass:.1} kg) did not move. Use more force, or clear what holds it."
-                );
-                fail(OutcomeCode::Blocked, sentence, Some(shove.object))
-            };
-            self.notices.push(DelayedOutcome {
-                agent: Some(shove.agent),
-                outcome,
-            });
-        }
+                .map_or(0.0, RigidBody::mass);
+            let sentence = format!(
+                "The {name} ({mass:.1} kg) did not move. Use more force, or clear what holds it."
+            );
+            fail(OutcomeCode::Blocked, sentence, Some(shove.object))
+        };
+        notices.push(DelayedOutcome {
+            agent: Some(shove.agent),
+            outcome,
+        });
     }
 }

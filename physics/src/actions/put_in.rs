@@ -1,15 +1,14 @@
 //! Putting what is held into a container.
 
-use super::clearance::SupportFilter;
-use super::outcome::{OutcomeCode, done, fail};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::target::ResolvedTarget;
-use super::{ActionResult, Actor};
+use super::{ActionContext, ActionResult, Actor};
 use crate::contact::ContactEntity;
 use crate::convert::to_rapier;
+use crate::dynamics::SupportFilter;
 use crate::model::BodyPlan;
-use crate::world::PhysicsWorld;
+use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{Aabb, ObjectId, Pose, Receptacle, ReceptacleKind, State};
 use glam::Vec3;
 use rapier3d::geometry::{Collider, ColliderHandle, Ray};
@@ -37,7 +36,7 @@ struct InsertionSearch {
     in_sight: bool,
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn put_in(
         &mut self,
         state: &mut State,
@@ -46,7 +45,10 @@ impl PhysicsWorld {
     ) -> ActionResult {
         let grip = self.grip_of(actor)?;
         let (object, aim) = self.resolve_object_target(state, actor, container)?;
-        let (held, name) = (self.call(grip.object), self.call(object));
+        let (held, name) = (
+            self.dynamics.name_of(grip.object),
+            self.dynamics.name_of(object),
+        );
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if grip.object == object {
             let sentence = "A thing cannot be put into itself. Choose something else.";
@@ -59,7 +61,7 @@ impl PhysicsWorld {
             );
             return refuse(OutcomeCode::HeldByOther, sentence);
         }
-        let house = self.model().house.clone();
+        let house = self.dynamics.model.house.clone();
         let spaces: Vec<&Receptacle> = house
             .receptacles
             .iter()
@@ -133,8 +135,8 @@ impl PhysicsWorld {
         space: &Receptacle,
         search: &mut InsertionSearch,
     ) {
-        let house = &self.model().house;
-        let plan = &self.model().bodies[body];
+        let house = &self.dynamics.model.house;
+        let plan = &self.dynamics.model.bodies[body];
         let world_from_part = state.part_pose[space.part];
         let inside = space.space_in_part;
         let outer = house.object_bounds(state, space.object);
@@ -164,7 +166,9 @@ impl PhysicsWorld {
                 let x = inside.min.x + share(k % GRID, size.x, room.x);
                 let z = inside.min.z + share(k / GRID, size.z, room.z);
                 let top = world_from_part.transform_point(Vec3::new(x, inside.max.y, z));
-                let levels = self.support_heights(body, SupportFilter::Any, top, room.y + 0.02);
+                let levels =
+                    self.dynamics
+                        .support_heights(body, SupportFilter::Any, top, room.y + 0.02);
                 for height in levels {
                     let foot = top.with_y(height);
                     let middle = foot + Vec3::Y * (0.5 * stance.size().y);
@@ -179,7 +183,7 @@ impl PhysicsWorld {
                     let gets_in = if loose_with_lid {
                         self.gets_in(eye, middle, space.object, &outer, &world_from_part)
                     } else {
-                        self.first_obstacle(eye, middle).is_none()
+                        self.dynamics.first_obstacle(eye, middle).is_none()
                     };
                     if !gets_in || !house.encloses(state, space.object, &outer, &inner) {
                         continue;
@@ -195,7 +199,7 @@ impl PhysicsWorld {
     }
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// Returns whether a hand gets to a point inside a loose thing with a lid or a door, whose walls would otherwise be reached
     /// around: straight out of it on some side nothing of it is in the way, and from there to the eye nothing else.
     fn gets_in(
@@ -206,12 +210,15 @@ impl PhysicsWorld {
         outer: &Aabb,
         world_from_part: &Pose,
     ) -> bool {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let own = |_: ColliderHandle, collider: &Collider| {
-            let part = self.entry_of(collider).toucher;
+            let part = self.dynamics.entry_of(collider).toucher;
             matches!(part, Some(ContactEntity::Part(part)) if house.parts[part].object == container)
         };
-        let queries = self.engine.queries(QueryFilter::default().predicate(&own));
+        let queries = self
+            .dynamics
+            .engine
+            .queries(QueryFilter::default().predicate(&own));
         let beyond = outer.size().length();
         let sides = [
             Vec3::X,
@@ -231,7 +238,7 @@ impl PhysicsWorld {
             outside.is_some_and(|outside| {
                 let ray = Ray::new(inside, outside - inside);
                 queries.cast_ray(&ray, 1.0, true).is_none()
-                    && self.first_obstacle(eye, outside).is_none()
+                    && self.dynamics.first_obstacle(eye, outside).is_none()
             })
         })
     }

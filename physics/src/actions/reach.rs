@@ -1,11 +1,10 @@
 //! Whether a hand reaches a thing and its eye sees it.
 
-use super::Actor;
-use super::outcome::{ActionOutcome, OutcomeCode, fail};
+use super::{ActionContext, Actor};
 use crate::body;
-use crate::contact::{ContactEntity, entry_index};
+use crate::contact::{ColliderEntry, ContactEntity, entry_index};
 use crate::model::PhysicsModel;
-use crate::world::PhysicsWorld;
+use crate::outcome::{ActionOutcome, OutcomeCode, fail};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{Aabb, AgentId, AgentState, ObjectId, State};
 use glam::Vec3;
@@ -19,7 +18,7 @@ const AT_THE_FEET_M: f32 = 0.5;
 /// How far above and below the feet the thing that carries somebody is looked for, m.
 const SOLE_M: f32 = 0.06;
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// The refusal for an object that is out of reach, behind, or hidden.
     pub(super) fn refuse_reach(
         &self,
@@ -28,7 +27,7 @@ impl PhysicsWorld {
         object: ObjectId,
     ) -> Option<ActionOutcome> {
         let agent = &actor.body;
-        let name = self.call(object);
+        let name = self.dynamics.name_of(object);
         let eye = agent.eye_position();
         let (distance, nearest) = self.distance_m(state, object, eye);
         let reach = agent.body.reach_m;
@@ -39,7 +38,7 @@ impl PhysicsWorld {
             return Some(fail(OutcomeCode::TooFar, sentence, Some(object)));
         }
         let forward = dwell_scene::space::forward_from_yaw(agent.yaw_rad);
-        let bounds = self.model().house.object_bounds(state, object);
+        let bounds = self.dynamics.model.house.object_bounds(state, object);
         let level = |p: Vec3| Vec3::new(p.x - eye.x, 0.0, p.z - eye.z);
         let ahead = [level(bounds.center()), level(nearest)]
             .iter()
@@ -65,11 +64,11 @@ impl PhysicsWorld {
     /// Returns how far an object's surface is from a point, m, and its nearest point.
     fn distance_m(&self, state: &State, object: ObjectId, from: Vec3) -> (f32, Vec3) {
         let mut points = Vec::new();
-        let model: &PhysicsModel = self.model();
+        let model: &PhysicsModel = &self.dynamics.model;
         for (index, plan) in model.bodies.iter().enumerate() {
             if plan.object == object {
-                for handle in body::colliders(&self.engine, &self.bodies[index]) {
-                    if let Some(collider) = self.engine.colliders.get(*handle) {
+                for handle in body::colliders(&self.dynamics.engine, &self.dynamics.bodies[index]) {
+                    if let Some(collider) = self.dynamics.engine.colliders.get(*handle) {
                         let found = collider
                             .shape()
                             .project_point(collider.position(), from, true);
@@ -106,7 +105,7 @@ impl PhysicsWorld {
         nearest: Vec3,
     ) -> Result<(), Option<String>> {
         let (agent, rays) = (&actor.body, actor.rays);
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let eye = agent.eye_position();
         let own = house.entity_of_object(object);
         let held = agent.holding.map(|held| house.entity_of_object(held));
@@ -130,8 +129,22 @@ impl PhysicsWorld {
         Err(blocker)
     }
 
+    /// Returns what a person calls something that touches.
+    pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
+        match entry.toucher {
+            Some(ContactEntity::Structure(id)) => {
+                self.surface_name(dwell_scene::SurfaceOwner::Structure(id))
+            }
+            Some(ContactEntity::Part(part)) => self
+                .dynamics
+                .name_of(self.dynamics.model.house.parts[part].object),
+            Some(ContactEntity::Agent(agent)) => format!("body of agent {}", agent.0),
+            None => "ground outside".to_owned(),
+        }
+    }
+
     pub(super) fn surface_name(&self, owner: dwell_scene::SurfaceOwner) -> String {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         match owner {
             dwell_scene::SurfaceOwner::Structure(id) => {
                 let kind = house.structure[id].kind;
@@ -145,15 +158,17 @@ impl PhysicsWorld {
                 }
                 .to_owned()
             }
-            dwell_scene::SurfaceOwner::Part(part) => self.call(house.parts[part].object),
+            dwell_scene::SurfaceOwner::Part(part) => {
+                self.dynamics.name_of(house.parts[part].object)
+            }
         }
     }
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// The objects that people stand on: what carries them, and what carries that.
     pub(super) fn stood_on(&self, state: &State) -> Vec<(AgentId, ObjectId)> {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let mut found = Vec::new();
         for (id, agent) in state.agents.iter_ids() {
             let mut open: Vec<ObjectId> = self.carrier_of(agent).into_iter().collect();
@@ -177,7 +192,7 @@ impl PhysicsWorld {
     ) -> Option<ActionOutcome> {
         let on_it = self.stood_on(state);
         let (who, _) = on_it.into_iter().find(|(_, carrier)| *carrier == object)?;
-        let name = self.call(object);
+        let name = self.dynamics.name_of(object);
         let sentence = if who == agent {
             format!("You stand on the {name}. Step off it first.")
         } else {
@@ -192,9 +207,14 @@ impl PhysicsWorld {
     /// The object right under somebody's feet.
     fn carrier_of(&self, agent: &AgentState) -> Option<ObjectId> {
         let seen = |_: ColliderHandle, collider: &Collider| {
-            self.entries[entry_index(collider)].agent().is_none()
+            self.dynamics.entries[entry_index(collider)]
+                .agent()
+                .is_none()
         };
-        let queries = self.engine.queries(QueryFilter::default().predicate(&seen));
+        let queries = self
+            .dynamics
+            .engine
+            .queries(QueryFilter::default().predicate(&seen));
         let radius = 0.5 * agent.body.radius_m;
         let start = agent.position + Vec3::Y * (radius + SOLE_M);
         let options = ShapeCastOptions {
@@ -206,9 +226,9 @@ impl PhysicsWorld {
         let place = RapierPose::from_translation(start);
         let down = Vec3::NEG_Y * (2.0 * SOLE_M);
         let (handle, _) = queries.cast_shape(&place, down, &Ball::new(radius), options)?;
-        let collider = self.engine.colliders.get(handle)?;
-        match self.entries[entry_index(collider)].toucher {
-            Some(ContactEntity::Part(part)) => Some(self.model().house.parts[part].object),
+        let collider = self.dynamics.engine.colliders.get(handle)?;
+        match self.dynamics.entries[entry_index(collider)].toucher {
+            Some(ContactEntity::Part(part)) => Some(self.dynamics.model.house.parts[part].object),
             _ => None,
         }
     }

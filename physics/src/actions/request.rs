@@ -1,5 +1,6 @@
 //! What an agent's hand can be asked to do.
 
+use crate::hands::Grasp;
 use dwell_scene::{EntityId, ObjectId, PartId};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -41,36 +42,6 @@ impl From<PartId> for Target {
 impl From<EntityId> for Target {
     fn from(id: EntityId) -> Self {
         Self::Entity(id)
-    }
-}
-
-/// How a hand holds a thing. In both ways the thing stays a rigid body that walls and furniture stop.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Grasp {
-    /// It follows the hand within one physics step, as far as the hand's force allows.
-    #[default]
-    Kinematic,
-    /// It hangs on the hand by a spring and damper, with its weight: it sags by g over the square of 2 pi times the
-    /// frequency, lags and swings.
-    Spring {
-        /// Natural frequency, Hz; 0.5 to 20.
-        frequency_hz: f32,
-        /// 1 is critical; 0.05 to 4.
-        damping_ratio: f32,
-    },
-}
-
-impl Grasp {
-    /// Returns whether its numbers are in their ranges.
-    pub fn is_valid(&self) -> bool {
-        match self {
-            Self::Kinematic => true,
-            Self::Spring {
-                frequency_hz,
-                damping_ratio,
-            } => (0.5..=20.0).contains(frequency_hz) && (0.05..=4.0).contains(damping_ratio),
-        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Ways in which a thing can stand, and whether it would stay so.
 
-use super::clearance::{HolderContacts, SupportFilter};
+use super::ActionContext;
+use crate::dynamics::{HolderContacts, SupportFilter};
 use crate::model::BodyPlan;
-use crate::world::PhysicsWorld;
 use glam::{Quat, Vec3};
 use rapier3d::math::Pose as RapierPose;
 use std::f32::consts::{FRAC_PI_2, TAU};
@@ -111,17 +111,22 @@ impl StablePose {
     }
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// The ways in which a body may be put down: upright as the house has it and as the hand turned it, a quarter turned,
     /// then lying on each side. Each once, those that topple by themselves left out.
     pub(super) fn stable_poses(&self, body: usize) -> Vec<StablePose> {
-        let plan = &self.model().bodies[body];
-        let Some(rigid) = self.engine.bodies.get(self.bodies[body].handle) else {
+        let plan = &self.dynamics.model.bodies[body];
+        let Some(rigid) = self
+            .dynamics
+            .engine
+            .bodies
+            .get(self.dynamics.bodies[body].handle)
+        else {
             return Vec::new();
         };
         let now = rigid.position().rotation;
         let com = rigid.mass_properties().local_mprops.local_com;
-        let up_in_body = self.model().house.parts[plan.root()]
+        let up_in_body = self.dynamics.model.house.parts[plan.root()]
             .world_from_part
             .rotation
             .inverse()
@@ -166,13 +171,17 @@ impl PhysicsWorld {
         foot: Vec3,
     ) -> Result<RapierPose, Option<String>> {
         let pose = stance.pose_on(foot);
-        if let Some(blocker) = self.first_overlap(body, &pose, HolderContacts::Counts) {
+        if let Some(blocker) = self
+            .dynamics
+            .first_overlap(body, &pose, HolderContacts::Counts)
+        {
             return Err(Some(self.name_of_entry(blocker)));
         }
         let carried = stance.sole.map(|point| {
             let above = pose.translation + point + Vec3::Y * FEEL_M;
             let bottom = foot.y + (point.y - stance.low.y);
-            self.support_heights(body, SupportFilter::Any, above, 2.0 * FEEL_M)
+            self.dynamics
+                .support_heights(body, SupportFilter::Any, above, 2.0 * FEEL_M)
                 .iter()
                 .any(|height| (height - bottom).abs() <= UNEVEN_M)
         });

@@ -1,12 +1,11 @@
 //! Switching things on and off.
 
-use super::outcome::{OutcomeCode, done, fail};
 use super::request::Target;
-use super::{ActionResult, Actor};
-use crate::world::PhysicsWorld;
+use super::{ActionContext, ActionResult, Actor};
+use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{JointId, State};
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn toggle(
         &mut self,
         state: &mut State,
@@ -14,15 +13,15 @@ impl PhysicsWorld {
         target: &Target,
     ) -> ActionResult {
         let (object, _) = self.resolve_object_target(state, actor, target)?;
-        let name = self.call(object);
-        if self.model().house.objects[object].switch.is_none() {
+        let name = self.dynamics.name_of(object);
+        if self.dynamics.model.house.objects[object].switch.is_none() {
             let sentence = format!("The {name} has no switch. Choose a lamp, radio or television.");
             return Ok(fail(OutcomeCode::NoSwitch, sentence, Some(object)));
         }
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        let house = self.model().house.clone();
+        let house = self.dynamics.model.house.clone();
         let levers: Vec<JointId> = house
             .joints_of(object)
             .filter(|id| house.joints[*id].switches)

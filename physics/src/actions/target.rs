@@ -1,9 +1,8 @@
 //! What a target turns out to be: an object, a piece of the building, or somebody.
 
-use super::Actor;
-use super::outcome::{ActionOutcome, OutcomeCode, fail};
 use super::request::Target;
-use crate::world::PhysicsWorld;
+use super::{ActionContext, Actor};
+use crate::outcome::{ActionOutcome, OutcomeCode, fail};
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{AgentId, Entity, EntityId, Id, ObjectId, PartId, State, SurfaceOwner};
 use glam::Vec3;
@@ -23,7 +22,7 @@ pub(super) struct ResolvedTarget {
     pub(super) point: Option<Vec3>,
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     /// Finds what is meant.
     pub(super) fn resolve_target(
         &self,
@@ -31,7 +30,7 @@ impl PhysicsWorld {
         actor: Actor<'_>,
         target: &Target,
     ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let found = |entity, part, point| {
             Ok(ResolvedTarget {
                 entity,
@@ -132,7 +131,7 @@ impl PhysicsWorld {
         origin: Vec3,
         direction: Vec3,
     ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
-        let house = &self.model().house;
+        let house = &self.dynamics.model.house;
         let direction = direction.normalize_or_zero();
         let ray = Ray::new(origin, direction).between(0.0, FAR_M);
         let held = actor
@@ -181,12 +180,16 @@ impl PhysicsWorld {
             .ids()
             .filter(|id| *id != own)
             .filter_map(|id| {
-                let body = self.engine.bodies.get(self.agents[id.index()].handle)?;
+                let body = self
+                    .dynamics
+                    .engine
+                    .bodies
+                    .get(self.agents.list[id.index()].handle)?;
                 let distance = body
                     .colliders()
                     .iter()
                     .filter_map(|handle| {
-                        let collider = self.engine.colliders.get(*handle)?;
+                        let collider = self.dynamics.engine.colliders.get(*handle)?;
                         let shape = collider.shape();
                         shape.cast_ray(collider.position(), &ray, until_m, true)
                     })

@@ -1,8 +1,7 @@
 //! Throwing.
 
-use super::outcome::{OutcomeCode, done, fail};
-use super::{ActionResult, Actor};
-use crate::world::PhysicsWorld;
+use super::{ActionContext, ActionResult, Actor};
+use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
@@ -19,7 +18,7 @@ fn fastest_m_s(lift_kg: f32, mass_kg: f32, gravity_m_s2: f32) -> f32 {
     (2.0 * work_j / mass_kg.max(1e-6)).sqrt().min(FASTEST_M_S)
 }
 
-impl PhysicsWorld {
+impl ActionContext<'_> {
     pub(super) fn throw(
         &mut self,
         state: &mut State,
@@ -36,22 +35,32 @@ impl PhysicsWorld {
             );
             return Ok(fail(OutcomeCode::BadNumber, sentence, Some(grip.object)));
         }
-        let handle = self.bodies[grip.body as usize].handle;
-        let mass = self.engine.bodies.get(handle).map_or(1.0, RigidBody::mass);
+        let handle = self.dynamics.bodies[grip.body as usize].handle;
+        let mass = self
+            .dynamics
+            .engine
+            .bodies
+            .get(handle)
+            .map_or(1.0, RigidBody::mass);
         // Strength is told in kilograms of standard gravity.
         let gravity = dwell_scene::units::STANDARD_GRAVITY_M_S2;
         let most = fastest_m_s(actor.body.body.lift_kg, mass, gravity);
         let speed = speed_m_s.min(most);
-        if let Some(place) = self.grips.iter().position(|grip| grip.agent == actor.id) {
-            self.ungrip(state, place);
+        if let Some(place) = self
+            .hands
+            .grips
+            .iter()
+            .position(|grip| grip.agent == actor.id)
+        {
+            self.hands.ungrip(self.dynamics, state, place);
         }
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+        if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_linvel(along * speed, true);
             rigid.set_angvel(Vec3::ZERO, true);
         }
-        self.flush();
-        self.write_bodies(state);
-        let name = self.call(grip.object);
+        self.dynamics.flush();
+        self.articulation.write(self.dynamics, state);
+        let name = self.dynamics.name_of(grip.object);
         let limit = if speed < speed_m_s {
             ", as fast as you can"
         } else {

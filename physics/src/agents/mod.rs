@@ -1,7 +1,6 @@
 //! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light things and
 //! carry one.
 
-mod carry;
 mod character_controller;
 mod control;
 mod movement;
@@ -9,20 +8,21 @@ mod resize;
 mod shape_queries;
 mod slope_sliding;
 mod spawn;
+mod wheeled_step;
 
 pub use control::AgentControl;
 pub(crate) use control::STEEPEST_LOOK_RAD;
 
-pub(crate) use carry::{HeldObject, carry, hand_pose, release};
 pub(crate) use character_controller::{
     CharacterController, CharacterPush, FASTEST_FALL_M_S, PassiveVelocity,
 };
-pub(crate) use movement::MovementRecord;
+pub(crate) use movement::{MovementRecord, finish_movement};
 pub(crate) use shape_queries::{AgentCylinder, AgentQueries};
 
 use crate::contact::{ColliderEntry, ContactEntity, ContactProperties};
+use crate::dynamics::{self, Dynamics};
 use crate::engine::RapierWorld;
-use dwell_scene::{AgentBody, AgentId, AgentState};
+use dwell_scene::{AgentBody, AgentId, AgentState, Id};
 use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
@@ -36,6 +36,29 @@ pub(crate) struct Agent {
     pub(crate) entry: u32,
     /// The body that its capsule has, with the height that it has now.
     stands: AgentBody,
+}
+
+/// All agents of a world.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Agents {
+    pub(crate) list: Vec<Agent>,
+    /// What each has of speed that is not its own will. Shape (agent,).
+    pub(crate) passive_velocities: Vec<PassiveVelocity>,
+}
+
+impl Agents {
+    /// Inserts an agent.
+    pub(crate) fn insert(&mut self, dynamics: &mut Dynamics, agent: &AgentState) {
+        let id = AgentId::from_index(self.list.len());
+        let force = dynamics.settings.event_force_n();
+        let values = dynamics
+            .laws
+            .contact_properties(&dynamics.model.house, &dynamics.table);
+        let (engine, entries) = (&mut dynamics.engine, &mut dynamics.entries);
+        let inserted = insert(engine, values, entries, id, agent, force);
+        self.list.push(inserted);
+        self.passive_velocities.push(PassiveVelocity::default());
+    }
 }
 
 /// The capsule of an agent as it stands now, and its centre above the feet, m.
@@ -92,8 +115,7 @@ pub(crate) fn insert(
         .density(0.0)
         .active_events(rapier3d::pipeline::ActiveEvents::CONTACT_FORCE_EVENTS)
         .contact_force_event_threshold(event_force_n);
-    let builder =
-        crate::dynamics::set_contact_properties(builder, values.rule(&entry), true, number);
+    let builder = dynamics::set_contact_properties(builder, values.rule(&entry), true, number);
     engine
         .colliders
         .insert_with_parent(builder, handle, &mut engine.bodies);

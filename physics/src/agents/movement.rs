@@ -1,9 +1,12 @@
 //! All agents' movements in one physics step.
 
-use super::{AgentControl, AgentCylinder, AgentQueries, CharacterController, CharacterPush};
-use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
-use crate::bases::{self, WheelMotion};
-use crate::world::PhysicsWorld;
+use super::wheeled_step;
+use super::{
+    AgentControl, AgentCylinder, AgentQueries, Agents, CharacterController, CharacterPush,
+};
+use crate::bases::WheelMotion;
+use crate::dynamics::Dynamics;
+use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
 use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
 use glam::Vec3;
 
@@ -32,27 +35,29 @@ impl MovementRecord {
     }
 }
 
-impl PhysicsWorld {
+impl Agents {
     /// Moves all agents for one physics step; `first`: the control step's first.
-    pub(crate) fn move_agents(
+    pub(crate) fn advance(
         &mut self,
+        dynamics: &mut Dynamics,
         state: &mut State,
         controls: &[AgentControl],
         ways: &mut [MovementRecord],
         first: bool,
+        notices: &mut Vec<DelayedOutcome>,
     ) {
-        let dt_s = self.settings.dt_s;
+        let dt_s = dynamics.settings.dt_s;
         for (index, way) in ways.iter_mut().enumerate() {
             let id = AgentId::from_index(index);
             let control = controls.get(index).copied().unwrap_or_default();
             let mut agent = state.agents[id];
             control.look(&mut agent, dt_s);
             let laws = |rolling: &mut WheelMotion| {
-                for law in &self.laws.bases {
+                for law in &dynamics.laws.bases {
                     law.roll(id, rolling);
                 }
             };
-            let driven = bases::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
+            let driven = wheeled_step::drive(&mut agent, &way.locomotion, &control, laws, dt_s);
             let motion = match (&driven, way.locomotion) {
                 (Some(motion), _) => {
                     motion.turn(&mut agent);
@@ -62,7 +67,9 @@ impl PhysicsWorld {
                 (None, Locomotion::Walking(gait)) => {
                     way.turned_rad += control.turn(&mut agent, dt_s);
                     if first {
-                        self.set_stance(state, id, &mut agent, &gait, control.crouch);
+                        let crouch = control.crouch;
+                        let told = self.set_stance(dynamics, state, id, &mut agent, &gait, crouch);
+                        notices.extend(told);
                     }
                     stride(&agent, &gait, &control, dt_s)
                 }
@@ -77,7 +84,7 @@ impl PhysicsWorld {
                 continue;
             }
             let (before, flew) = (agent.position, !agent.grounded);
-            let pushes = self.walk(state, id, &mut agent, motion);
+            let pushes = self.walk(dynamics, state, id, &mut agent, motion);
             let length = motion.length();
             if length > 0.0 {
                 let made = (agent.position - before).dot(motion / length);
@@ -97,48 +104,19 @@ impl PhysicsWorld {
             }
             state.agents[id] = agent;
             if agent.position != before
-                && let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle)
+                && let Some(rigid) = dynamics.engine.bodies.get_mut(self.list[index].handle)
             {
                 rigid.set_next_kinematic_translation(agent.position);
             }
             for push in pushes {
-                self.push(&push, agent.body.push_force_n);
+                apply_push(dynamics, &push, agent.body.push_force_n);
             }
-        }
-    }
-
-    /// Returns what surrounds an agent, which has the height it has now.
-    fn probe<'a>(
-        &'a self,
-        agent: &AgentState,
-        id: AgentId,
-        others: &'a [AgentCylinder],
-    ) -> AgentQueries<'a> {
-        self.probe_with(super::current_body(agent), id, others)
-    }
-
-    /// Returns what surrounds an agent with a body as high as it is now.
-    pub(super) fn probe_with<'a>(
-        &'a self,
-        body: AgentBody,
-        id: AgentId,
-        others: &'a [AgentCylinder],
-    ) -> AgentQueries<'a> {
-        AgentQueries {
-            engine: &self.engine,
-            model: &self.model,
-            entries: &self.entries,
-            bodies: &self.bodies,
-            holds: &self.holds,
-            excluded: &self.excluded,
-            others,
-            agent: id,
-            body,
         }
     }
 
     fn walk(
         &mut self,
+        dynamics: &Dynamics,
         state: &State,
         id: AgentId,
         agent: &mut AgentState,
@@ -147,10 +125,10 @@ impl PhysicsWorld {
         let mut passive_velocities = self.passive_velocities[id.index()];
         let others = shells(state, id);
         let mut walk = CharacterController {
-            probe: self.probe(agent, id, &others),
+            probe: probe(dynamics, agent, id, &others),
             pushes: Vec::new(),
-            dt_s: self.settings.dt_s,
-            gravity_m_s2: self.engine.gravity.length(),
+            dt_s: dynamics.settings.dt_s,
+            gravity_m_s2: dynamics.engine.gravity.length(),
         };
         walk.step(agent, &mut passive_velocities, motion);
         let pushes = walk.pushes;
@@ -161,12 +139,13 @@ impl PhysicsWorld {
     /// Crouches, or stands up where there is room.
     fn set_stance(
         &mut self,
+        dynamics: &mut Dynamics,
         state: &State,
         id: AgentId,
         agent: &mut AgentState,
         gait: &LeggedLocomotion,
         crouch: bool,
-    ) {
+    ) -> Option<DelayedOutcome> {
         let body = &agent.body;
         let lowest = gait.crouched_height_m.max(2.0 * body.radius_m);
         let wanted = if crouch {
@@ -175,79 +154,105 @@ impl PhysicsWorld {
             0.0
         };
         if wanted == agent.crouched_by_m {
-            return;
+            return None;
         }
         let up = agent.crouched_by_m - wanted;
         let others = shells(state, id);
-        if up > 0.0
-            && !self
-                .probe(agent, id, &others)
-                .room_above(agent.position, up)
-        {
-            self.notices.push(DelayedOutcome {
+        if up > 0.0 && !probe(dynamics, agent, id, &others).room_above(agent.position, up) {
+            return Some(DelayedOutcome {
                 agent: Some(id),
-                outcome: ActionOutcome::failed(
+                outcome: fail(
                     OutcomeCode::Blocked,
                     "Something is overhead: you cannot stand up here. Move out from under it first.",
                     None,
                 ),
             });
-            return;
         }
         agent.crouched_by_m = wanted;
-        super::reshape(&mut self.engine, &mut self.agents[id.index()], agent);
+        super::reshape(&mut dynamics.engine, &mut self.list[id.index()], agent);
+        None
     }
+}
 
-    /// Pushes a light body, with no more than the agent's force.
-    fn push(&mut self, push: &CharacterPush, force_n: f32) {
-        let body = push.body as usize;
-        let handle = self.bodies[body].handle;
-        let dt_s = self.settings.dt_s;
-        let most = force_n * dt_s;
-        let jointed = self.model.bodies[body].joint.is_some();
-        let Some(rigid) = self.engine.bodies.get(handle) else {
-            return;
+/// Ends a control step: what each agent's movement came to.
+pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[MovementRecord]) {
+    let step_s = dynamics.settings.dt_s * dynamics.settings.steps_per_control as f32;
+    for (index, (agent, way)) in state.agents.iter_mut().zip(ways).enumerate() {
+        agent.velocity = (agent.position - way.start) / step_s;
+        agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
+        let id = AgentId::from_index(index);
+        let rate = way.turned_rad / step_s;
+        // Only bases have gyros that err.
+        agent.gyro_rad_s = match way.locomotion {
+            Locomotion::Walking(_) => rate,
+            _ => dynamics
+                .laws
+                .bases
+                .iter()
+                .fold(rate, |rate, law| law.gyro(id, rate)),
         };
-        // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
-        let mut point = push.point;
-        if !jointed {
-            point.y = rigid.center_of_mass().y;
-        }
-        let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
-        // A leaf on a hinge resists at its edge like a third of its mass.
-        let mass = if jointed {
-            rigid.mass() / 3.0
-        } else {
-            rigid.mass()
-        };
-        let impulse = (speed * mass).min(most);
-        if impulse <= 0.0 {
-            return;
-        }
-        self.engine.wake(handle);
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-            rigid.apply_impulse_at_point(push.direction * impulse, point, false);
-        }
     }
+}
 
-    /// Ends a control step: what each agent's movement came to.
-    pub(crate) fn finish_movement(&self, state: &mut State, ways: &[MovementRecord]) {
-        let step_s = self.settings.dt_s * self.settings.steps_per_control as f32;
-        for (index, (agent, way)) in state.agents.iter_mut().zip(ways).enumerate() {
-            agent.velocity = (agent.position - way.start) / step_s;
-            agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
-            let id = AgentId::from_index(index);
-            let rate = way.turned_rad / step_s;
-            // Only bases have gyros that err.
-            agent.gyro_rad_s = match way.locomotion {
-                Locomotion::Walking(_) => rate,
-                _ => self
-                    .laws
-                    .bases
-                    .iter()
-                    .fold(rate, |rate, law| law.gyro(id, rate)),
-            };
-        }
+/// Returns what surrounds an agent, which has the height it has now.
+fn probe<'a>(
+    dynamics: &'a Dynamics,
+    agent: &AgentState,
+    id: AgentId,
+    others: &'a [AgentCylinder],
+) -> AgentQueries<'a> {
+    probe_with(dynamics, super::current_body(agent), id, others)
+}
+
+/// Returns what surrounds an agent with a body as high as it is now.
+pub(super) fn probe_with<'a>(
+    dynamics: &'a Dynamics,
+    body: AgentBody,
+    id: AgentId,
+    others: &'a [AgentCylinder],
+) -> AgentQueries<'a> {
+    AgentQueries {
+        engine: &dynamics.engine,
+        model: &dynamics.model,
+        entries: &dynamics.entries,
+        bodies: &dynamics.bodies,
+        holds: &dynamics.holds,
+        excluded: &dynamics.excluded,
+        others,
+        agent: id,
+        body,
+    }
+}
+
+/// Pushes a light body, with no more than the agent's force.
+fn apply_push(dynamics: &mut Dynamics, push: &CharacterPush, force_n: f32) {
+    let body = push.body as usize;
+    let handle = dynamics.bodies[body].handle;
+    let dt_s = dynamics.settings.dt_s;
+    let most = force_n * dt_s;
+    let jointed = dynamics.model.bodies[body].joint.is_some();
+    let Some(rigid) = dynamics.engine.bodies.get(handle) else {
+        return;
+    };
+    // A free body is pushed at the height of its centre of mass, so that it slides instead of tipping.
+    let mut point = push.point;
+    if !jointed {
+        point.y = rigid.center_of_mass().y;
+    }
+    let speed = push.speed_m_s - rigid.velocity_at_point(point).dot(push.direction);
+    // A leaf on a hinge resists at its edge like a third of its mass.
+    let mass = if jointed {
+        rigid.mass() / 3.0
+    } else {
+        rigid.mass()
+    };
+    let impulse = (speed * mass).min(most);
+    if impulse <= 0.0 {
+        return;
+    }
+    dynamics.engine.wake(handle);
+    if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
+        rigid.apply_impulse_at_point(push.direction * impulse, point, false);
     }
 }
 

@@ -1,9 +1,9 @@
 //! Agents whose bodies change while the world runs.
 
-use super::movement::shells;
-use super::{Agent, current_body, reshape};
+use super::movement::{probe_with, shells};
+use super::{Agent, Agents, current_body, reshape};
+use crate::dynamics::Dynamics;
 use crate::error::PhysicsError;
-use crate::world::PhysicsWorld;
 use dwell_scene::{AgentBody, AgentState, Id, State};
 
 /// Returns whether two bodies take the same room.
@@ -12,18 +12,22 @@ fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
     room(a) == room(b)
 }
 
-impl PhysicsWorld {
+impl Agents {
     /// Refuses bodies that would stand in something where they did not before. What is light gives way. A body that stood in
     /// something already may change as long as its core stays out of it.
-    pub(crate) fn check_room(&self, state: &State) -> Result<(), PhysicsError> {
-        for ((id, agent), known) in state.agents.iter_ids().zip(&self.agents) {
+    pub(crate) fn check_room(
+        &self,
+        dynamics: &Dynamics,
+        state: &State,
+    ) -> Result<(), PhysicsError> {
+        for ((id, agent), known) in state.agents.iter_ids().zip(&self.list) {
             let (now, was) = (current_body(agent), known.stands);
             agent.body.check()?;
             if same_room(&now, &was) {
                 continue;
             }
             let others = shells(state, id);
-            let [now, was] = [now, was].map(|body| self.probe_with(body, id, &others));
+            let [now, was] = [now, was].map(|body| probe_with(dynamics, body, id, &others));
             let feet = agent.position;
             let cramped = now.is_cylinder_blocked(feet) && !was.is_cylinder_blocked(feet);
             let inside = now.is_inside_something(feet) && !was.is_inside_something(feet);
@@ -44,13 +48,18 @@ impl PhysicsWorld {
     }
 
     /// Gives an agent's capsule the body of the state. Returns whether it was another before.
-    pub(crate) fn take_body(&mut self, index: usize, state: &AgentState) -> bool {
-        let agent: &mut Agent = &mut self.agents[index];
+    pub(crate) fn take_body(
+        &mut self,
+        dynamics: &mut Dynamics,
+        index: usize,
+        state: &AgentState,
+    ) -> bool {
+        let agent: &mut Agent = &mut self.list[index];
         let now = current_body(state);
         let same = same_room(&now, &agent.stands);
         agent.stands = now;
         if !same {
-            reshape(&mut self.engine, agent, state);
+            reshape(&mut dynamics.engine, agent, state);
         }
         !same
     }

@@ -1,9 +1,10 @@
 //! Where agents stand when a world starts.
 
-use super::current_body;
+use super::movement::probe_with;
+use super::{Agents, current_body};
+use crate::dynamics::Dynamics;
 use crate::error::PhysicsError;
 use crate::report::MovedAgent;
-use crate::world::PhysicsWorld;
 use dwell_scene::{AgentBody, AgentId, House, Id, State};
 use glam::{Vec2, Vec3};
 
@@ -22,18 +23,19 @@ struct SpawnSearch {
     next: usize,
 }
 
-impl PhysicsWorld {
+impl Agents {
     /// Puts each agent that would stand in what does not give way, or in an agent before it, at the nearest place on a room's floor
     /// that has room for it; where only agents are in the way and no place is left, they share one. A house without rooms does not say
     /// where its floors are: there agents stay.
     ///
     /// # Errors
     /// [`PhysicsError::Range`] for a body that no room has room for.
-    pub(crate) fn give_agents_room(
-        &mut self,
+    pub(crate) fn give_room(
+        &self,
+        dynamics: &mut Dynamics,
         state: &mut State,
     ) -> Result<Vec<MovedAgent>, PhysicsError> {
-        let house = self.model.house.clone();
+        let house = dynamics.model.house.clone();
         let mut moved = Vec::new();
         let mut search: Option<SpawnSearch> = None;
         for index in 0..state.agents.len() {
@@ -48,12 +50,12 @@ impl PhysicsWorld {
                     beside && (other.position.y - place.y).abs() < height_m
                 })
             };
-            let place = self.place_with_room(&house, (id, body, from), taken, &mut search)?;
+            let place = place_with_room(dynamics, &house, (id, body, from), taken, &mut search)?;
             if place == from {
                 continue;
             }
             state.agents[id].position = place;
-            if let Some(rigid) = self.engine.bodies.get_mut(self.agents[index].handle) {
+            if let Some(rigid) = dynamics.engine.bodies.get_mut(self.list[index].handle) {
                 rigid.set_translation(place, false);
             }
             moved.push(MovedAgent {
@@ -63,58 +65,58 @@ impl PhysicsWorld {
         }
         Ok(moved)
     }
+}
 
-    fn place_with_room(
-        &self,
-        house: &House,
-        (id, body, from): (AgentId, AgentBody, Vec3),
-        taken: impl Fn(Vec3) -> bool,
-        search: &mut Option<SpawnSearch>,
-    ) -> Result<Vec3, PhysicsError> {
-        let probe = self.probe_with(body, id, &[]);
-        let cramped = |place: Vec3| probe.is_cylinder_blocked(place);
-        if house.rooms.is_empty() || (!taken(from) && !cramped(from)) {
-            return Ok(from);
-        }
-        let again = search
-            .take()
-            .filter(|last| (last.body, last.from) == (body, from));
-        let search = search.insert(again.unwrap_or_else(|| {
-            let mut places = floor_places(house);
-            let order = |place: &Vec3| place.distance_squared(from);
-            places.sort_by(|a, b| order(a).total_cmp(&order(b)));
-            SpawnSearch {
-                body,
-                from,
-                places,
-                next: 0,
-            }
-        }));
-        let fits = |place: Vec3| !cramped(place) && probe.is_above_something(place);
-        let left = search.places.iter().skip(search.next).copied();
-        let found = left
-            .enumerate()
-            .find(|(_, place)| !taken(*place) && fits(*place));
-        if let Some((k, place)) = found {
-            search.next += k;
-            return Ok(place);
-        }
-        search.next = search.places.len();
-        if !cramped(from) {
-            return Ok(from);
-        }
-        let mut all = search.places.iter().copied();
-        all.find(|place| fits(*place))
-            .ok_or_else(|| PhysicsError::Range {
-                at: format!("agent {}", id.index()),
-                field: "body",
-                found: format!(
-                    "radius {} m, height {} m, steps of {} m: no room of the house has place for it",
-                    body.radius_m, body.height_m, body.step_height_m
-                ),
-                allowed: "a body that stands in no wall, ceiling or furniture somewhere in the house",
-            })
+fn place_with_room(
+    dynamics: &Dynamics,
+    house: &House,
+    (id, body, from): (AgentId, AgentBody, Vec3),
+    taken: impl Fn(Vec3) -> bool,
+    search: &mut Option<SpawnSearch>,
+) -> Result<Vec3, PhysicsError> {
+    let probe = probe_with(dynamics, body, id, &[]);
+    let cramped = |place: Vec3| probe.is_cylinder_blocked(place);
+    if house.rooms.is_empty() || (!taken(from) && !cramped(from)) {
+        return Ok(from);
     }
+    let again = search
+        .take()
+        .filter(|last| (last.body, last.from) == (body, from));
+    let search = search.insert(again.unwrap_or_else(|| {
+        let mut places = floor_places(house);
+        let order = |place: &Vec3| place.distance_squared(from);
+        places.sort_by(|a, b| order(a).total_cmp(&order(b)));
+        SpawnSearch {
+            body,
+            from,
+            places,
+            next: 0,
+        }
+    }));
+    let fits = |place: Vec3| !cramped(place) && probe.is_above_something(place);
+    let left = search.places.iter().skip(search.next).copied();
+    let found = left
+        .enumerate()
+        .find(|(_, place)| !taken(*place) && fits(*place));
+    if let Some((k, place)) = found {
+        search.next += k;
+        return Ok(place);
+    }
+    search.next = search.places.len();
+    if !cramped(from) {
+        return Ok(from);
+    }
+    let mut all = search.places.iter().copied();
+    all.find(|place| fits(*place))
+        .ok_or_else(|| PhysicsError::Range {
+            at: format!("agent {}", id.index()),
+            field: "body",
+            found: format!(
+                "radius {} m, height {} m, steps of {} m: no room of the house has place for it",
+                body.radius_m, body.height_m, body.step_height_m
+            ),
+            allowed: "a body that stands in no wall, ceiling or furniture somewhere in the house",
+        })
 }
 
 /// Places all over the rooms' floors, m: room by room, triangle by triangle, in rows.

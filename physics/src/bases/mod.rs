@@ -11,10 +11,9 @@ mod base_law;
 mod differential;
 mod holonomic;
 mod planar;
-mod wheeled_step;
 
 pub(crate) use base_law::BaseLaw;
 pub use differential::WheelGeometry;
-pub(crate) use differential::WheelMotion;
+pub(crate) use differential::{WheelCommand, WheelMotion, ramp};
+pub(crate) use holonomic::follow as follow_twist;
 pub use planar::{PlanarPose, PlanarTwist};
-pub(crate) use wheeled_step::drive;

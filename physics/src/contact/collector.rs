@@ -12,7 +12,7 @@ use rapier3d::pipeline::EventHandler;
 use std::sync::{Mutex, PoisonError};
 
 /// What rapier reports of one pair of colliders in one step.
-pub(super) struct ContactReport {
+pub(crate) struct ContactReport {
     pub(super) pair: (ContactEntity, ContactEntity),
     pub(super) classes: (u16, u16),
     /// N·s.
@@ -66,7 +66,7 @@ impl<'a> ContactCollector<'a> {
     }
 
     /// The step's reports in an order that does not depend on rapier's order of pairs.
-    pub(super) fn reports(self) -> Vec<ContactReport> {
+    pub(crate) fn reports(self) -> Vec<ContactReport> {
         let mut reports = self
             .reports
             .into_inner()

@@ -1,7 +1,7 @@
 //! Contacts that go on: blows that take a few steps, and pairs that slide or roll.
 
 use super::body_motion::BodyMotion;
-use super::collector::{ContactCollector, ContactReport};
+use super::collector::ContactReport;
 use super::collider_entry::ContactEntity;
 use super::events::{ContactEvent, ContactKind, ContactPhase};
 use super::substances::ContactTable;
@@ -102,13 +102,12 @@ impl ContactTracker {
     /// impulses, N·s.
     pub(crate) fn settle(
         &mut self,
-        (collector, rebounds): (ContactCollector<'_>, &BTreeMap<ContactPair, f32>),
+        (mut reports, rebounds): (Vec<ContactReport>, &BTreeMap<ContactPair, f32>),
         tick: u64,
         config: &PhysicsConfig,
         table: &ContactTable,
         out: &mut Vec<ContactEvent>,
     ) {
-        let mut reports = collector.reports();
         for group in reports.chunk_by_mut(|a, b| a.pair == b.pair) {
             if let Some(added) = rebounds.get(&group[0].pair) {
                 let impulse: f32 = group.iter().map(|report| report.impulse).sum();

@@ -16,7 +16,7 @@ mod scope;
 mod substances;
 
 pub(crate) use body_motion::{BodyMotion, record_motion};
-pub(crate) use collector::ContactCollector;
+pub(crate) use collector::{ContactCollector, ContactReport};
 pub use collider_entry::ContactEntity;
 pub(crate) use collider_entry::{ColliderEntry, entry_index};
 pub(crate) use contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
@@ -25,6 +25,6 @@ pub(crate) use contact_tracker::ContactTracker;
 pub(crate) use events::bound;
 pub use events::{ContactEvent, ContactKind, ContactPhase, MergedEvents};
 pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties};
-pub(crate) use restitution::RestitutionContext;
+pub(crate) use restitution::{RestitutionContext, RestitutionResult};
 pub(crate) use scope::ContactScope;
 pub(crate) use substances::ContactTable;

@@ -2,11 +2,11 @@
 
 use super::body_law::BodyLaw;
 use crate::bases::BaseLaw;
-use crate::contact::ContactLaw;
+use crate::contact::{ContactLaw, ContactProperties, ContactTable};
 use crate::engine::ContactCompliance;
 use crate::inertia::MassLaw;
 use crate::joints::{LawMemory, LinkLaw, MotorLaw, ResistanceLaw};
-use dwell_scene::{JointId, LawSpec};
+use dwell_scene::{House, JointId, LawSpec};
 use std::sync::Arc;
 
 /// What a law does at one stage.
@@ -76,6 +76,20 @@ impl LawSet {
     /// Returns the words by which the laws were installed, in order.
     pub(crate) fn specs(&self) -> &[LawSpec] {
         &self.specs
+    }
+
+    /// Returns the values of colliders under these laws.
+    pub(crate) fn contact_properties<'a>(
+        &'a self,
+        house: &'a House,
+        table: &'a ContactTable,
+    ) -> ContactProperties<'a> {
+        ContactProperties {
+            house,
+            table,
+            laws: &self.contacts,
+            soft: self.compliance.is_some(),
+        }
     }
 
     /// Notes that a joint was put at `position` (rad or m) from outside.

@@ -1,10 +1,11 @@
 //! Agents that are put somewhere from outside, moving in any way that their bodies can.
 
+use super::PhysicsWorld;
 use crate::agents::{self, FASTEST_FALL_M_S, PassiveVelocity, STEEPEST_LOOK_RAD};
 use crate::bases::{PlanarTwist, WheelGeometry};
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
-use crate::world::PhysicsWorld;
+use crate::hands::hand_pose;
 use dwell_scene::{AgentId, AgentState, BaseState, DifferentialDrive, Id, Locomotion, State, math};
 use glam::Vec3;
 
@@ -259,7 +260,7 @@ impl PhysicsWorld {
             let Some(before) = state.agents.get(id) else {
                 return Err(PhysicsError::UnknownAgent {
                     index: id.index(),
-                    count: self.agents.len(),
+                    count: self.agents.list.len(),
                 });
             };
             let (agent, passive_velocities) = placement.put(before, &state.locomotion(id))?;
@@ -268,38 +269,38 @@ impl PhysicsWorld {
         for (id, agent, passive_velocities) in put {
             let restands = state.agents[id].crouched_by_m != agent.crouched_by_m;
             state.agents[id] = agent;
-            self.passive_velocities[id.index()] = passive_velocities;
-            let own = &mut self.agents[id.index()];
-            if let Some(rigid) = self.engine.bodies.get_mut(own.handle) {
+            self.agents.passive_velocities[id.index()] = passive_velocities;
+            let own = &mut self.agents.list[id.index()];
+            if let Some(rigid) = self.dynamics.engine.bodies.get_mut(own.handle) {
                 rigid.set_translation(agent.position, true);
             }
             if restands {
-                agents::reshape(&mut self.engine, own, &agent);
+                agents::reshape(&mut self.dynamics.engine, own, &agent);
             }
-            if let Some(place) = self.grips.iter().position(|grip| grip.agent == id) {
+            if let Some(place) = self.hands.grips.iter().position(|grip| grip.agent == id) {
                 self.bring_held(state, place, &agent);
             }
         }
-        self.flush();
-        self.write_bodies(state);
+        self.dynamics.flush();
+        self.articulation.write(&self.dynamics, state);
         Ok(())
     }
 
     /// Brings what an agent holds to where its hand is now: as near to the hand as nothing is in the way, never beyond a
     /// wall. Where there is no room at all, the agent lets go of it, and it stays where it was.
     fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
-        let grip = self.grips[place];
+        let grip = self.hands.grips[place];
         let body = grip.body as usize;
-        let hand = to_rapier(&agents::hand_pose(&grip, here));
+        let hand = to_rapier(&hand_pose(&grip, here));
         let mut eye = hand;
-        let middle = self.model.bodies[body].bounds(&hand).center();
+        let middle = self.dynamics.model.bodies[body].bounds(&hand).center();
         eye.translation += here.eye_position() - middle;
-        let clear = self.clear_between(body, here, &eye, &hand);
+        let clear = self.dynamics.clear_between(body, here, &eye, &hand);
         if clear.is_none() {
-            self.ungrip(state, place);
+            self.hands.ungrip(&mut self.dynamics, state, place);
         }
-        let handle = self.bodies[body].handle;
-        if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+        let handle = self.dynamics.bodies[body].handle;
+        if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_position(clear.unwrap_or(*rigid.position()), true);
             rigid.set_linvel(here.velocity, true);
             rigid.set_angvel(Vec3::ZERO, true);

@@ -1,12 +1,11 @@
 //! Changes from outside: agents that come, states that are taken over.
 
-use crate::agents::{self, PassiveVelocity};
+use super::PhysicsWorld;
+use crate::articulation::joint_from_state;
 use crate::body::{self, BodyStatus};
-use crate::contact::ContactProperties;
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
 use crate::joints::{self, JointPlacement};
-use crate::world::{PhysicsWorld, joint_from_state};
 use dwell_scene::{AgentId, AgentState, Id, JointId, State, Velocity};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -38,30 +37,9 @@ impl PhysicsWorld {
             holding: None,
             ..agent
         });
-        self.insert_agent(&agent);
-        self.flush();
+        self.agents.insert(&mut self.dynamics, &agent);
+        self.dynamics.flush();
         Ok(id)
-    }
-
-    pub(crate) fn insert_agent(&mut self, agent: &AgentState) {
-        let id = AgentId::from_index(self.agents.len());
-        let force = self.settings.event_force_n();
-        let values = ContactProperties {
-            house: &self.model.house,
-            table: &self.table,
-            laws: &self.laws.contacts,
-            soft: self.laws.compliance.is_some(),
-        };
-        let inserted = agents::insert(
-            &mut self.engine,
-            values,
-            &mut self.entries,
-            id,
-            agent,
-            force,
-        );
-        self.agents.push(inserted);
-        self.passive_velocities.push(PassiveVelocity::default());
     }
 
     /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
@@ -71,7 +49,7 @@ impl PhysicsWorld {
     /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
     pub fn adopt(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
-        let model = self.model.clone();
+        let model = self.dynamics.model.clone();
         let mut joints = state.joint_position.iter().zip(&state.joint_velocity);
         if let Some(k) = joints.position(|(q, v)| !q.is_finite() || !v.is_finite()) {
             let id = JointId::from_index(k);
@@ -103,21 +81,21 @@ impl PhysicsWorld {
             }
             let pose = to_rapier(&state.part_pose[plan.root()]);
             let velocity = state.part_velocity[plan.root()];
-            let handle = self.bodies[index].handle;
-            let Some(rigid) = self.engine.bodies.get(handle) else {
+            let handle = self.dynamics.bodies[index].handle;
+            let Some(rigid) = self.dynamics.engine.bodies.get(handle) else {
                 continue;
             };
             let moved = *rigid.position() != pose;
             let moving = velocity != Velocity::default();
-            if moved || moving && self.engine.sleeping_cache.has(handle) {
-                self.engine.wake_around(handle);
+            if moved || moving && self.dynamics.engine.sleeping_cache.has(handle) {
+                self.dynamics.engine.wake_around(handle);
             }
-            let Some(rigid) = self.engine.bodies.get_mut(handle) else {
+            let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) else {
                 continue;
             };
             let mut disturbed = moved;
             if moved {
-                self.holds[index] = BodyStatus::Free;
+                self.dynamics.holds[index] = BodyStatus::Free;
                 rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 rigid.set_position(pose, true);
             }
@@ -128,9 +106,9 @@ impl PhysicsWorld {
                 angular: rigid.angvel(),
             };
             if !same_velocity(&there, &velocity, arm) {
-                if self.holds[index] != BodyStatus::Free {
+                if self.dynamics.holds[index] != BodyStatus::Free {
                     // What stands would go through everything with its velocity.
-                    self.holds[index] = BodyStatus::Free;
+                    self.dynamics.holds[index] = BodyStatus::Free;
                     rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 }
                 rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
@@ -142,37 +120,42 @@ impl PhysicsWorld {
                 set.push((plan.root(), velocity));
             }
         }
-        let mut stands = Vec::with_capacity(self.joints.len());
-        for joint in &self.joints {
+        let mut stands = Vec::with_capacity(self.articulation.joints.len());
+        for joint in &self.articulation.joints {
             let articulation = &model.house.joints[joint.id];
             let position = joint.values.clamp(state.joint_position[joint.id]);
             let child = joint.child as usize;
             let shut = joints::stands_shut(joint, articulation, position);
-            let body = self.bodies[child];
-            if self.holds[child] == BodyStatus::Latched && !shut {
-                joints::release(&mut self.engine, &body, &mut self.holds[child]);
+            let body = self.dynamics.bodies[child];
+            if self.dynamics.holds[child] == BodyStatus::Latched && !shut {
+                joints::release(
+                    &mut self.dynamics.engine,
+                    &body,
+                    &mut self.dynamics.holds[child],
+                );
             }
             let stand = JointPlacement {
                 position,
                 velocity: state.joint_velocity[joint.id],
                 anew: false,
-                shut: self.holds[child] == BodyStatus::Latched,
+                shut: self.dynamics.holds[child] == BodyStatus::Latched,
             };
-            let there = joints::read(&self.engine, joint, position.into());
-            let put = !stand.shut && !joints::matches_bodies(&self.engine, joint, &stand, there);
+            let there = joints::read(&self.dynamics.engine, joint, position.into());
+            let put =
+                !stand.shut && !joints::matches_bodies(&self.dynamics.engine, joint, &stand, there);
             if put {
-                self.engine.wake_around(body.handle);
-                self.laws.placed(joint.id, position);
+                self.dynamics.engine.wake_around(body.handle);
+                self.dynamics.laws.placed(joint.id, position);
             }
-            if self.holds[child] == BodyStatus::Frozen && put {
-                self.holds[child] = BodyStatus::Free;
-                if let Some(rigid) = self.engine.bodies.get_mut(body.handle) {
+            if self.dynamics.holds[child] == BodyStatus::Frozen && put {
+                self.dynamics.holds[child] = BodyStatus::Free;
+                if let Some(rigid) = self.dynamics.engine.bodies.get_mut(body.handle) {
                     rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 }
             }
             stands.push(stand);
         }
-        for tree in &self.trees {
+        for tree in &self.articulation.trees {
             if tree
                 .root_body()
                 .is_some_and(|root| disturbed_roots.contains(&root))
@@ -181,14 +164,20 @@ impl PhysicsWorld {
                     stands[*joint].anew = true;
                 }
             }
-            joints::place(&mut self.engine, &self.joints, tree, &stands);
+            joints::place(
+                &mut self.dynamics.engine,
+                &self.articulation.joints,
+                tree,
+                &stands,
+            );
         }
-        self.flush();
-        self.write_bodies(state);
+        self.dynamics.flush();
+        self.articulation.write(&self.dynamics, state);
         for (root, velocity) in set {
             let found = state.part_velocity[root];
-            let body = self.model.body_of_part[root].map(|body| self.bodies[body as usize]);
-            let rigid = body.and_then(|body| self.engine.bodies.get(body.handle));
+            let body = self.dynamics.model.body_of_part[root]
+                .map(|body| self.dynamics.bodies[body as usize]);
+            let rigid = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
             let arm = rigid.map_or(Vec3::ZERO, |rigid| {
                 rigid.center_of_mass() - rigid.position().translation
             });
@@ -197,17 +186,17 @@ impl PhysicsWorld {
             }
         }
         // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
-        for (joint, stand) in self.joints.iter().zip(&stands) {
+        for (joint, stand) in self.articulation.joints.iter().zip(&stands) {
             let read = (
                 state.joint_position[joint.id].into(),
                 state.joint_velocity[joint.id].into(),
             );
-            if !stand.shut && joints::matches_bodies(&self.engine, joint, stand, read) {
+            if !stand.shut && joints::matches_bodies(&self.dynamics.engine, joint, stand, read) {
                 state.joint_position[joint.id] = stand.position;
                 state.joint_velocity[joint.id] = stand.velocity;
             }
         }
-        self.write_contacts(state);
+        self.dynamics.write_contacts(state);
         Ok(())
     }
 
@@ -218,9 +207,12 @@ impl PhysicsWorld {
     /// rounding of their places and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s at 20 m/s,
     /// a few times over), and from what bodies say where they do not.
     pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
-        let place = self.joints.binary_search_by_key(&joint, |other| other.id);
-        let found = &self.joints[place.ok()?];
-        let now = joints::stands(&self.engine, found, joint_from_state(state, joint));
+        let place = self
+            .articulation
+            .joints
+            .binary_search_by_key(&joint, |other| other.id);
+        let found = &self.articulation.joints[place.ok()?];
+        let now = joints::stands(&self.dynamics.engine, found, joint_from_state(state, joint));
         Some((now.position as f32, now.velocity as f32))
     }
 }

@@ -3,26 +3,26 @@
 //! rapier takes such a body out of its world for good, where it last was. Here it is put back there, at rest, and a notice says so:
 //! nothing falls out of a world for the rest of an episode.
 
-use crate::actions::{ActionOutcome, DelayedOutcome, OutcomeCode};
-use crate::world::PhysicsWorld;
+use super::PhysicsWorld;
+use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode};
 
 impl PhysicsWorld {
     /// Puts back what the last step lost. Returns whether there was anything.
     pub(crate) fn recover_non_finite(&mut self) -> bool {
-        let lost = self.engine.take_lost();
+        let lost = self.dynamics.engine.take_lost();
         if lost.is_empty() {
             return false;
         }
         // Without them, so that contacts and warm starts forget them.
-        self.flush();
-        let model = self.model.clone();
+        self.dynamics.flush();
+        let model = self.dynamics.model.clone();
         for handle in lost {
-            self.engine.put_back(handle);
-            let Some(index) = self.body_of(handle) else {
+            self.dynamics.engine.put_back(handle);
+            let Some(index) = self.dynamics.body_of(handle) else {
                 continue;
             };
             let object = model.bodies[index].object;
-            let name = self.call(object);
+            let name = self.dynamics.name_of(object);
             tracing::warn!(object = %model.house.objects[object].name, "the solver lost a body");
             self.notices.push(DelayedOutcome {
                 agent: None,
@@ -63,18 +63,24 @@ mod tests {
         };
         step(&mut world, &mut state);
         let is_free = |(_, body): &(usize, &crate::body::BodyHandle)| {
-            let rigid = world.engine.bodies.get(body.handle);
+            let rigid = world.dynamics.engine.bodies.get(body.handle);
             rigid.is_some_and(rapier3d::dynamics::RigidBody::is_dynamic)
         };
         let (place, body) = world
+            .dynamics
             .bodies
             .iter()
             .enumerate()
             .find(is_free)
             .expect("things are free");
-        let (part, handle) = (world.model.bodies[place].root(), body.handle);
+        let (part, handle) = (world.dynamics.model.bodies[place].root(), body.handle);
         let before = state.part_pose[part];
-        let body = world.engine.bodies.get_mut(handle).expect("it is there");
+        let body = world
+            .dynamics
+            .engine
+            .bodies
+            .get_mut(handle)
+            .expect("it is there");
         body.set_linvel(Vec3::NAN, true);
         step(&mut world, &mut state);
         let told: Vec<_> = world
@@ -87,6 +93,7 @@ mod tests {
         assert!(moved.length() < 0.01, "{moved}");
         assert!(
             world
+                .dynamics
                 .engine
                 .bodies
                 .iter()

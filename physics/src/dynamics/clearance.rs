@@ -1,10 +1,10 @@
 //! What is in a hand's way: between the eye and a place, and at the place itself.
 
+use super::Dynamics;
 use crate::body::BodyStatus;
 use crate::contact::{ColliderEntry, ContactEntity, entry_index};
 use crate::model::shapes;
-use crate::world::PhysicsWorld;
-use dwell_scene::{ObjectId, SurfaceOwner};
+use dwell_scene::{AgentState, ObjectId};
 use glam::Vec3;
 use rapier3d::geometry::{Aabb, Collider, ColliderHandle, Ray};
 use rapier3d::math::Pose as RapierPose;
@@ -16,6 +16,9 @@ const MOST_LEVELS: usize = 24;
 /// How far below a surface the next is looked for, m.
 const THROUGH_M: f32 = 1e-3;
 
+/// Places between the hand and where a thing lies that are tried for it when it is taken.
+const TRIES: u32 = 6;
+
 /// Whether what a body touches by its holder's body counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HolderContacts {
@@ -25,14 +28,14 @@ pub(crate) enum HolderContacts {
 
 /// What a hand can put things on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SupportFilter {
+pub(crate) enum SupportFilter {
     Object(ObjectId),
     Structure,
     Any,
 }
 
-impl PhysicsWorld {
-    pub(super) fn entry_of(&self, collider: &Collider) -> &ColliderEntry {
+impl Dynamics {
+    pub(crate) fn entry_of(&self, collider: &Collider) -> &ColliderEntry {
         &self.entries[entry_index(collider)]
     }
 
@@ -44,8 +47,7 @@ impl PhysicsWorld {
             entry.agent().is_none()
                 && entry.body.is_none_or(|body| {
                     let body = body as usize;
-                    self.holds[body] != BodyStatus::Free
-                        || self.model().bodies[body].joint.is_some()
+                    self.holds[body] != BodyStatus::Free || self.model.bodies[body].joint.is_some()
                 })
         };
         let way = point - eye;
@@ -58,7 +60,7 @@ impl PhysicsWorld {
     }
 
     /// The first thing that a body would overlap under a pose.
-    pub(super) fn first_overlap(
+    pub(crate) fn first_overlap(
         &self,
         body: usize,
         place: &RapierPose,
@@ -74,7 +76,7 @@ impl PhysicsWorld {
                         self.excluded.carriers.binary_search(&pair).is_ok()
                     }))
         };
-        self.model().bodies[body].pieces.iter().find_map(|piece| {
+        self.model.bodies[body].pieces.iter().find_map(|piece| {
             let at = *place * piece.place;
             let bounds = shapes::bounds(&piece.shape, &at);
             let aabb = Aabb::new(bounds.min, bounds.max);
@@ -103,7 +105,7 @@ impl PhysicsWorld {
 
     /// The heights of all level surfaces of `ground` under a point, at most `down_m` below it, from the highest, m.
     /// `body` and people are looked through.
-    pub(super) fn support_heights(
+    pub(crate) fn support_heights(
         &self,
         body: usize,
         ground: SupportFilter,
@@ -132,7 +134,7 @@ impl PhysicsWorld {
                 .and_then(|collider| self.entry_of(collider).toucher);
             let owner = match owner {
                 Some(ContactEntity::Part(part)) => {
-                    SupportFilter::Object(self.model().house.parts[part].object)
+                    SupportFilter::Object(self.model.house.parts[part].object)
                 }
                 Some(ContactEntity::Structure(_)) => SupportFilter::Structure,
                 _ => continue,
@@ -145,13 +147,23 @@ impl PhysicsWorld {
         levels
     }
 
-    /// Returns what a person calls something that touches.
-    pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
-        match entry.toucher {
-            Some(ContactEntity::Structure(id)) => self.surface_name(SurfaceOwner::Structure(id)),
-            Some(ContactEntity::Part(part)) => self.call(self.model().house.parts[part].object),
-            Some(ContactEntity::Agent(agent)) => format!("body of agent {}", agent.0),
-            None => "ground outside".to_owned(),
-        }
+    /// The first place on the straight way from `to` back to `from` where a body overlaps nothing solid and is not
+    /// beyond a wall, seen from its holder's eye.
+    pub(crate) fn clear_between(
+        &self,
+        body: usize,
+        holder: &AgentState,
+        from: &RapierPose,
+        to: &RapierPose,
+    ) -> Option<RapierPose> {
+        let eye = holder.eye_position();
+        (0..TRIES).find_map(|k| {
+            let share = k as f32 / TRIES as f32;
+            let mut place = *to;
+            place.translation = to.translation.lerp(from.translation, share);
+            let middle = self.model.bodies[body].bounds(&place).center();
+            let open = self.first_obstacle(eye, middle).is_none();
+            (open && self.is_clear(body, &place)).then_some(place)
+        })
     }
 }

@@ -5,8 +5,9 @@
 //! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
 //! that a world built this way is the same, bit for bit.
 
+use super::PhysicsWorld;
 use crate::actions::OngoingPush;
-use crate::agents::{self, HeldObject, PassiveVelocity};
+use crate::agents::{self, PassiveVelocity};
 use crate::body::BodyStatus;
 use crate::body::pose_of;
 use crate::config::PhysicsConfig;
@@ -18,10 +19,10 @@ use crate::contact::{
 use crate::dynamics::{AssembledWorld, BodyMasses, assemble};
 use crate::engine::{RapierWorld, SleepingIslandCache};
 use crate::error::PhysicsError;
+use crate::hands::HeldObject;
 use crate::joints::{self, HandDrives, JointActuation};
 use crate::laws::{self, LawSet};
 use crate::limits::Crowding;
-use crate::world::PhysicsWorld;
 use dwell_scene::columnar;
 use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentId, Id, State};
@@ -106,7 +107,7 @@ impl PhysicsWorld {
     /// Returns what a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder; a
     /// heap in motion may pass it.
     pub fn largest_snapshot(&self) -> usize {
-        (256 + 2 * self.bodies.len()) * 1024
+        (256 + 2 * self.dynamics.bodies.len()) * 1024
     }
 
     /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within
@@ -121,24 +122,24 @@ impl PhysicsWorld {
     fn shot(&self) -> SnapshotData<'_> {
         SnapshotData {
             memory: WorldMemory {
-                tick: self.tick,
-                holds: self.holds.clone(),
-                passive_velocities: self.passive_velocities.clone(),
-                excluded: self.excluded.clone(),
-                grips: self.grips.clone(),
-                released_overlapping: self.released_overlapping.clone(),
-                drives: self.drives.clone(),
-                ongoing_pushes: self.ongoing_pushes.clone(),
-                pulls: self.pulls.clone(),
-                contact_tracker: self.contact_tracker.clone(),
-                sleeping_cache: self.engine.sleeping_cache.clone(),
-                laws: self.laws.memory(),
+                tick: self.dynamics.tick,
+                holds: self.dynamics.holds.clone(),
+                passive_velocities: self.agents.passive_velocities.clone(),
+                excluded: self.dynamics.excluded.clone(),
+                grips: self.hands.grips.clone(),
+                released_overlapping: self.hands.released_overlapping.clone(),
+                drives: self.articulation.drives.clone(),
+                ongoing_pushes: self.pushes.clone(),
+                pulls: self.articulation.pulls.clone(),
+                contact_tracker: self.contacts.tracker.clone(),
+                sleeping_cache: self.dynamics.engine.sleeping_cache.clone(),
+                laws: self.dynamics.laws.memory(),
             },
-            islands: CowField(Cow::Borrowed(&self.engine.islands)),
-            broad_phase: CowField(Cow::Borrowed(&self.engine.broad_phase)),
-            narrow_phase: CowField(Cow::Borrowed(&self.engine.narrow_phase)),
-            bodies: CowField(Cow::Borrowed(&self.engine.bodies)),
-            joints: CowField(Cow::Borrowed(&self.engine.joints)),
+            islands: CowField(Cow::Borrowed(&self.dynamics.engine.islands)),
+            broad_phase: CowField(Cow::Borrowed(&self.dynamics.engine.broad_phase)),
+            narrow_phase: CowField(Cow::Borrowed(&self.dynamics.engine.narrow_phase)),
+            bodies: CowField(Cow::Borrowed(&self.dynamics.engine.bodies)),
+            joints: CowField(Cow::Borrowed(&self.dynamics.engine.joints)),
         }
     }
 
@@ -162,8 +163,8 @@ impl PhysicsWorld {
         let mut bytes = Vec::with_capacity(HEADER + body.len());
         bytes.extend_from_slice(magic);
         bytes.extend_from_slice(&VERSION.to_le_bytes());
-        bytes.extend_from_slice(&self.model.house.fingerprint().to_le_bytes());
-        bytes.extend_from_slice(&config_hash(&self.settings.config).to_le_bytes());
+        bytes.extend_from_slice(&self.dynamics.model.house.fingerprint().to_le_bytes());
+        bytes.extend_from_slice(&config_hash(&self.dynamics.settings.config).to_le_bytes());
         bytes.extend_from_slice(&xxh3_64(body).to_le_bytes());
         bytes.extend_from_slice(body);
         bytes
@@ -181,19 +182,19 @@ impl PhysicsWorld {
             .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
         let memory = shot.memory;
         let bodies = shot.bodies.0.into_owned();
-        let foreign = memory.holds.len() != self.bodies.len()
-            || memory.pulls.len() != self.joints.len()
+        let foreign = memory.holds.len() != self.dynamics.bodies.len()
+            || memory.pulls.len() != self.articulation.joints.len()
             || memory.passive_velocities.len() != state.agents.len();
         if foreign {
             return refuse(format!(
                 "it has {} bodies and {} agents; the world has {} and the state {}",
                 memory.holds.len(),
                 memory.passive_velocities.len(),
-                self.bodies.len(),
+                self.dynamics.bodies.len(),
                 state.agents.len()
             ));
         }
-        let model = self.model.clone();
+        let model = self.dynamics.model.clone();
         let mut laws = laws::install(&model, state, &LawSet::default())?;
         if laws.specs().len() != memory.laws.len() {
             return refuse("it was taken with other laws than the state has");
@@ -204,24 +205,19 @@ impl PhysicsWorld {
         // The same overrides and laws give the same values.
         let same = state.overrides == self.applied;
         let table = if same {
-            self.table.clone()
+            self.dynamics.table.clone()
         } else {
             ContactTable::new(&model.house, state)
         };
-        let weights = if same && laws.specs() == self.laws.specs() {
-            self.weights.clone()
+        let weights = if same && laws.specs() == self.dynamics.laws.specs() {
+            self.dynamics.weights.clone()
         } else {
             BodyMasses::new(&model, state, &laws)
         };
-        let values = ContactProperties {
-            house: &model.house,
-            table: &table,
-            laws: &laws.contacts,
-            soft: laws.compliance.is_some(),
-        };
+        let values = laws.contact_properties(&model.house, &table);
         // Bodies stand at the places of the snapshot for the moment in which colliders are built.
         let place = |index: usize| {
-            let handle = self.bodies[index].handle;
+            let handle = self.dynamics.bodies[index].handle;
             let place = bodies
                 .get(handle)
                 .map_or(RapierPose::IDENTITY, |rigid| *rigid.position());
@@ -231,7 +227,7 @@ impl PhysicsWorld {
         let sizes = (gravity, state.agents.len(), Crowding::Few);
         let mut built = assemble(
             &model,
-            &self.settings,
+            &self.dynamics.settings,
             values,
             laws.compliance,
             sizes,
@@ -240,7 +236,7 @@ impl PhysicsWorld {
         );
         let mut agents = Vec::with_capacity(state.agents.len());
         for (id, agent) in state.agents.iter_ids() {
-            let force = self.settings.event_force_n();
+            let force = self.dynamics.settings.event_force_n();
             let (engine, entries) = (&mut built.engine, &mut built.entries);
             agents.push(agents::insert(engine, values, entries, id, agent, force));
         }
@@ -253,8 +249,8 @@ impl PhysicsWorld {
             entries,
             ..
         } = built;
-        let mut engine = RapierWorld::new(&self.settings, gravity);
-        engine.soften(&self.settings, laws.compliance);
+        let mut engine = RapierWorld::new(&self.dynamics.settings, gravity);
+        engine.soften(&self.dynamics.settings, laws.compliance);
         engine.islands = shot.islands.0.into_owned();
         engine.broad_phase = shot.broad_phase.0.into_owned();
         engine.narrow_phase = shot.narrow_phase.0.into_owned();
@@ -262,7 +258,7 @@ impl PhysicsWorld {
         engine.sleeping_cache = memory.sleeping_cache;
         engine.joints = shot.joints.0.into_owned();
         engine.colliders = scaffold.colliders;
-        for (plan, body) in model.bodies.iter().zip(&self.bodies) {
+        for (plan, body) in model.bodies.iter().zip(&self.dynamics.bodies) {
             if pose_of(&engine, body) != Some(state.part_pose[plan.root()]) {
                 return refuse(
                     "the state is of another moment: restore the state that was saved with it first",
@@ -282,27 +278,27 @@ impl PhysicsWorld {
         {
             return refuse("an agent that does not exist holds something");
         }
-        self.engine = engine;
-        self.entries = entries;
-        self.table = table;
-        self.weights = weights;
+        self.dynamics.engine = engine;
+        self.dynamics.entries = entries;
+        self.dynamics.table = table;
+        self.dynamics.weights = weights;
         self.applied.clone_from(&state.overrides);
-        self.agents = agents;
-        self.laws = laws;
-        self.tick = memory.tick;
-        self.holds = memory.holds;
-        self.passive_velocities = memory.passive_velocities;
-        self.excluded = memory.excluded;
-        self.grips = memory.grips;
-        self.released_overlapping = memory.released_overlapping;
-        self.drives = memory.drives;
-        self.ongoing_pushes = memory.ongoing_pushes;
-        self.pulls = memory.pulls;
-        for joint in &mut self.joints {
-            joints::set_values(&mut self.engine, &model, joint, state);
+        self.agents.list = agents;
+        self.dynamics.laws = laws;
+        self.dynamics.tick = memory.tick;
+        self.dynamics.holds = memory.holds;
+        self.agents.passive_velocities = memory.passive_velocities;
+        self.dynamics.excluded = memory.excluded;
+        self.hands.grips = memory.grips;
+        self.hands.released_overlapping = memory.released_overlapping;
+        self.articulation.drives = memory.drives;
+        self.pushes = memory.ongoing_pushes;
+        self.articulation.pulls = memory.pulls;
+        for joint in &mut self.articulation.joints {
+            joints::set_values(&mut self.dynamics.engine, &model, joint, state);
         }
-        self.contact_tracker = memory.contact_tracker;
-        self.merged_events = MergedEvents::default();
+        self.contacts.tracker = memory.contact_tracker;
+        self.contacts.merged = MergedEvents::default();
         self.notices.clear();
         Ok(())
     }
@@ -320,13 +316,13 @@ impl PhysicsWorld {
         if version != VERSION {
             return refuse(format!("version {version}; this build reads {VERSION}"));
         }
-        if word(8) != self.model.house.fingerprint() {
+        if word(8) != self.dynamics.model.house.fingerprint() {
             return refuse(format!(
                 "it belongs to another house than {:?}",
-                self.model.house.name
+                self.dynamics.model.house.name
             ));
         }
-        if word(16) != config_hash(&self.settings.config) {
+        if word(16) != config_hash(&self.dynamics.settings.config) {
             return refuse("it was taken with other settings");
         }
         let body = &bytes[HEADER..];

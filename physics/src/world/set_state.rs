@@ -1,9 +1,9 @@
 //! Bodies and joints that are put somewhere from outside, moving in any way.
 
+use super::PhysicsWorld;
 use crate::body::BodyStatus;
 use crate::convert::{from_rapier, to_rapier};
 use crate::error::PhysicsError;
-use crate::world::PhysicsWorld;
 use dwell_scene::{Id, JointId, JointKind, PartId, Pose, State, Velocity};
 
 /// The fastest that anything is set to, m/s and rad/s: a turn within a solver substep at the default rates, beyond which
@@ -100,18 +100,20 @@ impl PhysicsWorld {
         }
         self.adopt(state)?;
         for set in joints {
-            self.laws.placed(set.joint, state.joint_position[set.joint]);
+            self.dynamics
+                .laws
+                .placed(set.joint, state.joint_position[set.joint]);
         }
         let children = joints
             .iter()
-            .map(|set| self.model.house.joints[set.joint].child);
+            .map(|set| self.dynamics.model.house.joints[set.joint].child);
         self.wake_tree_bodies(children.collect::<Vec<_>>().into_iter());
         Ok(())
     }
 
     /// The position within the limits.
     fn check_joint(&self, state: &State, set: &JointState) -> Result<f32, PhysicsError> {
-        let house = &self.model.house;
+        let house = &self.dynamics.model.house;
         let Some(joint) = house.joints.get(set.joint) else {
             return Err(PhysicsError::Unmovable {
                 what: format!("joint {}", set.joint.0),
@@ -152,7 +154,7 @@ impl PhysicsWorld {
 
     /// Returns what is said of a part as what its body's first part does.
     fn root_state(&self, body: &BodyState) -> Result<(PartId, Pose, Velocity), PhysicsError> {
-        let house = &self.model.house;
+        let house = &self.dynamics.model.house;
         let Some(part) = house.parts.get(body.part) else {
             return Err(PhysicsError::Unmovable {
                 what: format!("part {}", body.part.0),
@@ -164,22 +166,22 @@ impl PhysicsWorld {
             what: format!("{name:?} (part {:?})", part.name),
             why,
         };
-        let Some(index) = self.model.body_of_part[body.part] else {
+        let Some(index) = self.dynamics.model.body_of_part[body.part] else {
             return Err(unmovable("it is fixed".to_owned()));
         };
-        let plan = &self.model.bodies[index as usize];
+        let plan = &self.dynamics.model.bodies[index as usize];
         if let Some(joint) = plan.joint {
             let joint = &house.joints[joint].name;
             return Err(unmovable(format!(
                 "the joint {joint:?} moves it; set that one"
             )));
         }
-        if self.holds[index as usize] == BodyStatus::Frozen {
+        if self.dynamics.holds[index as usize] == BodyStatus::Frozen {
             return Err(unmovable(
                 "it overlapped something at the start and stands for good".to_owned(),
             ));
         }
-        if let Some(grip) = self.grips.iter().find(|grip| grip.body == index) {
+        if let Some(grip) = self.hands.grips.iter().find(|grip| grip.body == index) {
             let holder = grip.agent.index();
             return Err(unmovable(format!("agent {holder} holds it; drop it first")));
         }
@@ -217,18 +219,22 @@ impl PhysicsWorld {
 
     fn wake_tree_bodies(&mut self, parts: impl Iterator<Item = PartId>) {
         for part in parts {
-            if let Some(body) = self.model.body_of_part[part] {
-                let handle = self.bodies[body as usize].handle;
-                self.engine.wake(handle);
+            if let Some(body) = self.dynamics.model.body_of_part[part] {
+                let handle = self.dynamics.bodies[body as usize].handle;
+                self.dynamics.engine.wake(handle);
             }
         }
     }
 
     /// Returns how a free body moves as physics itself has it, by one of its parts; `None` for what does not move.
     pub fn measure_body(&self, part: PartId) -> Option<BodyState> {
-        let index = (*self.model.body_of_part.get(part)?)? as usize;
-        let rigid = self.engine.bodies.get(self.bodies[index].handle)?;
-        let place = self.model.bodies[index].parts.iter();
+        let index = (*self.dynamics.model.body_of_part.get(part)?)? as usize;
+        let rigid = self
+            .dynamics
+            .engine
+            .bodies
+            .get(self.dynamics.bodies[index].handle)?;
+        let place = self.dynamics.model.bodies[index].parts.iter();
         let (_, body_from_part) = place.clone().find(|(id, _)| *id == part)?;
         let pose = from_rapier(&(*rigid.position() * to_rapier(body_from_part)));
         Some(BodyState {

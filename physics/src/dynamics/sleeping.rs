@@ -1,21 +1,22 @@
 //! What fell asleep is laid aside.
 
+use super::Dynamics;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::contact::touching;
-use crate::world::PhysicsWorld;
 use dwell_scene::{Contact, State, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// Physics steps between two looks for what fell asleep: a quarter of a second at the default rate.
 const TICKS_BETWEEN_LOOKS: u64 = 32;
-impl PhysicsWorld {
-    /// Now and then lays aside what has fallen asleep since. `joints_before`: the tick at which the control step began.
-    pub(crate) fn cache_sleeping(&mut self, joints_before: u64) {
-        if joints_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
+impl Dynamics {
+    /// Now and then lays aside what has fallen asleep since. `tick_before`: the tick at which the control step began;
+    /// `is_handled`: whether hands have to do with a body.
+    pub(crate) fn cache_sleeping(&mut self, tick_before: u64, is_handled: impl Fn(usize) -> bool) {
+        if tick_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
             return;
         }
         let mut asleep: Vec<RigidBodyHandle> = (0..self.bodies.len())
-            .filter(|index| self.is_cacheable(*index))
+            .filter(|index| self.is_cacheable(*index) && !is_handled(*index))
             .map(|index| self.bodies[index].handle)
             .collect();
         self.engine.keep_touching_free_bodies(&mut asleep);
@@ -86,16 +87,10 @@ impl PhysicsWorld {
         contacts.dedup_by_key(|contact| (contact.a, contact.b));
     }
 
-    /// Returns whether a body sleeps and has nothing to do with hands.
+    /// Returns whether a body that moves freely sleeps.
     fn is_cacheable(&self, index: usize) -> bool {
-        let handle = self.bodies[index].handle;
-        let rigid = self.engine.bodies.get(handle);
+        let rigid = self.engine.bodies.get(self.bodies[index].handle);
         self.holds[index] == BodyStatus::Free
             && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
-            && self.grips.iter().all(|grip| grip.body as usize != index)
-            && self
-                .released_overlapping
-                .iter()
-                .all(|(body, _)| *body as usize != index)
     }
 }

@@ -1,9 +1,9 @@
 //! One physics step of an agent on wheels.
 
-use super::differential::{WheelCommand, WheelGeometry, WheelMotion, ramp};
-use super::holonomic;
-use super::{PlanarPose, PlanarTwist};
-use crate::agents::AgentControl;
+use super::AgentControl;
+use crate::bases::{
+    PlanarPose, PlanarTwist, WheelCommand, WheelGeometry, WheelMotion, follow_twist, ramp,
+};
 use dwell_scene::{AgentState, DifferentialDrive, Locomotion, math};
 use glam::Vec3;
 
@@ -51,7 +51,7 @@ pub(crate) fn drive(
                 left_m_s,
                 yaw_rate_rad_s,
             };
-            let (end, mean) = holonomic::follow(truth, now, wanted, seconds);
+            let (end, mean) = follow_twist(truth, now, wanted, seconds);
             agent.base.twist = narrow(&end);
             (mean, mean)
         }

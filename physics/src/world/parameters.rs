@@ -1,13 +1,13 @@
 //! Parameters that change while a world runs.
 
-use crate::agents::HeldObject;
+use super::PhysicsWorld;
 use crate::body::BodyStatus;
 use crate::contact::{ContactProperties, ContactTable};
 use crate::dynamics::{self, BodyMasses};
 use crate::error::PhysicsError;
+use crate::hands::HeldObject;
 use crate::joints::{self, JointPlacement};
 use crate::laws;
-use crate::world::PhysicsWorld;
 use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
@@ -24,21 +24,16 @@ impl PhysicsWorld {
     /// agent's body that has no room where the agent stands; nothing has changed then.
     pub fn apply_parameters(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
-        let laws = laws::install(&self.model, state, &self.laws)?;
-        self.check_room(state)?;
-        let model = self.model.clone();
+        let laws = laws::install(&self.dynamics.model, state, &self.dynamics.laws)?;
+        self.agents.check_room(&self.dynamics, state)?;
+        let model = self.dynamics.model.clone();
         let table = ContactTable::new(&model.house, state);
         let weights = BodyMasses::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
         // What changes shapes, masses or joints is taken over by a step of no length, which looks at all contacts anew; what only
         // changes how things act from the next step on is not, so that a number set and set back leaves no trace.
-        let mut changed = weights != self.weights || table.differs(&self.table);
-        let values = ContactProperties {
-            house: &model.house,
-            table: &table,
-            laws: &laws.contacts,
-            soft: laws.compliance.is_some(),
-        };
+        let mut changed = weights != self.dynamics.weights || table.differs(&self.dynamics.table);
+        let values = laws.contact_properties(&model.house, &table);
         let (mut longer, mut shifted) = (false, Vec::new());
         let statics = model.statics.iter().map(|piece| (piece, None));
         let moving = model
@@ -48,7 +43,7 @@ impl PhysicsWorld {
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
         // Entries stand in the order of insertion: statics, bodies, agents.
         for (index, (piece, body)) in statics.chain(moving).enumerate() {
-            self.entries[index].surface = table.surface(&piece.cover);
+            self.dynamics.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
                 let factor = model.bodies[body].factor_of(piece, &weights.factors[body]);
                 dynamics::density(piece, factor, weights.altered[body].as_ref())
@@ -56,35 +51,42 @@ impl PhysicsWorld {
             changed |= self.redress(index, values, density);
         }
         for (index, inertia) in weights.altered.iter().enumerate() {
-            if *inertia == self.weights.altered[index] {
+            if *inertia == self.dynamics.weights.altered[index] {
                 // Other shares of the parts in the mass move its centre.
                 let uneven = |factors: &[f32]| factors.iter().any(|factor| *factor != factors[0]);
-                let (new, old) = (&weights.factors[index], &self.weights.factors[index]);
+                let (new, old) = (
+                    &weights.factors[index],
+                    &self.dynamics.weights.factors[index],
+                );
                 if new != old && (uneven(new) || uneven(old)) {
                     shifted.push(index);
                 }
                 continue;
             }
             let properties = inertia.map_or_else(MassProperties::default, |i| i.properties());
-            let handle = self.bodies[index].handle;
+            let handle = self.dynamics.bodies[index].handle;
             let held = |grip: &HeldObject| grip.body as usize == index && grip.is_firm();
-            let held = self.grips.iter().any(held);
-            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
+            let held = self.hands.grips.iter().any(held);
+            if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
                 rigid.set_additional_mass_properties(properties, false);
                 let scale = inertia.map_or(1.0, |i| i.gravity_scale);
                 rigid.set_gravity_scale(if held { 0.0 } else { scale }, false);
                 shifted.push(index);
             }
         }
-        for agent in 0..self.agents.len() {
-            let entry = self.agents[agent].entry as usize;
-            self.entries[entry].surface = table.human();
+        for agent in 0..self.agents.list.len() {
+            let entry = self.agents.list[agent].entry as usize;
+            self.dynamics.entries[entry].surface = table.human();
             changed |= self.redress(entry, values, None);
-            changed |= self.take_body(agent, &state.agents[AgentId::from_index(agent)]);
+            changed |= self.agents.take_body(
+                &mut self.dynamics,
+                agent,
+                &state.agents[AgentId::from_index(agent)],
+            );
         }
-        for joint in &mut self.joints {
+        for joint in &mut self.articulation.joints {
             let before = (joint.values.parent_from_joint, joint.values.axis);
-            changed |= joints::set_values(&mut self.engine, &model, joint, state);
+            changed |= joints::set_values(&mut self.dynamics.engine, &model, joint, state);
             longer |= (joint.values.parent_from_joint, joint.values.axis) != before;
             let position = state.joint_position[joint.id];
             let within = joint.values.clamp(position);
@@ -93,26 +95,29 @@ impl PhysicsWorld {
                 state.joint_velocity[joint.id] = 0.0;
                 let child = joint.child as usize;
                 joints::release(
-                    &mut self.engine,
-                    &self.bodies[child],
-                    &mut self.holds[child],
+                    &mut self.dynamics.engine,
+                    &self.dynamics.bodies[child],
+                    &mut self.dynamics.holds[child],
                 );
                 longer = true;
             }
         }
         longer |= self.preserve_part_motion(state, &shifted);
-        let acts_anew = gravity != self.engine.gravity || laws.specs() != self.laws.specs();
-        self.engine.gravity = gravity;
-        self.engine.soften(&self.settings, laws.compliance);
-        self.table = table;
-        self.weights = weights;
+        let acts_anew =
+            gravity != self.dynamics.engine.gravity || laws.specs() != self.dynamics.laws.specs();
+        self.dynamics.engine.gravity = gravity;
+        self.dynamics
+            .engine
+            .soften(&self.dynamics.settings, laws.compliance);
+        self.dynamics.table = table;
+        self.dynamics.weights = weights;
         self.applied.clone_from(&state.overrides);
-        self.laws = laws;
+        self.dynamics.laws = laws;
         if changed || longer || acts_anew {
-            self.engine.wake_cached();
+            self.dynamics.engine.wake_cached();
         }
         if changed {
-            self.flush();
+            self.dynamics.flush();
         }
         // Only now, that contacts are looked at under the new laws.
         if longer {
@@ -126,11 +131,11 @@ impl PhysicsWorld {
 
     /// Wakes what sleeps; with `all`, what is about to sleep waits anew too.
     fn wake_sleepers(&mut self, all: bool) {
-        for body in &self.bodies {
-            let rigid = self.engine.bodies.get(body.handle);
+        for body in &self.dynamics.bodies {
+            let rigid = self.dynamics.engine.bodies.get(body.handle);
             // rapier sorts its islands anew when it wakes what is awake, and solves in another order.
             if all || rigid.is_some_and(RigidBody::is_sleeping) {
-                self.engine.wake(body.handle);
+                self.dynamics.engine.wake(body.handle);
             }
         }
     }
@@ -139,20 +144,20 @@ impl PhysicsWorld {
     fn preserve_part_motion(&mut self, state: &State, shifted: &[usize]) -> bool {
         let mut on_joints = false;
         for index in shifted {
-            let plan = &self.model.bodies[*index];
+            let plan = &self.dynamics.model.bodies[*index];
             on_joints |= plan.joint.is_some();
-            let handle = self.bodies[*index].handle;
-            if let Some(rigid) = self.engine.bodies.get_mut(handle) {
-                rigid.recompute_mass_properties_from_colliders(&self.engine.colliders);
+            let handle = self.dynamics.bodies[*index].handle;
+            if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
+                rigid.recompute_mass_properties_from_colliders(&self.dynamics.engine.colliders);
                 for collider in rigid.colliders() {
-                    if let Some(collider) = self.engine.colliders.get_mut(*collider) {
+                    if let Some(collider) = self.dynamics.engine.colliders.get_mut(*collider) {
                         dynamics::invalidate_contacts(collider);
                     }
                 }
             }
-            if let Some(rigid) = self.engine.bodies.get_mut(handle)
+            if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle)
                 && plan.joint.is_none()
-                && self.holds[*index] == BodyStatus::Free
+                && self.dynamics.holds[*index] == BodyStatus::Free
             {
                 let velocity = state.part_velocity[plan.root()];
                 let arm = rigid.center_of_mass() - rigid.position().translation;
@@ -165,27 +170,33 @@ impl PhysicsWorld {
     /// Moves what hangs on joints whose frames have changed; joints keep their positions and velocities.
     fn follow_lengths(&mut self, state: &mut State) {
         let stands: Vec<JointPlacement> = self
+            .articulation
             .joints
             .iter()
             .map(|joint| JointPlacement {
                 position: state.joint_position[joint.id],
                 velocity: state.joint_velocity[joint.id],
                 anew: true,
-                shut: self.holds[joint.child as usize] == BodyStatus::Latched,
+                shut: self.dynamics.holds[joint.child as usize] == BodyStatus::Latched,
             })
             .collect();
-        for tree in &self.trees {
-            joints::place(&mut self.engine, &self.joints, tree, &stands);
+        for tree in &self.articulation.trees {
+            joints::place(
+                &mut self.dynamics.engine,
+                &self.articulation.joints,
+                tree,
+                &stands,
+            );
         }
-        self.flush();
-        self.write_bodies(state);
+        self.dynamics.flush();
+        self.articulation.write(&self.dynamics, state);
     }
 
     /// Returns whether a collider is a cylinder that rolls now: its contacts are asked about whatever the materials say.
     fn rolls(&self, collider: ColliderHandle) -> bool {
-        self.model.rollers.iter().any(|roller| {
-            let body = self.bodies.get(roller.body());
-            let body = body.and_then(|body| self.engine.bodies.get(body.handle));
+        self.dynamics.model.rollers.iter().any(|roller| {
+            let body = self.dynamics.bodies.get(roller.body());
+            let body = body.and_then(|body| self.dynamics.engine.bodies.get(body.handle));
             body.is_some_and(|body| roller.collider(body) == Some(collider) && roller.rolls(body))
         })
     }
@@ -198,10 +209,11 @@ impl PhysicsWorld {
         density: Option<f32>,
     ) -> bool {
         // Colliders are inserted in the order of entries and never removed.
-        let Some((collider, handle)) = self.engine.colliders.get_unknown_gen(entry as u32) else {
+        let Some((collider, handle)) = self.dynamics.engine.colliders.get_unknown_gen(entry as u32)
+        else {
             return false;
         };
-        let mut rule = values.rule(&self.entries[entry]);
+        let mut rule = values.rule(&self.dynamics.entries[entry]);
         rule.1 |= self.rolls(handle);
         let same_rule = collider.friction() == rule.0.friction
             && collider.restitution() == rule.0.restitution
@@ -213,7 +225,7 @@ impl PhysicsWorld {
         if same_rule && same_density {
             return false;
         }
-        if let Some(collider) = self.engine.colliders.get_mut(handle) {
+        if let Some(collider) = self.dynamics.engine.colliders.get_mut(handle) {
             if !same_rule {
                 dynamics::update_collider_properties(collider, rule);
             }

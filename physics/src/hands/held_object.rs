@@ -1,6 +1,6 @@
 //! Carrying: a held thing follows the hand in front of the eye as a rigid body, so that walls stop it.
 
-use crate::actions::Grasp;
+use super::Grasp;
 use crate::body::BodyHandle;
 use crate::engine::RapierWorld;
 use crate::model::PhysicsModel;

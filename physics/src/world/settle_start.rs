@@ -1,8 +1,8 @@
 //! Things that come to rest before a world begins.
 
+use super::PhysicsWorld;
 use crate::contact::MergedEvents;
 use crate::error::PhysicsError;
-use crate::world::PhysicsWorld;
 use dwell_scene::{State, interrupt};
 
 /// The longest that things are given, s.
@@ -27,7 +27,7 @@ impl PhysicsWorld {
             });
         }
         self.check_state(state)?;
-        let steps = longest_s * f64::from(self.settings.config.control_rate_hz);
+        let steps = longest_s * f64::from(self.dynamics.settings.config.control_rate_hz);
         let mut events = Vec::new();
         for _ in 0..steps.round() as u64 {
             interrupt::check();
@@ -37,9 +37,9 @@ impl PhysicsWorld {
                 break;
             }
         }
-        self.tick = 0;
-        self.contact_tracker.forget_events();
-        self.merged_events = MergedEvents::default();
+        self.dynamics.tick = 0;
+        self.contacts.tracker.forget_events();
+        self.contacts.merged = MergedEvents::default();
         self.notices.clear();
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! What comes of the hand's actions.
+//! What comes of actions, at once or later.
 
 use dwell_scene::{AgentId, EntityId, ObjectId};
 use glam::Vec3;
@@ -179,7 +179,7 @@ pub struct DelayedOutcome {
     pub outcome: ActionOutcome,
 }
 
-pub(super) fn fail(
+pub(crate) fn fail(
     code: OutcomeCode,
     sentence: impl Into<String>,
     object: Option<ObjectId>,
@@ -187,7 +187,7 @@ pub(super) fn fail(
     ActionOutcome::failed(code, sentence, object)
 }
 
-pub(super) fn done(
+pub(crate) fn done(
     code: OutcomeCode,
     sentence: impl Into<String>,
     object: Option<ObjectId>,

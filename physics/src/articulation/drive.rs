@@ -1,0 +1,162 @@
+//! What moves joints in a control step: motors, and hands that lead doors and drawers.
+
+use super::JointSystem;
+use crate::contact::{ContactEntity, entry_index};
+use crate::dynamics::Dynamics;
+use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, commanded};
+use crate::outcome::{DelayedOutcome, OutcomeCode, done, fail};
+use dwell_scene::{JointCommand, State};
+
+/// Openness from which a thing counts as open, and below which as closed.
+pub(crate) const OPEN: f32 = 0.95;
+pub(crate) const CLOSED: f32 = 0.02;
+
+impl JointSystem {
+    /// Sets what pulls at all joints from the state's targets.
+    pub(crate) fn drive(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut State,
+        notices: &mut Vec<DelayedOutcome>,
+    ) {
+        let house = dynamics.model.house.clone();
+        let step_s = dynamics.settings.dt_s * dynamics.settings.steps_per_control as f32;
+        let by_laws = !dynamics.laws.motors.is_empty();
+        for index in 0..self.joints.len() {
+            let joint = self.joints[index];
+            let articulation = &house.joints[joint.id];
+            if by_laws && articulation.servo.is_some() {
+                continue;
+            }
+            let command = commanded(state, joint.id);
+            let child = joint.child as usize;
+            let now = (
+                state.joint_position[joint.id],
+                state.joint_velocity[joint.id],
+            );
+            if articulation.servo.is_none()
+                && let JointCommand::Position(goal) = command
+            {
+                let goal = joint.values.clamp(goal);
+                let drive = self.drives.get(&joint.id);
+                if drive.is_none_or(|drive| drive.goal != goal) {
+                    self.drives
+                        .insert(joint.id, HandDrive::new(goal, now.0, None));
+                }
+                if (goal - articulation.closed).abs() > joints::tolerance(joint.kind) {
+                    let body = dynamics.bodies[child];
+                    joints::release(&mut dynamics.engine, &body, &mut dynamics.holds[child]);
+                }
+            } else if articulation.servo.is_none() {
+                self.drives.remove(&joint.id);
+            }
+            let hand = self.drives.get_mut(&joint.id);
+            let puller = hand.as_ref().and_then(|hand| hand.agent);
+            let puller = puller.and_then(|agent| state.agents.get(agent));
+            let effort = puller.map_or_else(|| state.hand_effort(), |agent| agent.body.hand_effort);
+            let limits = (step_s, effort);
+            let (pull, progress) =
+                joints::advance(joint.kind, &joint.values, command, hand, now, limits);
+            // A motor that lets go wakes what it held, too.
+            if self.pulls[index] != pull {
+                joints::wake(&mut dynamics.engine, &joint);
+            }
+            self.pulls[index] = pull;
+            if let Some(progress) = progress.filter(|progress| *progress != DriveProgress::Moving) {
+                let drive = self.finish_drive(dynamics, state, &joint, progress);
+                notices.extend(drive);
+            }
+        }
+    }
+
+    /// Takes a hand off a joint that has arrived or is blocked, and says so.
+    fn finish_drive(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut State,
+        joint: &PhysicsJoint,
+        progress: DriveProgress,
+    ) -> Option<DelayedOutcome> {
+        let drive = self.drives.remove(&joint.id)?;
+        state.joint_command[joint.id] = JointCommand::Off;
+        let articulation = dynamics.model.house.joints[joint.id].clone();
+        let object = articulation.object;
+        let name = dynamics.name_of(object);
+        let position = state.joint_position[joint.id];
+        if progress == DriveProgress::Arrived
+            && dynamics.settings.config.latches
+            && drive.goal == articulation.closed
+            && joints::stands_shut(joint, &articulation, position)
+        {
+            let child = joint.child as usize;
+            let body = dynamics.bodies[child];
+            joints::shut(
+                &mut dynamics.engine,
+                joint,
+                &articulation,
+                &body,
+                &mut dynamics.holds[child],
+            );
+        }
+        let share = (articulation.openness(position) * 100.0).round();
+        let outcome = if progress == DriveProgress::Arrived {
+            let asked = articulation.openness(drive.goal);
+            let sentence = if asked <= CLOSED {
+                format!("The {name} is closed.")
+            } else if asked >= OPEN {
+                format!("The {name} is open.")
+            } else {
+                format!("The {name} is {share:.0} % open.")
+            };
+            done(OutcomeCode::Done, sentence, Some(object))
+        } else {
+            let what = in_the_way(dynamics, state, joint).map_or_else(
+                || "something is in the way. Step aside or move it.".to_owned(),
+                |what| format!("the {what} is in the way. Move it."),
+            );
+            let sentence = format!("The {name} stopped {share:.0} % open: {what}");
+            fail(OutcomeCode::Blocked, sentence, Some(object))
+        };
+        Some(DelayedOutcome {
+            agent: drive.agent,
+            outcome,
+        })
+    }
+}
+
+/// The name of a thing that a joint's leaf touches, other than its own object and the building.
+fn in_the_way(dynamics: &Dynamics, state: &State, joint: &PhysicsJoint) -> Option<String> {
+    let child = &dynamics.model.bodies[joint.child as usize];
+    let house = &dynamics.model.house;
+    let own = |part| house.parts[part].object == child.object;
+    for pair in dynamics.engine.narrow_phase.contact_pairs() {
+        let entry = |handle| {
+            dynamics
+                .engine
+                .colliders
+                .get(handle)
+                .map(|collider| &dynamics.entries[entry_index(collider)])
+        };
+        let (Some(a), Some(b)) = (entry(pair.collider1), entry(pair.collider2)) else {
+            continue;
+        };
+        let other = match (a.body, b.body) {
+            (Some(body), _) if body == joint.child => b,
+            (_, Some(body)) if body == joint.child => a,
+            _ => continue,
+        };
+        if pair.total_impulse_magnitude() <= 0.0 {
+            continue;
+        }
+        match other.toucher {
+            Some(ContactEntity::Part(part)) if !own(part) => {
+                return Some(dynamics.name_of(house.parts[part].object));
+            }
+            Some(ContactEntity::Agent(agent)) if (agent.0 as usize) < state.agents.len() => {
+                return Some(format!("body of agent {}", agent.0));
+            }
+            _ => {}
+        }
+    }
+    None
+}

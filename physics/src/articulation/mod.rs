@@ -1,0 +1,93 @@
+//! The joints of a world: what moves them, where they go in a step, and what the state has of them.
+
+mod drive;
+mod motors;
+mod step;
+
+pub(crate) use drive::{CLOSED, OPEN};
+
+use crate::body::{self, BodyStatus};
+use crate::convert::{from_rapier, to_rapier};
+use crate::dynamics::Dynamics;
+use crate::joints::{
+    self, HandDrives, JointActuation, JointCoordinate, KinematicTree, PhysicsJoint,
+};
+use dwell_scene::{JointId, State};
+
+/// All joints of a world.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointSystem {
+    pub(crate) joints: Vec<PhysicsJoint>,
+    /// Joints that act on each other.
+    pub(crate) trees: Vec<KinematicTree>,
+    /// Each joint's numbers within a control step; the turns of hinges are counted here. Between control steps the state has
+    /// them. Shape (joint,).
+    pub(crate) joint_coordinates: Vec<JointCoordinate>,
+    /// What pulls at each joint during this control step. Shape (joint,).
+    pub(crate) pulls: Vec<Option<JointActuation>>,
+    pub(crate) drives: HandDrives,
+}
+
+impl JointSystem {
+    /// Takes the joints' numbers from the state, at the beginning of a control step.
+    pub(crate) fn read(&mut self, state: &State) {
+        let joints = self.joints.iter();
+        self.joint_coordinates = joints
+            .map(|joint| joint_from_state(state, joint.id))
+            .collect();
+    }
+
+    /// Gives the state the joints' numbers, at the end of a control step.
+    pub(crate) fn write_coordinates(&self, state: &mut State) {
+        for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
+            state.joint_position[joint.id] = joint_coordinates.position as f32;
+            state.joint_velocity[joint.id] = joint_coordinates.velocity as f32;
+        }
+    }
+
+    /// Writes poses, velocities and joints into the state.
+    pub(crate) fn write(&self, dynamics: &Dynamics, state: &mut State) {
+        for (plan, body) in dynamics.model.bodies.iter().zip(&dynamics.bodies) {
+            body::write_parts(&dynamics.engine, plan, body, state);
+        }
+        for joint in &self.joints {
+            let now = joints::stands(&dynamics.engine, joint, joint_from_state(state, joint.id));
+            let (position, velocity) = (now.position as f32, now.velocity as f32);
+            // A door that is shut stands at its closed position, whatever rounding says.
+            let shut = dynamics.holds[joint.child as usize] == BodyStatus::Latched;
+            let closed = dynamics.model.house.joints[joint.id].closed;
+            state.joint_position[joint.id] = if shut { closed } else { position };
+            state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
+        }
+        state.follow_switches(&dynamics.model.house);
+    }
+
+    /// Brings what hangs on joints along where what it hangs on was moved.
+    pub(crate) fn carry_jointed_bodies(&self, dynamics: &mut Dynamics, state: &State) {
+        let stands = self.joints.iter().map(|joint| joints::JointPlacement {
+            position: state.joint_position[joint.id],
+            velocity: 0.0,
+            anew: false,
+            shut: false,
+        });
+        let stands: Vec<joints::JointPlacement> = stands.collect();
+        for tree in &self.trees {
+            let moved = tree.root_body().is_some_and(|body| {
+                let body = body as usize;
+                let start = to_rapier(&state.part_pose[dynamics.model.bodies[body].root()]);
+                body::pose_of(&dynamics.engine, &dynamics.bodies[body]) != Some(from_rapier(&start))
+            });
+            if moved {
+                joints::place(&mut dynamics.engine, &self.joints, tree, &stands);
+            }
+        }
+    }
+}
+
+/// A joint's numbers as the state has them.
+pub(crate) fn joint_from_state(state: &State, joint: JointId) -> JointCoordinate {
+    JointCoordinate {
+        position: state.joint_position[joint].into(),
+        velocity: state.joint_velocity[joint].into(),
+    }
+}

@@ -1,0 +1,89 @@
+//! The joints of a world in one physics step: the efforts along them before it, and where they went after it.
+
+use super::JointSystem;
+use crate::dynamics::Dynamics;
+use crate::joints::{
+    self, ExternalWrench, JointDrivers, JointLoad, JointResistance, LinkStep, TreePrediction,
+};
+use dwell_scene::JointId;
+
+/// What is expected of the trees of joints in a physics step.
+pub(crate) struct JointStep {
+    /// `None` for a tree that is asleep or shut. Shape (tree,).
+    predictions: Vec<Option<TreePrediction>>,
+    /// Bodies that joints hang on and that answer to what these do.
+    pub(crate) floating_roots: Vec<u32>,
+}
+
+impl JointSystem {
+    /// Tells laws of what joints resist with where these stand.
+    pub(crate) fn follow(&self, dynamics: &mut Dynamics) {
+        if dynamics.laws.resistances.is_empty() {
+            return;
+        }
+        for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
+            let position =
+                joints::stands(&dynamics.engine, joint, *joint_coordinates).position as f32;
+            for law in &mut dynamics.laws.resistances {
+                law.effect.follow(joint.id, position);
+            }
+        }
+    }
+
+    /// Gives rapier the efforts along all joints for the next physics step.
+    pub(crate) fn apply_efforts(&self, dynamics: &mut Dynamics) -> JointStep {
+        let engine = &mut dynamics.engine;
+        for joint in &self.joints {
+            joints::clear_efforts(engine, joint);
+        }
+        let laws = &dynamics.laws;
+        let resist = |joint: JointId, load: &JointLoad, resistance: &mut JointResistance| {
+            for law in &laws.resistances {
+                law.effect.resist(joint, load, resistance);
+            }
+        };
+        let dt_s = dynamics.settings.dt_s;
+        let time_s = dynamics.tick as f64 * f64::from(dt_s);
+        let push = |link: LinkStep| {
+            let link = LinkStep { time_s, ..link };
+            let pushes = laws.links.iter().map(|law| law.push(&link));
+            pushes.fold(ExternalWrench::default(), ExternalWrench::and)
+        };
+        let (pushing, resisting) = (!laws.links.is_empty(), !laws.resistances.is_empty());
+        let drivers = JointDrivers {
+            joints: &self.joints,
+            pulls: &self.pulls,
+            joint_coordinates: &self.joint_coordinates,
+            resist: if resisting { Some(&resist) } else { None },
+            push: if pushing { Some(&push) } else { None },
+            dt_s,
+        };
+        let trees = self.trees.iter();
+        let predictions = trees
+            .map(|tree| joints::apply_efforts(engine, tree, &drivers))
+            .collect();
+        let trees = self.trees.iter();
+        let floating_roots = trees
+            .filter_map(|tree| tree.floating_root(engine, &self.joints))
+            .collect();
+        JointStep {
+            predictions,
+            floating_roots,
+        }
+    }
+
+    /// Puts trees where their joints went in a physics step. Returns whether one was moved for that.
+    pub(crate) fn settle(&mut self, dynamics: &mut Dynamics, step: JointStep) -> bool {
+        let (engine, coordinates) = (&mut dynamics.engine, &mut self.joint_coordinates);
+        let mut placed = false;
+        for (tree, prediction) in self.trees.iter().zip(step.predictions) {
+            placed |= match prediction {
+                Some(prediction) => {
+                    joints::settle(engine, tree, &self.joints, prediction, coordinates)
+                }
+                None => joints::project_woken(engine, tree, &self.joints, coordinates),
+            };
+        }
+        placed
+    }
+}

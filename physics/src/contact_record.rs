@@ -1,0 +1,104 @@
+//! The contacts of a physics step: solving them, correcting rebounds, and what is told of them.
+
+use crate::articulation::JointSystem;
+use crate::contact::{
+    BodyMotion, ContactCollector, ContactEvent, ContactHooks, ContactReport, ContactTracker,
+    MergedEvents, RestitutionContext, RestitutionResult, bound, record_motion,
+};
+use crate::dynamics::Dynamics;
+use crate::joints::JointCoordinate;
+use rapier3d::dynamics::RigidBodyHandle;
+
+/// What is remembered of contacts from step to step.
+#[derive(Clone, Default)]
+pub(crate) struct ContactRecord {
+    pub(crate) tracker: ContactTracker,
+    /// What the last control step did not tell one by one.
+    pub(crate) merged: MergedEvents,
+    /// How bodies moved before the physics step.
+    motion: Vec<BodyMotion>,
+}
+
+/// What contacts did in a physics step.
+pub(crate) struct SolvedContacts {
+    /// Bodies that flew freely and hit something.
+    landed: Vec<RigidBodyHandle>,
+    reports: Vec<ContactReport>,
+}
+
+impl ContactRecord {
+    /// Makes rapier's physics step.
+    pub(crate) fn solve(&mut self, dynamics: &mut Dynamics) -> SolvedContacts {
+        let flying = dynamics.engine.in_free_flight();
+        record_motion(&dynamics.engine, &self.tracker, &flying, &mut self.motion);
+        let kept = dynamics.engine.friction_kept();
+        let hooks = ContactHooks {
+            entries: &dynamics.entries,
+            properties: dynamics
+                .laws
+                .contact_properties(&dynamics.model.house, &dynamics.table),
+            excluded: &dynamics.excluded,
+            kept,
+            dt_s: dynamics.settings.dt_s,
+        };
+        let config = &dynamics.settings.config;
+        let slowest = config.event_min_speed_m_s.min(config.slide_min_speed_m_s);
+        let collector = ContactCollector::new(&dynamics.entries, &self.motion, slowest, kept);
+        let landed = dynamics.engine.step(flying, &hooks, &collector);
+        let reports = collector.reports();
+        SolvedContacts { landed, reports }
+    }
+
+    /// Corrects how bodies bounce that flew into something. `joints_before`: the numbers of each joint before the step.
+    pub(crate) fn correct_rebounds(
+        &self,
+        dynamics: &mut Dynamics,
+        articulation: &mut JointSystem,
+        solved: &SolvedContacts,
+        joints_before: &[JointCoordinate],
+    ) -> RestitutionResult {
+        let context = RestitutionContext {
+            motions: &self.motion,
+            entries: &dynamics.entries,
+            trees: &articulation.trees,
+            joints: &articulation.joints,
+            joints_before,
+            dt_s: dynamics.settings.dt_s,
+        };
+        let coordinates = &mut articulation.joint_coordinates;
+        context.correct(&mut dynamics.engine, &solved.landed, coordinates)
+    }
+
+    /// Notes what touched in a physics step; what ended or is told at once goes to `events`.
+    pub(crate) fn note(
+        &mut self,
+        dynamics: &Dynamics,
+        solved: SolvedContacts,
+        rebounds: &RestitutionResult,
+        events: &mut Vec<ContactEvent>,
+    ) {
+        let (tick, settings) = (dynamics.tick, &dynamics.settings);
+        self.tracker.settle(
+            (solved.reports, &rebounds.added),
+            tick,
+            &settings.config,
+            &dynamics.table,
+            events,
+        );
+        self.tracker
+            .note_held_back(&dynamics.engine, &self.motion, settings.dt_s);
+    }
+
+    /// Tells what is left to tell of a control step; `first`: the place of its first event.
+    pub(crate) fn tell(
+        &mut self,
+        dynamics: &Dynamics,
+        events: &mut Vec<ContactEvent>,
+        first: usize,
+    ) {
+        let config = &dynamics.settings.config;
+        self.tracker
+            .emit_events(dynamics.tick, config, &dynamics.table, events);
+        self.merged = bound(events, first, config.max_events_per_step);
+    }
+}

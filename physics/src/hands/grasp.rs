@@ -1,0 +1,33 @@
+//! How a hand holds a thing.
+
+use serde::{Deserialize, Serialize};
+
+/// How a hand holds a thing. In both ways the thing stays a rigid body that walls and furniture stop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Grasp {
+    /// It follows the hand within one physics step, as far as the hand's force allows.
+    #[default]
+    Kinematic,
+    /// It hangs on the hand by a spring and damper, with its weight: it sags by g over the square of 2 pi times the
+    /// frequency, lags and swings.
+    Spring {
+        /// Natural frequency, Hz; 0.5 to 20.
+        frequency_hz: f32,
+        /// 1 is critical; 0.05 to 4.
+        damping_ratio: f32,
+    },
+}
+
+impl Grasp {
+    /// Returns whether its numbers are in their ranges.
+    pub fn is_valid(&self) -> bool {
+        match self {
+            Self::Kinematic => true,
+            Self::Spring {
+                frequency_hz,
+                damping_ratio,
+            } => (0.5..=20.0).contains(frequency_hz) && (0.05..=4.0).contains(damping_ratio),
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! Hands: what agents hold, and what they have just let go.
+
+mod grasp;
+mod held_object;
+
+pub use grasp::Grasp;
+pub(crate) use held_object::{HeldObject, hand_pose};
+
+use crate::dynamics::Dynamics;
+use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
+use dwell_scene::{Aabb, AgentId, AgentState, State};
+use glam::Vec3;
+use held_object::release;
+use rapier3d::dynamics::RigidBody;
+
+/// The hands of all agents.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Hands {
+    /// What is held, by agent.
+    pub(crate) grips: Vec<HeldObject>,
+    /// Bodies that were let go and still overlap the agent that held them.
+    pub(crate) released_overlapping: Vec<(u32, AgentId)>,
+}
+
+impl Hands {
+    /// Returns whether some hand holds a body or has just let go of it.
+    pub(crate) fn involve(&self, body: usize) -> bool {
+        self.grips.iter().any(|grip| grip.body as usize == body)
+            || self
+                .released_overlapping
+                .iter()
+                .any(|(released, _)| *released as usize == body)
+    }
+
+    /// Opens hands that hold more than they lift: since they took it they have become weaker, or it heavier.
+    pub(crate) fn drop_too_heavy(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut State,
+        notices: &mut Vec<DelayedOutcome>,
+    ) {
+        let mut place = 0;
+        while place < self.grips.len() {
+            let HeldObject {
+                body,
+                agent,
+                object,
+                ..
+            } = self.grips[place];
+            let handle = dynamics.bodies[body as usize].handle;
+            let mass = dynamics
+                .engine
+                .bodies
+                .get(handle)
+                .map_or(0.0, RigidBody::mass);
+            let lift = state.agents[agent].body.lift_kg;
+            if mass <= lift {
+                place += 1;
+                continue;
+            }
+            self.ungrip(dynamics, state, place);
+            let name = dynamics.name_of(object);
+            notices.push(DelayedOutcome {
+                agent: Some(agent),
+                outcome: fail(
+                    OutcomeCode::TooHeavy,
+                    format!(
+                        "The {name} weighs {mass:.1} kg and you lift {lift:.1} kg now: it fell from your hand."
+                    ),
+                    Some(object),
+                ),
+            });
+        }
+    }
+
+    /// Opens the hand that holds the grip at `place` of the list.
+    pub(crate) fn ungrip(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
+        let grip = self.grips.remove(place);
+        let velocity = state.agents[grip.agent].velocity;
+        let body = grip.body as usize;
+        let scale = self.gravity_scale(dynamics, body);
+        release(
+            &mut dynamics.engine,
+            &dynamics.bodies[body],
+            scale,
+            velocity,
+        );
+        state.agents[grip.agent].holding = None;
+        state.held_by[grip.object] = None;
+        // The pair meets again once they have parted.
+        self.released_overlapping.push((grip.body, grip.agent));
+    }
+
+    /// The share of its weight that a body has: none in a hand that holds it firmly, else what laws leave of it.
+    pub(crate) fn gravity_scale(&self, dynamics: &Dynamics, body: usize) -> f32 {
+        let carried = |grip: &HeldObject| grip.body as usize == body && grip.is_firm();
+        if self.grips.iter().any(carried) {
+            return 0.0;
+        }
+        dynamics.weights.altered[body].map_or(1.0, |inertia| inertia.gravity_scale)
+    }
+
+    /// Moves what is held for one physics step, and opens the hands from which something slips.
+    pub(crate) fn carry(
+        &mut self,
+        dynamics: &mut Dynamics,
+        state: &mut State,
+        notices: &mut Vec<DelayedOutcome>,
+    ) {
+        let mut place = 0;
+        while place < self.grips.len() {
+            let agent = state.agents[self.grips[place].agent];
+            let body = dynamics.bodies[self.grips[place].body as usize];
+            let grip = &mut self.grips[place];
+            let dt_s = dynamics.settings.dt_s;
+            let slips = held_object::carry(&mut dynamics.engine, &body, grip, &agent, dt_s);
+            if !slips {
+                place += 1;
+                continue;
+            }
+            let (holder, object) = (grip.agent, grip.object);
+            self.ungrip(dynamics, state, place);
+            let name = dynamics.name_of(object);
+            notices.push(DelayedOutcome {
+                agent: Some(holder),
+                outcome: fail(
+                    OutcomeCode::Slipped,
+                    format!("The {name} was caught on something and slipped from your hand."),
+                    Some(object),
+                ),
+            });
+        }
+    }
+
+    /// Takes back what was pressed through a sheet in the last physics step. Contacts stop what is held, but a hand that
+    /// presses a thin card against a thin wall overcomes them.
+    pub(crate) fn keep_inside(&self, dynamics: &mut Dynamics) {
+        let mut moved = false;
+        for place in 0..self.grips.len() {
+            let grip = self.grips[place];
+            let handle = dynamics.bodies[grip.body as usize].handle;
+            let Some(now) = dynamics
+                .engine
+                .bodies
+                .get(handle)
+                .map(|rigid| *rigid.position())
+            else {
+                continue;
+            };
+            let middle = grip.middle_at(&now);
+            if middle == grip.middle || dynamics.first_obstacle(grip.middle, middle).is_none() {
+                continue;
+            }
+            if let Some(rigid) = dynamics.engine.bodies.get_mut(handle) {
+                let mut back = now;
+                back.translation += grip.middle - middle;
+                rigid.set_position(back, true);
+                rigid.set_linvel(Vec3::ZERO, true);
+                moved = true;
+            }
+        }
+        if moved {
+            dynamics.flush();
+        }
+    }
+
+    /// Lets bodies and the agents that held them meet again once they are apart.
+    pub(crate) fn end_separations(&mut self, dynamics: &mut Dynamics, state: &State) {
+        if self.released_overlapping.is_empty() {
+            return;
+        }
+        let mut still = Vec::new();
+        for (body, agent) in std::mem::take(&mut self.released_overlapping) {
+            let held_again = self
+                .grips
+                .iter()
+                .any(|grip| (grip.body, grip.agent) == (body, agent));
+            if held_again {
+                continue;
+            }
+            let rigid = dynamics
+                .engine
+                .bodies
+                .get(dynamics.bodies[body as usize].handle);
+            let apart = rigid.is_none_or(|rigid| {
+                let bounds = dynamics.model.bodies[body as usize].bounds(rigid.position());
+                !bounds.intersects(&agent_bounds(&state.agents[agent]).grown(0.01))
+            });
+            if apart {
+                dynamics.excluded.part(body, agent);
+            } else {
+                still.push((body, agent));
+            }
+        }
+        self.released_overlapping = still;
+    }
+}
+
+fn agent_bounds(agent: &AgentState) -> Aabb {
+    let r = agent.body.radius_m;
+    Aabb::new(
+        agent.position - Vec3::new(r, 0.0, r),
+        agent.position + Vec3::new(r, agent.height_m(), r),
+    )
+}

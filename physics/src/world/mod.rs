@@ -1,0 +1,275 @@
+//! A running physics world.
+
+mod agent_placement;
+mod begin;
+mod external_changes;
+mod non_finite;
+mod parameters;
+mod set_state;
+mod settle_start;
+mod snapshot;
+mod step;
+
+pub use agent_placement::AgentPlacement;
+pub use set_state::{BodyState, JointState};
+
+use crate::actions::{Action, ActionContext, OngoingPush};
+use crate::agents::Agents;
+use crate::articulation::JointSystem;
+use crate::body::{BodyHandle, BodyStatus};
+use crate::config::PhysicsConfig;
+use crate::contact::{CollisionExclusions, ContactEntity, ContactTable, MergedEvents};
+use crate::contact_record::ContactRecord;
+use crate::convert::to_rapier;
+use crate::dynamics::{BodyMasses, Dynamics, assemble};
+use crate::engine::PairCounts;
+use crate::error::PhysicsError;
+use crate::hands::Hands;
+use crate::laws::{self, LawSet};
+use crate::limits;
+use crate::model::PhysicsModel;
+use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, fail};
+use crate::report::StartReport;
+use begin::align_joints;
+use dwell_scene::material::PairContact;
+use dwell_scene::rays::RayScene;
+use dwell_scene::{Address, AgentId, AgentState, House, Id, State};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// The rigid bodies, joints and agents of one world over a house.
+///
+/// # Determinism
+/// The same house, config, state and calls give the same bits on one machine kind, for any number of threads: a world
+/// runs on the caller's thread alone.
+#[derive(Clone)]
+pub struct PhysicsWorld {
+    dynamics: Dynamics,
+    articulation: JointSystem,
+    agents: Agents,
+    hands: Hands,
+    pushes: Vec<OngoingPush>,
+    contacts: ContactRecord,
+    /// The overrides that are in force.
+    applied: BTreeMap<Address, f64>,
+    /// What the last step tells of what takes time.
+    notices: Vec<DelayedOutcome>,
+}
+
+impl PhysicsWorld {
+    /// Makes the bodies of a house where `state` has its parts. Things that overlap are moved free by small steps, in
+    /// `state` too, or frozen; an agent that would stand in something is put where it has room, at the nearest place on a
+    /// room's floor. The report says which.
+    ///
+    /// # Errors
+    /// [`PhysicsError::Range`] for a setting out of range and for an agent's body that has room nowhere in the house, [`PhysicsError::ForeignState`] for another house's state,
+    /// [`PhysicsError::LawTarget`] for a law without its target, [`PhysicsError::TooMany`] for more bodies, joints or pairs than a world holds.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "the shape of every engine's entry point"
+    )]
+    pub fn new(
+        house: Arc<House>,
+        config: PhysicsConfig,
+        state: &mut State,
+    ) -> Result<(Self, StartReport), PhysicsError> {
+        Self::over(Arc::new(PhysicsModel::new(house)), &config, state)
+    }
+
+    /// As [`PhysicsWorld::new`], over shapes that other worlds share.
+    ///
+    /// # Errors
+    /// As [`PhysicsWorld::new`].
+    pub fn over(
+        model: Arc<PhysicsModel>,
+        config: &PhysicsConfig,
+        state: &mut State,
+    ) -> Result<(Self, StartReport), PhysicsError> {
+        let settings = config.build()?;
+        check_counts(&model.house, state)?;
+        let table = ContactTable::new(&model.house, state);
+        let laws = laws::install(&model, state, &LawSet::default())?;
+        let weights = BodyMasses::new(&model, state, &laws);
+        align_joints(&model, state);
+        let crowding = limits::check(&model, state)?;
+        let places = |index: usize| {
+            let root = model.bodies[index].root();
+            (to_rapier(&state.part_pose[root]), BodyStatus::Free)
+        };
+        let gravity = state.gravity_m_s2();
+        let values = laws.contact_properties(&model.house, &table);
+        let sizes = (gravity, state.agents.len(), crowding);
+        let assembly = assemble(
+            &model,
+            &settings,
+            values,
+            laws.compliance,
+            sizes,
+            places,
+            &weights,
+        );
+        let dynamics = Dynamics {
+            holds: vec![BodyStatus::Free; model.bodies.len()],
+            model,
+            settings,
+            engine: assembly.engine,
+            entries: assembly.entries,
+            table,
+            bodies: assembly.bodies,
+            weights,
+            excluded: CollisionExclusions::default(),
+            laws,
+            tick: 0,
+        };
+        let mut world = Self {
+            dynamics,
+            articulation: JointSystem::default(),
+            agents: Agents::default(),
+            hands: Hands::default(),
+            pushes: Vec::new(),
+            contacts: ContactRecord::default(),
+            applied: state.overrides.clone(),
+            notices: Vec::new(),
+        };
+        let mut report = world.begin(state, assembly.anchor)?;
+        let agents: Vec<AgentState> = state.agents.iter().copied().collect();
+        for agent in agents {
+            agent.body.check()?;
+            world.agents.insert(&mut world.dynamics, &agent);
+        }
+        world.dynamics.flush();
+        report.agents = world.agents.give_room(&mut world.dynamics, state)?;
+        if !report.agents.is_empty() {
+            world.dynamics.flush();
+        }
+        world.articulation.write(&world.dynamics, state);
+        world.dynamics.write_contacts(state);
+        Ok((world, report))
+    }
+
+    /// Lets an agent do something with its hand, at once or, for doors and pushes, over the next steps.
+    ///
+    /// `rays` must show `state` as it is. What takes time reports its end through [`PhysicsWorld::notices`]. A state of
+    /// another world or an agent that does not exist is refused like any other action that cannot be.
+    pub fn act(
+        &mut self,
+        state: &mut State,
+        rays: &RayScene,
+        agent: AgentId,
+        action: &Action,
+    ) -> ActionOutcome {
+        let count = self.agents.list.len();
+        if agent.index() >= count || agent.index() >= state.agents.len() {
+            let sentence = format!("There is no agent {}; there are {count}.", agent.0);
+            return fail(OutcomeCode::UnknownAgent, sentence, None);
+        }
+        if let Err(error) = self.check_state(state) {
+            let sentence = format!("Nothing was done: {error}.");
+            return fail(OutcomeCode::ForeignState, sentence, None);
+        }
+        let mut context = ActionContext {
+            dynamics: &mut self.dynamics,
+            articulation: &mut self.articulation,
+            agents: &self.agents,
+            hands: &mut self.hands,
+            pushes: &mut self.pushes,
+        };
+        context.perform(state, rays, agent, action)
+    }
+
+    /// The shapes this world shares with others over its house.
+    pub fn model(&self) -> &Arc<PhysicsModel> {
+        &self.dynamics.model
+    }
+
+    /// The settings.
+    pub fn config(&self) -> &PhysicsConfig {
+        &self.dynamics.settings.config
+    }
+
+    /// Returns what became, in the last step, of doors and grips that take time.
+    pub fn notices(&self) -> &[DelayedOutcome] {
+        &self.notices
+    }
+
+    /// The events of the last control step beyond its limit: how many, and how strong together.
+    pub fn merged_events(&self) -> MergedEvents {
+        self.contacts.merged
+    }
+
+    /// Friction and restitution between two things as overrides have them, by their first surfaces (a wall or mesh of
+    /// several materials has others too); `None` for what touches nothing. Laws may change what acts; each contact event
+    /// carries the values of its own surfaces.
+    pub fn pair(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
+        let class = |toucher: ContactEntity| {
+            let entry = self.dynamics.entries.iter();
+            let mut found = entry.filter(|entry| entry.toucher == Some(toucher));
+            found.next().map(|entry| entry.surface.class(0))
+        };
+        Some(self.dynamics.table.pair(class(a)?, class(b)?))
+    }
+
+    /// Simulated time since the world was made, s.
+    pub fn time_s(&self) -> f64 {
+        self.dynamics.tick as f64 / f64::from(self.dynamics.settings.config.physics_rate_hz)
+    }
+
+    /// Returns how many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
+    pub fn pair_counts(&self) -> PairCounts {
+        self.dynamics.engine.pair_counts()
+    }
+
+    /// Returns how many rigid bodies are awake.
+    pub fn awake_count(&self) -> usize {
+        let awake = |body: &&BodyHandle| {
+            let rigid = self.dynamics.engine.bodies.get(body.handle);
+            rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
+        };
+        self.dynamics.bodies.iter().filter(awake).count()
+    }
+
+    fn check_state(&self, state: &State) -> Result<(), PhysicsError> {
+        check_counts(&self.dynamics.model.house, state)?;
+        same("agents", state.agents.len(), self.agents.list.len())
+    }
+}
+
+fn same(what: &'static str, found: usize, expected: usize) -> Result<(), PhysicsError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(PhysicsError::ForeignState {
+            what,
+            found,
+            expected,
+        })
+    }
+}
+
+fn check_counts(house: &House, state: &State) -> Result<(), PhysicsError> {
+    same("parts", state.part_pose.len(), house.parts.len())?;
+    same(
+        "part velocities",
+        state.part_velocity.len(),
+        house.parts.len(),
+    )?;
+    same("joints", state.joint_position.len(), house.joints.len())?;
+    same(
+        "joint commands",
+        state.joint_command.len(),
+        house.joints.len(),
+    )?;
+    same("objects", state.held_by.len(), house.objects.len())
+}
+
+impl fmt::Debug for PhysicsWorld {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("PhysicsWorld")
+            .field("house", &self.dynamics.model.house.name)
+            .field("bodies", &self.dynamics.bodies.len())
+            .field("agents", &self.agents.list.len())
+            .field("tick", &self.dynamics.tick)
+            .finish_non_exhaustive()
+    }
+}

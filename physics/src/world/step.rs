@@ -1,0 +1,135 @@
+//! One control step.
+
+use super::PhysicsWorld;
+use crate::actions;
+use crate::agents::{AgentControl, MovementRecord, finish_movement};
+use crate::contact::ContactEvent;
+use crate::error::PhysicsError;
+use dwell_scene::{State, interrupt};
+
+impl PhysicsWorld {
+    /// Makes one control step: agents move as `controls` say (those without one stand still), then bodies, joints and
+    /// contacts; `state` is brought up to date, and impacts, scrapes and rolling are appended to `events` in the order of time
+    /// and pair: at most [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see
+    /// [`PhysicsWorld::merged_events`].
+    ///
+    /// The state's `time_s` and `step` belong to whoever runs the world and are left alone.
+    ///
+    /// # Errors
+    /// [`PhysicsError::ForeignState`] for another world's state, [`PhysicsError::UnknownAgent`] for more controls than
+    /// agents, [`PhysicsError::Range`] for a control that is not finite or that the agent's body cannot follow. Nothing has
+    /// happened then.
+    pub fn step(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        events: &mut Vec<ContactEvent>,
+    ) -> Result<(), PhysicsError> {
+        self.check_state(state)?;
+        self.check_controls(state, controls)?;
+        self.notices.clear();
+        let (tick_before, first_event) = (self.dynamics.tick, events.len());
+        let slept = self.dynamics.engine.islands.num_active_bodies() == 0;
+        self.articulation.read(state);
+        self.hands
+            .drop_too_heavy(&mut self.dynamics, state, &mut self.notices);
+        self.articulation
+            .drive(&mut self.dynamics, state, &mut self.notices);
+        let mut ways = MovementRecord::all(state);
+        let mut placed = false;
+        for substep in 0..self.dynamics.settings.steps_per_control {
+            interrupt::check();
+            self.move_agents(state, controls, &mut ways, substep == 0);
+            placed = self.physics_step(state, events);
+            self.hands.keep_inside(&mut self.dynamics);
+        }
+        self.lay_sleepers_aside(tick_before, placed);
+        self.contacts.tell(&self.dynamics, events, first_event);
+        finish_movement(&self.dynamics, state, &ways);
+        self.hands.end_separations(&mut self.dynamics, state);
+        // What slept all the time stands as it was written.
+        if !slept || self.dynamics.engine.islands.num_active_bodies() > 0 {
+            self.articulation.write_coordinates(state);
+            self.articulation.write(&self.dynamics, state);
+            self.dynamics.write_contacts(state);
+        }
+        Ok(())
+    }
+
+    /// One physics step of bodies, joints and contacts. Returns whether something was put somewhere at its end, so that
+    /// colliders stand elsewhere.
+    fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
+        self.articulation.drive_motors(&mut self.dynamics, state);
+        let led = self.agents.list.iter().map(|agent| agent.handle);
+        self.dynamics.engine.wake_in_reach(led);
+        self.articulation.follow(&mut self.dynamics);
+        let efforts = self.articulation.apply_efforts(&mut self.dynamics);
+        let floating_roots = efforts.floating_roots.clone();
+        self.dynamics.apply_laws_before(&floating_roots);
+        let solved = self.contacts.solve(&mut self.dynamics);
+        let joints_before = self.articulation.joint_coordinates.clone();
+        let mut placed = self.articulation.settle(&mut self.dynamics, efforts);
+        let rebounds = self.contacts.correct_rebounds(
+            &mut self.dynamics,
+            &mut self.articulation,
+            &solved,
+            &joints_before,
+        );
+        placed |= rebounds.placed;
+        self.contacts
+            .note(&self.dynamics, solved, &rebounds, events);
+        self.dynamics.apply_laws_after(&floating_roots);
+        self.dynamics.count_step();
+        placed |= self.dynamics.update_rolling_contacts();
+        placed |= self.recover_non_finite();
+        placed
+    }
+
+    /// Moves agents, what they hold and what they push, before a physics step; `first`: the control step's first.
+    fn move_agents(
+        &mut self,
+        state: &mut State,
+        controls: &[AgentControl],
+        ways: &mut [MovementRecord],
+        first: bool,
+    ) {
+        let (dynamics, notices) = (&mut self.dynamics, &mut self.notices);
+        self.agents
+            .advance(dynamics, state, controls, ways, first, notices);
+        self.hands.carry(dynamics, state, notices);
+        actions::advance_pushes(&mut self.pushes, dynamics, state, notices);
+    }
+
+    /// Lays aside what fell asleep since `tick_before`. Where the last physics step put something, its colliders follow, so
+    /// that a snapshot continues with the same bits.
+    fn lay_sleepers_aside(&mut self, tick_before: u64, placed: bool) {
+        let hands = &self.hands;
+        self.dynamics
+            .cache_sleeping(tick_before, |body| hands.involve(body));
+        if placed {
+            self.dynamics.flush();
+        }
+    }
+
+    fn check_controls(&self, state: &State, controls: &[AgentControl]) -> Result<(), PhysicsError> {
+        let count = self.agents.list.len();
+        if controls.len() > count {
+            let index = controls.len() - 1;
+            return Err(PhysicsError::UnknownAgent { index, count });
+        }
+        for (index, (control, agent)) in controls.iter().zip(&state.agents).enumerate() {
+            control.check(index, &agent.body.locomotion)?;
+        }
+        Ok(())
+    }
+
+    /// The kinetic energy of everything that moves freely or on joints, J: that of the centres of mass and of the spins.
+    pub fn kinetic_energy_j(&self) -> f64 {
+        self.dynamics.kinetic_energy_j()
+    }
+
+    /// The fastest point of any body, m/s.
+    pub fn fastest_m_s(&self) -> f32 {
+        self.dynamics.fastest_m_s()
+    }
+}
