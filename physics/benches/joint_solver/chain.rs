@@ -102,7 +102,11 @@ impl Chain {
         let bar = |k: usize| Bar {
             length: 0.1,
             half: 0.02,
-            axis: if k % 2 == 0 { Vec3::Z } else { Vec3::Y },
+            axis: if k.is_multiple_of(2) {
+                Vec3::Z
+            } else {
+                Vec3::Y
+            },
         };
         Self {
             motor: Some(Motor {

@@ -35,7 +35,7 @@ pub(crate) struct Dynamics {
     pub(crate) holds: Vec<BodyStatus>,
     pub(crate) weights: BodyMasses,
     pub(crate) excluded: CollisionExclusions,
-    pub(crate) laws: LawSet,
+    pub(crate) laws: Box<LawSet>,
     /// Physics steps since the world was made.
     pub(crate) tick: u64,
 }
@@ -100,7 +100,7 @@ impl Dynamics {
     pub(crate) fn apply_laws_after(&mut self, floating_roots: &[u32]) {
         let half = 0.5 * self.settings.dt_s;
         self.apply_laws(floating_roots, |law, stage| {
-            law.apply_half_step(stage, half)
+            law.apply_half_step(stage, half);
         });
     }
 

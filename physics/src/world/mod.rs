@@ -119,7 +119,7 @@ impl PhysicsWorld {
             bodies: assembly.bodies,
             weights,
             excluded: CollisionExclusions::default(),
-            laws,
+            laws: Box::new(laws),
             tick: 0,
         };
         let mut world = Self {

@@ -112,7 +112,7 @@ impl PhysicsWorld {
         self.dynamics.table = table;
         self.dynamics.weights = weights;
         self.applied.clone_from(&state.overrides);
-        self.dynamics.laws = laws;
+        *self.dynamics.laws = laws;
         if changed || longer || acts_anew {
             self.dynamics.engine.wake_cached();
         }

@@ -284,7 +284,7 @@ impl PhysicsWorld {
         self.dynamics.weights = weights;
         self.applied.clone_from(&state.overrides);
         self.agents.list = agents;
-        self.dynamics.laws = laws;
+        *self.dynamics.laws = laws;
         self.dynamics.tick = memory.tick;
         self.dynamics.holds = memory.holds;
         self.agents.passive_velocities = memory.passive_velocities;
