@@ -1,4 +1,4 @@
-//! The joint solver of this crate beside rapier's: what `docs/decisions/0012-joint-solver.md` says of them.
+//! The joint solver of this crate beside rapier's: what `docs/decisions/0013-joint-solver.md` says of them.
 //!
 //! Without `--bench` everything runs for a moment, to see that it still does.
 #![expect(clippy::print_stdout, reason = "it prints a table")]

@@ -154,6 +154,3 @@ pub(crate) const WALLS: &[DependencyWall] = &[
         behind: &["dwell-python"],
     },
 ];
-
-/// Crates whose modules still use each other in circles.
-pub(crate) const CIRCLES_HELD_BACK: &[&str] = &["dwell-physics"];

@@ -8,41 +8,20 @@ mod module_files;
 mod references;
 mod root_names;
 
-use crate::findings::CheckOutcome;
 use crate::manifests::Member;
 use std::path::Path;
 
-/// Returns a finding for each shortest circle of each crate, except of those in `held_back`.
-pub(crate) fn check(
-    root: &Path,
-    members: &[Member],
-    held_back: &[&str],
-) -> Result<CheckOutcome, String> {
-    let mut outcome = CheckOutcome::default();
+/// Returns a finding for each shortest circle of each crate.
+pub(crate) fn check(root: &Path, members: &[Member]) -> Result<Vec<String>, String> {
+    let mut findings = Vec::new();
     for member in members {
         let folder = Path::new(&member.manifest_path)
             .parent()
             .ok_or_else(|| format!("{} lies nowhere", member.manifest_path))?;
-        let circles = of_crate(root, folder)?;
-        if !held_back.contains(&member.name.as_str()) {
-            let shown = circles
-                .iter()
-                .map(|circle| format!("{}: {circle}", member.name));
-            outcome.findings.extend(shown);
-        } else if circles.is_empty() {
-            outcome.findings.push(format!(
-                "{}: has no circles any more; take it out of CIRCLES_HELD_BACK",
-                member.name
-            ));
-        } else {
-            outcome.notes.push(format!(
-                "{}: {} circles, held back",
-                member.name,
-                circles.len()
-            ));
-        }
+        let circles = of_crate(root, folder)?.into_iter();
+        findings.extend(circles.map(|circle| format!("{}: {circle}", member.name)));
     }
-    Ok(outcome)
+    Ok(findings)
 }
 
 /// Returns the circles of the crate in `folder`, with files relative to `root`.
