@@ -123,7 +123,8 @@ def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
     options = json.dumps({"repeats": 1, "steps": 5, "worlds": 2})
     _native.bench_json("physics", HOUSE, options, lambda *part: told.append(part))
     fractions = [fraction for fraction, _ in told]
-    assert fractions[0] == 0.0 and fractions[-1] == 1.0 and fractions == sorted(set(fractions))
+    assert (fractions[0], fractions[-1]) == (0.0, 1.0)
+    assert fractions == sorted(set(fractions))
 
     def stop(fraction: float, what: str) -> None:
         raise KeyboardInterrupt(what)

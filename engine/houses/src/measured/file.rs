@@ -1,6 +1,6 @@
 //! What the file holds, nothing interpreted.
 
-use serde::de::{IgnoredAny, MapAccess, Visitor};
+use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -23,7 +23,7 @@ pub(super) struct MeasuredRoomFile {
     pub(super) materials: BTreeMap<String, MeasuredMaterial>,
     /// All other fields; they belong to the measurement.
     #[serde(flatten)]
-    pub(super) others: BTreeMap<String, IgnoredAny>,
+    pub(super) others: BTreeMap<String, serde_json::Value>,
 }
 
 /// A map in which no name stands twice: which of two materials counts is not for us to say.
@@ -62,7 +62,7 @@ pub(super) struct MeasuredMaterial {
     pub(super) scattering: BandCoefficient,
     /// All other fields.
     #[serde(flatten)]
-    pub(super) others: BTreeMap<String, IgnoredAny>,
+    pub(super) others: BTreeMap<String, serde_json::Value>,
 }
 
 /// One number for all bands, or one for each.

@@ -43,7 +43,7 @@ mod tests {
 
     impl Drop for Slow {
         fn drop(&mut self) {
-            let _ = self.1.recv_timeout(Duration::from_secs(60));
+            let _ = self.1.recv_timeout(Duration::from_mins(1));
             let _ = self.0.send(std::thread::current().id());
         }
     }
