@@ -164,15 +164,8 @@ impl PhysicsWorld {
                     stands[*joint].anew = true;
                 }
             }
-            joints::place(
-                &mut self.dynamics.engine,
-                &self.articulation.joints,
-                tree,
-                &stands,
-            );
         }
-        self.dynamics.flush();
-        self.articulation.write(&self.dynamics, state);
+        self.place_joints(state, &stands);
         for (root, velocity) in set {
             let found = state.part_velocity[root];
             let body = self.dynamics.model.body_of_part[root]

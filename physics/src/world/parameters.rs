@@ -180,12 +180,17 @@ impl PhysicsWorld {
                 shut: self.dynamics.holds[joint.child as usize] == BodyStatus::Latched,
             })
             .collect();
+        self.place_joints(state, &stands);
+    }
+
+    /// Puts all that hangs on joints where these say, and writes where it is. Shape of `stands`: (joint,).
+    pub(super) fn place_joints(&mut self, state: &mut State, stands: &[JointPlacement]) {
         for tree in &self.articulation.trees {
             joints::place(
                 &mut self.dynamics.engine,
                 &self.articulation.joints,
                 tree,
-                &stands,
+                stands,
             );
         }
         self.dynamics.flush();

@@ -31,8 +31,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 ///
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
-/// for a name that is a few letters from a field's, for a wall or face without a material, for tables of another length than the bands, and for a mesh that cannot be read or lies outside
-/// of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
+/// for a name that is a few letters from a field's, for a wall or face without a material, for tables of another length than the
+/// bands, and for a mesh that cannot be read or lies outside of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
 pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -1,11 +1,10 @@
 //! Names in the file that no field has: slips of the pen are refused, all others are the user's own.
 
+use super::file::MeasuredRoomFile;
 use crate::error::HousesError;
 use crate::name_suggestions::within;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
-
-use super::file::MeasuredRoomFile;
 
 /// The fields of the file, those of the measurement among them.
 const FIELDS: [&str; 11] = [
