@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import dwell
 from dwell import _native
+from dwell.actions import action_table
 from dwell.envs.spaces import action_space
 from pages import rust
-from pages.observations import settings_table
+from pages.observations import fields_table, settings_table
 from pages.tables import code, number, table
 
-_ACTION = "engine/world/src/action.rs"
-_REQUEST = "engine/world/src/action_request.rs"
-_HAND = "physics/src/actions/request.rs"
+_STRIDE = "engine/world/src/actions/step_sizes.rs"
 _OUTCOME = "physics/src/outcome.rs"
 _CONTROL = "physics/src/agents/control.rs"
 
@@ -24,16 +24,9 @@ _UNITS = {"rad_s": "rad/s", "m_s": "m/s"}
 
 
 def discrete() -> list[tuple[int, str, str]]:
-    """Number, name and text of an environment's actions.
-
-    Raises:
-        LookupError: The engine's list and its documentation disagree.
-    """
-    said = {one.name: one.about for one in rust.items(_ACTION, "DiscreteAction")}
-    names = _native.actions()
-    if list(said) != names:
-        raise LookupError(f"{_ACTION} documents {list(said)}; the engine has {names}")
-    return [(k, name, said[name]) for k, name in enumerate(names)]
+    """Number, name and text of an environment's actions."""
+    said = {kind["name"]: kind["about"] for kind in action_table()["kinds"]}
+    return [(k, name, said[name]) for k, name in enumerate(_native.actions())]
 
 
 def controls() -> list[rust.Item]:
@@ -41,9 +34,9 @@ def controls() -> list[rust.Item]:
     return rust.items(_CONTROL, "AgentControl")
 
 
-def hand() -> list[rust.Item]:
+def hand() -> list[dict[str, Any]]:
     """The kinds of action of the hand, with what each needs."""
-    return rust.items(_HAND, "Action")
+    return [kind for kind in action_table()["kinds"] if kind["is_of_hand"]]
 
 
 def _control_row(place: int, item: rust.Item) -> tuple[str, ...]:
@@ -74,7 +67,7 @@ def _limits(base: str) -> list[tuple[str, ...]]:
 def page() -> str:
     """The page."""
     space = action_space()
-    stride = settings_table(_ACTION, "StepSizes")
+    stride = settings_table(_STRIDE, "StepSizes")
     head = ("address", "default", "unit", "lowest", "highest")
     bases = "\n".join(f"### {_words(base)}\n\n{table(head, _limits(base))}" for base in _BASES)
     return f"""# Actions
@@ -112,9 +105,9 @@ sentence.
 
 {table(("kind", "what it does", "what it needs"), [_hand_row(one) for one in hand()])}
 The target is an object, a part of one, a pixel of a camera, a ray, or else what the agent looks
-at. The details:
+at:
 
-{settings_table(_REQUEST, "ActionRequest")}
+{fields_table(action_table()["target"])}
 ## Codes
 
 {
@@ -125,14 +118,10 @@ at. The details:
     }"""
 
 
-def _hand_row(item: rust.Item) -> tuple[str, ...]:
-    needs = [f"{_need(field)}: {_uncapped(field.about)}" for field in item.fields]
-    return (code(item.name), item.about, "; ".join(needs))
-
-
-def _need(field: rust.Item) -> str:
-    """A detail by its name; what is acted on can be said in several ways."""
-    return "target" if "Target" in (field.type or "") else code(field.name)
+def _hand_row(kind: dict[str, Any]) -> tuple[str, ...]:
+    needs = [f"target: {_uncapped(kind['target'])}"] if kind["target"] else []
+    needs += [f"{code(field['name'])}: {_uncapped(field['about'])}" for field in kind["fields"]]
+    return (code(kind["name"]), kind["about"], "; ".join(needs))
 
 
 def _uncapped(sentence: str) -> str:

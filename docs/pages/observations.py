@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 import dwell
 from dwell import _native
@@ -10,6 +11,7 @@ from dwell.envs.config import env_json
 from dwell.envs.python_tasks import NativeSensors, NativeSettings
 from dwell.envs.spaces import SensorSpace, specs
 from pages import rust
+from pages.schema_words import schema_words
 from pages.tables import code, number, table
 
 #: Shapes and ranges do not depend on the house.
@@ -61,6 +63,12 @@ def _row(spec: SensorSpace) -> tuple[str, ...]:
 def settings_table(path: str, struct: str) -> str:
     """Name, type and text of the fields of a struct of settings."""
     rows = [(code(one.name), _type(one), one.about) for one in rust.items(path, struct)]
+    return table(("field", "type", "what it is"), rows)
+
+
+def fields_table(fields: list[dict[str, Any]]) -> str:
+    """Name, type and text of fields that the engine describes."""
+    rows = [(code(one["name"]), schema_words(one["schema"]), one["about"]) for one in fields]
     return table(("field", "type", "what it is"), rows)
 
 

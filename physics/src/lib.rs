@@ -24,7 +24,7 @@
 // Each module uses only those before it in this order: what rapier and the house are (convert, error, config, report, model,
 // engine, body, inertia); what acts (joints, contact, bases, laws); the parts of a world (limits, start, dynamics, outcome,
 // articulation, contact_record, agents, hands, actions); world, which joins them.
-mod actions;
+pub mod actions;
 mod agents;
 mod articulation;
 pub mod bases;
@@ -47,7 +47,7 @@ mod report;
 mod start;
 mod world;
 
-pub use actions::{Action, Target};
+pub use actions::{HandAction, Target};
 pub use agents::AgentControl;
 pub use config::{ContactFriction, PhysicsConfig};
 pub use contact::{ContactEntity, ContactEvent, ContactKind, ContactPhase, MergedEvents};

@@ -2,10 +2,13 @@
 
 use dwell_scene::{AgentId, EntityId, ObjectId};
 use glam::Vec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Why an action did or did not work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum OutcomeCode {
@@ -141,7 +144,7 @@ pub struct ActionOutcome {
     pub sentence: String,
     /// The object it was about.
     pub object: Option<ObjectId>,
-    /// What was pointed at, after [`crate::Action::Point`].
+    /// What was pointed at, after [`crate::actions::Point`].
     pub pointed: Option<PointedTarget>,
 }
 

@@ -31,6 +31,7 @@ __all__ = [
     "UsageError",
     "World",
     "__version__",
+    "action_table_json",
     "actions",
     "bench_json",
     "calibrate",
@@ -356,6 +357,9 @@ def spares(
     """An environment over each house, with the episode of its seed begun where it has one."""
 
 def actions() -> list[str]: ...
+def action_table_json() -> str:
+    """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}]}``."""
+
 def tasks_json() -> str: ...
 def sensors_json() -> str: ...
 def laws_json() -> str: ...

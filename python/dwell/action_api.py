@@ -7,12 +7,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.actions import Outcome, action_json
+from dwell.actions import Outcome, action_json, takes_target
 from dwell.arguments import mapping, quoted, to_json, whole
 from dwell.object_state_api import StateApi
-
-#: Actions about what is in the hand.
-_OF_THE_HELD = ("drop", "throw")
 
 
 class ActionApi(StateApi):
@@ -67,7 +64,7 @@ class ActionApi(StateApi):
             request["object"] = object
         agent = whole("agent", agent)
         checked = json.loads(action_json(request))
-        if checked.get("kind") in _OF_THE_HELD and "object" in checked:
+        if "object" in checked and not takes_target(checked.get("kind", "")):
             self._refuse_not_held(agent, checked["kind"], checked.pop("object"))
         return Outcome._of(json.loads(self._native.act(agent, to_json(checked))))
 

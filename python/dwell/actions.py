@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
+import json
 from collections.abc import Mapping
 from typing import Any
 
-from dwell.arguments import fields, finite, mapping, pair, point, text, to_json, whole
+from dwell import _native
+from dwell.arguments import fields, finite, text, to_json, whole
 from dwell.camera import Camera, camera_settings
+from dwell.schemas import Check, checks
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,12 +59,6 @@ class Outcome:
         return cls(**{**told, "pointed": pointed})
 
 
-def _thing(name: str, value: object) -> str | int:
-    if isinstance(value, str):
-        return value
-    return whole(name, value, low=-(2**31), high=2**31 - 1)
-
-
 def _camera(name: str, value: object) -> dict[str, Any]:
     """A camera as what its pixels depend on."""
     if isinstance(value, Camera):
@@ -73,27 +71,30 @@ def _camera(name: str, value: object) -> dict[str, Any]:
 _NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects"}
 
 
-def _grasp(name: str, value: object) -> str | dict[str, Any]:
-    return value if isinstance(value, str) else mapping(name, value, "text or a mapping")
+@functools.cache
+def action_table() -> dict[str, list[dict[str, Any]]]:
+    """The kinds of actions, and the fields that name what an action is done to."""
+    table: dict[str, list[dict[str, Any]]] = json.loads(_native.action_table_json())
+    return table
 
 
-#: The fields of an action, and what they may be.
-_ACTION = {
-    "kind": text,
-    "object": _thing,
-    "part": text,
-    "pixel": pair,
-    "camera": _camera,
-    "origin": point,
-    "direction": point,
-    "point": point,
-    "speed_m_s": finite,
-    "force_n": finite,
-    "fraction": finite,
-    "grasp": _grasp,
-}
+@functools.cache
+def _checks() -> dict[str, Check]:
+    """The fields of an action, and what they may be."""
+    table = action_table()
+    of_kinds = (checks(kind["fields"]) for kind in table["kinds"])
+    found: dict[str, Check] = {"kind": text, **checks(table["target"])}
+    return {**found, **{name: one for kind in of_kinds for name, one in kind.items()}} | {
+        "camera": _camera
+    }
+
+
+def takes_target(kind: str) -> bool:
+    """Whether a kind of action is done to a thing; unknown ones may be."""
+    rows = {row["name"]: row for row in action_table()["kinds"]}
+    return kind not in rows or rows[kind]["target"] is not None
 
 
 def action_json(request: Mapping[str, Any]) -> str:
     """An action as the native half reads it."""
-    return to_json(fields("", request, _ACTION))
+    return to_json(fields("", request, _checks()))

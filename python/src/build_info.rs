@@ -14,6 +14,25 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
+/// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field]}`, the discrete ones first, in the order of
+/// their numbers. A field is `{name, about, required, schema}`; a kind's `target` says what it is done to, and is null where it is
+/// done to nothing; the fields that name a target stand once.
+#[pyfunction]
+pub(crate) fn action_table_json() -> String {
+    let kinds = dwell::actions::all().iter().map(|kind| {
+        json!({
+            "name": kind.name,
+            "about": kind.about(),
+            "is_of_hand": kind.is_of_hand(),
+            "target": kind.target_about(),
+            "fields": kind.fields(),
+        })
+    });
+    let kinds: Value = kinds.collect();
+    let target = dwell::schema::fields::<dwell::actions::TargetRequest>();
+    json!({"kinds": kinds, "target": target}).to_string()
+}
+
 /// The tasks: `[{name, version, about, asks, max_steps, sensors}]`.
 #[pyfunction]
 pub(crate) fn tasks_json() -> String {

@@ -49,6 +49,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<hrtf::PyHead>()?;
     module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::action_table_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::tasks_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::sensors_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::laws_json, module)?)?;

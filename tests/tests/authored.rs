@@ -9,7 +9,7 @@
 use dwell::{Engines, World, WorldConfig};
 use dwell_acoustics::{AcousticConfig, AcousticScene};
 use dwell_houses::authoring::{FileAccess, HousePlan, build};
-use dwell_physics::Action;
+use dwell_physics::actions;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, House, State};
 use glam::Vec3;
@@ -115,7 +115,7 @@ fn a_hand_opens_the_door() {
     assert!(openness(&world) < 0.01);
     let outcome = world.act(
         AGENT,
-        &Action::Open {
+        &actions::Open {
             target: door.into(),
             fraction: 1.0,
         },
@@ -357,7 +357,7 @@ fn a_hand_opens_a_door_that_a_map_has_hung() {
     world
         .place_agent(AGENT, Vec3::new(1.9, 0.0, 2.9), 0.0)
         .unwrap();
-    let open = Action::Open {
+    let open = actions::Open {
         target: door.into(),
         fraction: 1.0,
     };

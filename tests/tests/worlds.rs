@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell::{DiscreteAction, StepSizes, World, WorldConfig, object_states};
-use dwell_physics::{Action, AgentControl, BodyState};
+use dwell_physics::{AgentControl, BodyState, actions};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Mobility, ObjectId, Pose, Velocity};
 use glam::Vec3;
@@ -188,7 +188,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
         let yaw = dwell_scene::space::yaw_from_forward(center - *place);
         world.place_agent(AGENT, *place, yaw).unwrap();
         world.step(&[AgentControl::default()]).unwrap();
-        world.act(AGENT, &Action::pick(object)).success
+        world.act(AGENT, &actions::Pick::new(object)).success
     });
     assert!(taken.is_some(), "{} can be taken from nowhere", thing.name);
     assert_eq!(world.state().held_by[object], Some(AGENT));
@@ -198,7 +198,7 @@ fn what_a_hand_takes_moves_with_the_agent_and_is_known_as_held() {
             .act_discrete(AGENT, DiscreteAction::TurnLeft, &StepSizes::default())
             .unwrap();
     }
-    assert!(world.act(AGENT, &Action::Drop).success);
+    assert!(world.act(AGENT, &actions::Drop {}).success);
     assert_eq!(world.state().held_by[object], None);
 }
 

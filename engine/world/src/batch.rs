@@ -1,6 +1,6 @@
 //! Several environments stepped together: all views in one submission, results in the caller's buffers.
 
-use crate::action::DiscreteAction;
+use crate::actions::DiscreteAction;
 use crate::batch_pictures::{self, PendingPictures};
 use crate::env::{Env, StepInfo};
 use crate::error::WorldError;

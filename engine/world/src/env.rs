@@ -1,6 +1,6 @@
 //! One agent's environment: a world, a task and sensors, stepped by discrete actions.
 
-use crate::action::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, StepSizes};
 use crate::camera_capture::PictureRequest;
 use crate::config::WorldConfig;
 use crate::engines::Engines;

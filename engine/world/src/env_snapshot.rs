@@ -83,7 +83,7 @@ impl Env {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::DiscreteAction;
+    use crate::actions::DiscreteAction;
     use crate::engines::Engines;
     use crate::env::{EnvConfig, StepInfo};
     use std::sync::Arc;

@@ -106,7 +106,7 @@ fn check_distance(distance_m: Option<f64>) -> Result<(), WorldError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::DiscreteAction;
+    use crate::actions::DiscreteAction;
     use crate::engines::Engines;
     use crate::env::{EnvConfig, SensorConfig};
     use std::sync::Arc;

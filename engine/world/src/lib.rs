@@ -3,8 +3,7 @@
 //! A [`World`] is stepped at the control rate. An [`Env`] adds a task and sensors; a [`Batch`] steps several and renders
 //! all their views in one submission.
 
-mod action;
-mod action_request;
+pub mod actions;
 mod air_position;
 mod batch;
 mod batch_pictures;
@@ -33,6 +32,7 @@ mod plain_json_error;
 mod recordings;
 mod release_memory;
 mod room_surfaces;
+pub mod schema;
 mod sensor_requests;
 pub mod sensors;
 mod sound;
@@ -41,8 +41,7 @@ mod world;
 mod world_snapshot;
 mod world_sounds;
 
-pub use action::{DiscreteAction, StepSizes};
-pub use action_request::{ActionRequest, ObjectRef, PixelCamera};
+pub use actions::{ActionRequest, DiscreteAction, ObjectRef, PixelCamera, StepSizes};
 pub use batch::Batch;
 pub use camera_capture::{CameraMount, PictureRequest};
 pub use config::WorldConfig;

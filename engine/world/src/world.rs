@@ -7,7 +7,7 @@ use crate::initial_state::InitialWorld;
 use crate::motion_history::{MotionHistory, PreviousState};
 use crate::sound::{StepContext, WorldSound};
 use dwell_physics::{
-    Action, ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, JointState,
+    ActionOutcome, AgentControl, AgentPlacement, BodyState, ContactEvent, HandAction, JointState,
     PhysicsWorld, StartReport,
 };
 use dwell_render::BackEnd;
@@ -123,7 +123,7 @@ impl World {
     }
 
     /// Lets an agent do something with its hand.
-    pub fn act(&mut self, agent: AgentId, action: &Action) -> ActionOutcome {
+    pub fn act(&mut self, agent: AgentId, action: &dyn HandAction) -> ActionOutcome {
         let outcome = self.physics.act(&mut self.state, &self.rays, agent, action);
         self.rays.update(&self.state);
         outcome

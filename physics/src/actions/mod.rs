@@ -1,12 +1,18 @@
 //! What an agent's hand does: take, put, throw, push, let go, open, close, switch, point. Each says whether it worked and
 //! why.
 
+mod close;
 mod doors;
+mod drop;
 mod hand;
+mod hand_action;
+mod open;
+mod pick;
 mod place;
 mod place_at;
 mod placement_trial;
 mod point;
+mod pull;
 mod push;
 mod put_in;
 mod reach;
@@ -16,8 +22,21 @@ mod switch;
 mod target;
 mod throw;
 
+pub use close::Close;
+pub use drop::Drop;
+pub use hand_action::{Hand, HandAction};
+pub use open::Open;
+pub use pick::Pick;
+pub use place::Place;
+pub use place_at::PlaceAt;
+pub use point::Point;
+pub use pull::Pull;
+pub use push::Push;
 pub(crate) use push::{OngoingPush, advance_pushes};
-pub use request::{Action, Target};
+pub use put_in::PutIn;
+pub use request::Target;
+pub use switch::Toggle;
+pub use throw::Throw;
 
 use crate::agents::Agents;
 use crate::articulation::JointSystem;
@@ -27,7 +46,7 @@ use crate::outcome::ActionOutcome;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, State};
 
-/// What an action works with: who does it, and what it sees.
+/// Who does an action, and what the agent sees.
 #[derive(Clone, Copy)]
 struct Actor<'a> {
     id: AgentId,
@@ -44,44 +63,28 @@ pub(crate) struct ActionContext<'a> {
     pub(crate) pushes: &'a mut Vec<OngoingPush>,
 }
 
-impl ActionContext<'_> {
+impl<'a> ActionContext<'a> {
     /// Lets an agent do something with its hand. `rays` must show `state` as it is.
     pub(crate) fn perform(
-        &mut self,
-        state: &mut State,
-        rays: &RayScene,
+        self,
+        state: &'a mut State,
+        rays: &'a RayScene,
         agent: AgentId,
-        action: &Action,
+        action: &dyn HandAction,
     ) -> ActionOutcome {
         let actor = Actor {
             id: agent,
             body: state.agents[agent],
             rays,
         };
-        let outcome = match *action {
-            Action::Pick { target, grasp } => self.pick(state, actor, &target, grasp),
-            Action::Drop => Ok(self.let_go(state, agent)),
-            Action::Place { on } => self.put_on(state, actor, on.as_ref()),
-            Action::PlaceAt { point } => self.put_at(state, actor, point),
-            Action::PutIn { container } => self.put_in(state, actor, &container),
-            Action::Throw {
-                direction,
-                speed_m_s,
-            } => self.throw(state, actor, direction, speed_m_s),
-            Action::Push { target, force_n } => {
-                self.start_push(state, actor, &target, force_n, 1.0)
-            }
-            Action::Pull { target, force_n } => {
-                self.start_push(state, actor, &target, force_n, -1.0)
-            }
-            Action::Open { target, fraction } => self.swing(state, actor, &target, fraction),
-            Action::Close { target } => self.swing(state, actor, &target, 0.0),
-            Action::Toggle { target } => self.toggle(state, actor, &target),
-            Action::Point { target } => self.point(state, actor, &target),
+        let mut hand = Hand {
+            context: self,
+            state,
+            actor,
         };
-        outcome.unwrap_or_else(|refusal| *refusal)
+        hand.perform(action)
     }
 }
 
-/// What an action comes to, or why it was refused.
-type ActionResult = Result<ActionOutcome, Box<ActionOutcome>>;
+/// What an action comes to, or the outcome that says why it was refused.
+pub type ActionResult = Result<ActionOutcome, Box<ActionOutcome>>;

@@ -1,5 +1,6 @@
 //! Putting what is held down on something.
 
+use super::hand_action::{Hand, HandAction};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::{ActionContext, ActionResult, Actor};
@@ -11,6 +12,8 @@ use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{Entity, ObjectId, State, SurfaceOwner};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Places a side that are tried on top of a thing.
 const GRID: u32 = 13;
@@ -28,6 +31,31 @@ struct ObjectPlacement {
     pose: RapierPose,
     on: Option<ObjectId>,
     name: String,
+}
+
+/// Puts what it holds down at a free, steady spot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Place {
+    /// What to put it on: an object, or the floor that a ray meets (the spot nearest to where it does). Without it any
+    /// level surface in view, the one nearest to the middle of the view first.
+    pub target: Option<Target>,
+}
+
+impl Place {
+    /// Puts what is held on a thing.
+    pub fn on(target: impl Into<Target>) -> Self {
+        Self {
+            target: Some(target.into()),
+        }
+    }
+}
+
+impl HandAction for Place {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context
+            .put_on(hand.state, hand.actor, self.target.as_ref())
+    }
 }
 
 impl ActionContext<'_> {

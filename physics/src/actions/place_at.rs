@@ -1,13 +1,31 @@
 //! Putting what is held down at a point.
 
+use super::hand_action::{Hand, HandAction};
 use super::{ActionContext, ActionResult, Actor};
 use crate::dynamics::SupportFilter;
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How far above or below the point a surface may lie, m.
 const SURFACE_M: f32 = 0.03;
+
+/// Puts what it holds down with the middle of its foot at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PlaceAt {
+    /// m; a surface must lie within 3 cm of it.
+    #[schemars(with = "[f32; 3]")]
+    pub point: Vec3,
+}
+
+impl HandAction for PlaceAt {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context.put_at(hand.state, hand.actor, self.point)
+    }
+}
 
 impl ActionContext<'_> {
     pub(super) fn put_at(

@@ -1,9 +1,26 @@
 //! Pointing.
 
+use super::hand_action::{Hand, HandAction};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, PointedTarget, done, fail};
 use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Points: answers with what is there, where, and how far from the eye. Nothing is too far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Point {
+    /// What to point at.
+    pub target: Target,
+}
+
+impl HandAction for Point {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context.point(hand.state, hand.actor, &self.target)
+    }
+}
 
 impl ActionContext<'_> {
     pub(super) fn point(

@@ -1,5 +1,6 @@
 //! Pushing and pulling: a force for a short while, and then how far the thing went.
 
+use super::hand_action::{Hand, HandAction};
 use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
@@ -9,6 +10,7 @@ use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode, done, fail};
 use dwell_scene::{AgentId, ObjectId, State};
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How long a push lasts, s.
@@ -33,6 +35,23 @@ pub(crate) struct OngoingPush {
     start: Vec3,
     /// Whether the hand has turned to something else since.
     left: bool,
+}
+
+/// Pushes something away for a quarter of a second.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Push {
+    /// What to push; a ray says where.
+    pub target: Target,
+    /// N, above 0; more than the agent's strength is cut. Without it all of it.
+    pub force_n: Option<f32>,
+}
+
+impl HandAction for Push {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context
+            .start_push(hand.state, hand.actor, &self.target, self.force_n, 1.0)
+    }
 }
 
 impl ActionContext<'_> {

@@ -1,5 +1,6 @@
 //! Putting what is held into a container.
 
+use super::hand_action::{Hand, HandAction};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::target::ResolvedTarget;
@@ -14,6 +15,8 @@ use glam::Vec3;
 use rapier3d::geometry::{Collider, ColliderHandle, Ray};
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::pipeline::QueryFilter;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Places a side that are tried inside.
 const GRID: u32 = 7;
@@ -34,6 +37,20 @@ struct InsertionSearch {
     fits: bool,
     in_reach: bool,
     in_sight: bool,
+}
+
+/// Puts what it holds into a container: a drawer, cupboard, bowl, box or basin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct PutIn {
+    /// The container.
+    pub target: Target,
+}
+
+impl HandAction for PutIn {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context.put_in(hand.state, hand.actor, &self.target)
+    }
 }
 
 impl ActionContext<'_> {

@@ -1,9 +1,35 @@
 //! Switching things on and off.
 
+use super::hand_action::{Hand, HandAction};
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{JointId, State};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Switches something on or off.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Toggle {
+    /// What to switch.
+    pub target: Target,
+}
+
+impl Toggle {
+    /// Switches a thing on or off.
+    pub fn new(target: impl Into<Target>) -> Self {
+        Self {
+            target: target.into(),
+        }
+    }
+}
+
+impl HandAction for Toggle {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context.toggle(hand.state, hand.actor, &self.target)
+    }
+}
 
 impl ActionContext<'_> {
     pub(super) fn toggle(

@@ -1,10 +1,13 @@
 //! Throwing.
 
+use super::hand_action::{Hand, HandAction};
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::State;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// How far the hand goes with what it throws, m: an estimate of ours for an arm.
 const STROKE_M: f32 = 0.5;
@@ -16,6 +19,37 @@ const FASTEST_M_S: f32 = 20.0;
 fn fastest_m_s(lift_kg: f32, mass_kg: f32, gravity_m_s2: f32) -> f32 {
     let work_j = lift_kg * gravity_m_s2 * STROKE_M;
     (2.0 * work_j / mass_kg.max(1e-6)).sqrt().min(FASTEST_M_S)
+}
+
+/// Throws what it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Throw {
+    /// In world space, of any length but zero; without it where the agent looks.
+    #[schemars(with = "Option<[f32; 3]>")]
+    pub direction: Option<Vec3>,
+    /// m/s, 0 or more; what is more than the agent's strength allows is cut.
+    #[schemars(range(min = 0.0))]
+    pub speed_m_s: f32,
+}
+
+impl Default for Throw {
+    fn default() -> Self {
+        Self {
+            direction: None,
+            speed_m_s: 3.0,
+        }
+    }
+}
+
+impl HandAction for Throw {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        let actor = hand.actor;
+        let ahead = actor.body.world_from_eye().transform_vector(Vec3::NEG_Z);
+        let direction = self.direction.unwrap_or(ahead);
+        hand.context
+            .throw(hand.state, actor, direction, self.speed_m_s)
+    }
 }
 
 impl ActionContext<'_> {

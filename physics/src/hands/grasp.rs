@@ -1,9 +1,10 @@
 //! How a hand holds a thing.
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a hand holds a thing. In both ways the thing stays a rigid body that walls and furniture stop.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Grasp {
     /// It follows the hand within one physics step, as far as the hand's force allows.
@@ -13,8 +14,10 @@ pub enum Grasp {
     /// frequency, lags and swings.
     Spring {
         /// Natural frequency, Hz; 0.5 to 20.
+        #[schemars(range(min = 0.5, max = 20.0))]
         frequency_hz: f32,
         /// 1 is critical; 0.05 to 4.
+        #[schemars(range(min = 0.05, max = 4.0))]
         damping_ratio: f32,
     },
 }

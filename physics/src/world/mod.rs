@@ -13,7 +13,7 @@ mod step;
 pub use agent_placement::AgentPlacement;
 pub use set_state::{BodyState, JointState};
 
-use crate::actions::{Action, ActionContext, OngoingPush};
+use crate::actions::{ActionContext, HandAction, OngoingPush};
 use crate::agents::Agents;
 use crate::articulation::JointSystem;
 use crate::body::{BodyHandle, BodyStatus};
@@ -157,7 +157,7 @@ impl PhysicsWorld {
         state: &mut State,
         rays: &RayScene,
         agent: AgentId,
-        action: &Action,
+        action: &dyn HandAction,
     ) -> ActionOutcome {
         let count = self.agents.list.len();
         if agent.index() >= count || agent.index() >= state.agents.len() {
@@ -168,7 +168,7 @@ impl PhysicsWorld {
             let sentence = format!("Nothing was done: {error}.");
             return fail(OutcomeCode::ForeignState, sentence, None);
         }
-        let mut context = ActionContext {
+        let context = ActionContext {
             dynamics: &mut self.dynamics,
             articulation: &mut self.articulation,
             agents: &self.agents,

@@ -1,7 +1,7 @@
 //! The hand: each refusal has its code and a sentence a person can act on.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, AgentControl, OutcomeCode};
+use dwell_physics::{AgentControl, OutcomeCode, actions};
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 use std::f32::consts::PI;
@@ -61,9 +61,9 @@ fn kitchen() -> Kitchen {
 fn every_refusal_says_why_and_what_to_do() {
     let mut k = kitchen();
     let (agent, mug) = (k.agent, k.mug);
-    let told = k.run.act(agent, Action::Drop);
+    let told = k.run.act(agent, actions::Drop {});
     assert_eq!((told.success, told.code), (false, OutcomeCode::HandEmpty));
-    let told = k.run.act(agent, Action::pick(k.anvil));
+    let told = k.run.act(agent, actions::Pick::new(k.anvil));
     assert_eq!(told.code, OutcomeCode::TooHeavy);
     assert!(
         told.sentence.contains("62.4 kg") && told.sentence.contains("10.0 kg"),
@@ -71,33 +71,33 @@ fn every_refusal_says_why_and_what_to_do() {
         told.sentence
     );
     assert_eq!(
-        k.run.act(agent, Action::pick(k.table)).code,
+        k.run.act(agent, actions::Pick::new(k.table)).code,
         OutcomeCode::NotPickable
     );
     assert_eq!(
-        k.run.act(agent, Action::open(k.table)).code,
+        k.run.act(agent, actions::Open::new(k.table)).code,
         OutcomeCode::NotOpenable
     );
     assert_eq!(
-        k.run.act(agent, Action::toggle(k.table)).code,
+        k.run.act(agent, actions::Toggle::new(k.table)).code,
         OutcomeCode::NoSwitch
     );
     assert_eq!(
-        k.run.act(agent, Action::pick(ObjectId(999))).code,
+        k.run.act(agent, actions::Pick::new(ObjectId(999))).code,
         OutcomeCode::UnknownObject
     );
     assert_eq!(
-        k.run.act(AgentId(7), Action::Drop).code,
+        k.run.act(AgentId(7), actions::Drop {}).code,
         OutcomeCode::UnknownAgent
     );
-    let told = k.run.act(agent, Action::pick(k.hidden));
+    let told = k.run.act(agent, actions::Pick::new(k.hidden));
     assert_eq!(told.code, OutcomeCode::NotVisible, "{}", told.sentence);
     assert!(told.sentence.contains("screen"), "{}", told.sentence);
     k.run
         .world
         .place_agent(&mut k.run.state, agent, Vec3::new(3.0, 0.0, 5.0), 0.0)
         .unwrap();
-    let told = k.run.act(agent, Action::pick(mug));
+    let told = k.run.act(agent, actions::Pick::new(mug));
     assert_eq!(told.code, OutcomeCode::TooFar);
     assert_eq!(
         told.sentence,
@@ -107,7 +107,7 @@ fn every_refusal_says_why_and_what_to_do() {
         .world
         .place_agent(&mut k.run.state, agent, Vec3::new(3.0, 0.0, 3.1), PI)
         .unwrap();
-    let told = k.run.act(agent, Action::pick(mug));
+    let told = k.run.act(agent, actions::Pick::new(mug));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (OutcomeCode::Behind, "The mug is behind you. Turn around.")
@@ -118,7 +118,7 @@ fn every_refusal_says_why_and_what_to_do() {
 #[test]
 fn a_thing_is_picked_carried_and_dropped() {
     let mut k = kitchen();
-    let told = k.run.act(k.agent, Action::pick(k.mug));
+    let told = k.run.act(k.agent, actions::Pick::new(k.mug));
     assert_eq!(
         (told.success, told.code, told.sentence.as_str()),
         (true, OutcomeCode::Done, "You hold the mug.")
@@ -126,7 +126,7 @@ fn a_thing_is_picked_carried_and_dropped() {
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));
     assert_eq!(k.run.state.agents[k.agent].holding, Some(k.mug));
     assert_eq!(
-        k.run.act(k.agent, Action::pick(k.hidden)).code,
+        k.run.act(k.agent, actions::Pick::new(k.hidden)).code,
         OutcomeCode::HandFull
     );
     // It follows while the agent walks backwards and turns.
@@ -147,7 +147,7 @@ fn a_thing_is_picked_carried_and_dropped() {
         );
     }
     assert!(k.run.position(k.mug).y > 0.9);
-    let told = k.run.act(k.agent, Action::Drop);
+    let told = k.run.act(k.agent, actions::Drop {});
     assert_eq!(
         (told.success, told.sentence.as_str()),
         (true, "You let go of the mug.")
@@ -161,7 +161,7 @@ fn a_thing_is_picked_carried_and_dropped() {
 #[test]
 fn a_held_thing_never_passes_a_wall() {
     let mut k = kitchen();
-    k.run.act(k.agent, Action::pick(k.mug));
+    k.run.act(k.agent, actions::Pick::new(k.mug));
     k.run
         .world
         .place_agent(&mut k.run.state, k.agent, Vec3::new(3.0, 0.0, 5.0), PI)
@@ -189,8 +189,8 @@ fn a_held_thing_never_passes_a_wall() {
 #[test]
 fn a_thing_is_put_on_a_table_and_stays_there() {
     let mut k = kitchen();
-    k.run.act(k.agent, Action::pick(k.mug));
-    let told = k.run.act(k.agent, Action::place(k.table));
+    k.run.act(k.agent, actions::Pick::new(k.mug));
+    let told = k.run.act(k.agent, actions::Place::on(k.table));
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     k.run.walk(30, &[]);
     let at = k.run.position(k.mug);
@@ -204,13 +204,13 @@ fn a_thing_is_put_on_a_table_and_stays_there() {
 #[test]
 fn a_lamp_is_switched_on_and_off() {
     let mut k = kitchen();
-    let told = k.run.act(k.agent, Action::toggle(k.lamp));
+    let told = k.run.act(k.agent, actions::Toggle::new(k.lamp));
     assert_eq!(
         (told.success, told.sentence.as_str()),
         (true, "You switch the lamp on.")
     );
     assert!(k.run.state.switched_on[k.lamp]);
-    let told = k.run.act(k.agent, Action::toggle(k.lamp));
+    let told = k.run.act(k.agent, actions::Toggle::new(k.lamp));
     assert_eq!(told.sentence, "You switch the lamp off.");
 }
 
@@ -218,8 +218,8 @@ fn a_lamp_is_switched_on_and_off() {
 fn nobody_takes_from_another_hand() {
     let mut k = kitchen();
     let other = k.run.agent(Vec3::new(2.6, 0.0, 3.0), 0.0);
-    k.run.act(k.agent, Action::pick(k.mug));
-    let told = k.run.act(other, Action::pick(k.mug));
+    k.run.act(k.agent, actions::Pick::new(k.mug));
+    let told = k.run.act(other, actions::Pick::new(k.mug));
     assert_eq!(told.code, OutcomeCode::HeldByOther, "{}", told.sentence);
     k.run.walk(5, &[forward(0.0)]);
     assert_eq!(k.run.state.held_by[k.mug], Some(k.agent));

@@ -1,7 +1,7 @@
 //! What is meant: by id, by ray, by gaze; and everything that means nothing.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, OutcomeCode, Target};
+use dwell_physics::{HandAction, OutcomeCode, Target, actions};
 use dwell_scene::{AgentId, EntityId, JointId, ObjectId, PartId};
 use glam::Vec3;
 
@@ -70,17 +70,18 @@ fn ids_that_do_not_exist_fail_with_how_many_there_are() {
     ];
     let before = room.run.hash();
     for (target, sentence) in cases {
-        for action in [
-            Action::pick(target),
-            Action::open(target),
-            Action::close(target),
-            Action::toggle(target),
-            Action::Point { target },
-            Action::Push {
+        let all: [&dyn HandAction; 6] = [
+            &actions::Pick::new(target),
+            &actions::Open::new(target),
+            &actions::Close::new(target),
+            &actions::Toggle::new(target),
+            &actions::Point { target },
+            &actions::Push {
                 target,
                 force_n: None,
             },
-        ] {
+        ];
+        for action in all {
             let told = room.run.act(room.agent, action);
             assert_eq!(
                 (told.success, told.code, told.sentence.as_str()),
@@ -89,7 +90,7 @@ fn ids_that_do_not_exist_fail_with_how_many_there_are() {
             );
         }
     }
-    let told = room.run.act(AgentId(2), Action::Drop);
+    let told = room.run.act(AgentId(2), actions::Drop {});
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -105,7 +106,12 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
     let mut room = room();
     let own = room.run.house.entity_of_agent(room.agent);
     let other = room.run.house.entity_of_agent(AgentId(1));
-    for action in [Action::pick(own), Action::open(own), Action::toggle(own)] {
+    let all: [&dyn HandAction; 3] = [
+        &actions::Pick::new(own),
+        &actions::Open::new(own),
+        &actions::Toggle::new(own),
+    ];
+    for action in all {
         let told = room.run.act(room.agent, action);
         assert_eq!(
             (told.code, told.sentence.as_str()),
@@ -114,9 +120,9 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
     }
     let told = room
         .run
-        .act(room.agent, Action::Point { target: own.into() });
+        .act(room.agent, actions::Point { target: own.into() });
     assert_eq!(told.code, OutcomeCode::Oneself, "{}", told.sentence);
-    let told = room.run.act(room.agent, Action::pick(other));
+    let told = room.run.act(room.agent, actions::Pick::new(other));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -125,7 +131,7 @@ fn nobody_takes_oneself_somebody_else_or_the_building() {
         )
     );
     let wall = towards(&room.run, room.agent, Vec3::new(1.0, 2.0, 0.0));
-    let told = room.run.act(room.agent, Action::pick(wall));
+    let told = room.run.act(room.agent, actions::Pick::new(wall));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -148,7 +154,7 @@ fn rays_of_nonsense_are_refused() {
     ];
     for (origin, direction) in rays {
         let target = Target::Ray { origin, direction };
-        let told = room.run.act(room.agent, Action::pick(target));
+        let told = room.run.act(room.agent, actions::Pick::new(target));
         assert_eq!(told.code, OutcomeCode::BadNumber, "{origin} {direction}");
         assert!(
             told.sentence.contains("give finite numbers"),
@@ -161,7 +167,7 @@ fn rays_of_nonsense_are_refused() {
         origin: Vec3::new(0.0, 50.0, 0.0),
         direction: Vec3::Y,
     };
-    let told = room.run.act(room.agent, Action::pick(target));
+    let told = room.run.act(room.agent, actions::Pick::new(target));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -176,20 +182,20 @@ fn a_thing_is_taken_by_ray_and_by_gaze() {
     let mut room = room();
     let at = room.run.position(room.mug);
     let target = towards(&room.run, room.agent, at);
-    let told = room.run.act(room.agent, Action::pick(target));
+    let told = room.run.act(room.agent, actions::Pick::new(target));
     assert_eq!(
         (told.code, told.object),
         (OutcomeCode::Done, Some(room.mug)),
         "{}",
         told.sentence
     );
-    room.run.act(room.agent, Action::Drop);
+    room.run.act(room.agent, actions::Drop {});
     // Looking down at a slope of 0.97 m in 0.7 m.
     let mut room = self::room();
     let eye = room.run.state.agents[room.agent].eye_position();
     let down = room.run.position(room.mug) - eye;
     room.run.state.agents[room.agent].pitch_rad = (down.y / -down.z).atan();
-    let told = room.run.act(room.agent, Action::pick(Target::Gaze));
+    let told = room.run.act(room.agent, actions::Pick::new(Target::Gaze));
     assert_eq!(
         (told.code, told.object),
         (OutcomeCode::Done, Some(room.mug))
@@ -203,7 +209,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
     let target = towards(&room.run, room.agent, front);
     let told = room.run.act(
         room.agent,
-        Action::Open {
+        actions::Open {
             target,
             fraction: 0.5,
         },
@@ -228,7 +234,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
     let openness =
         room.run.house.joints[room.drawer].openness(room.run.state.joint_position[room.drawer]);
     assert!((openness - 0.5).abs() < 0.02, "{openness}");
-    let again = Action::Open {
+    let again = actions::Open {
         target: room.chest.into(),
         fraction: 0.5,
     };
@@ -241,7 +247,7 @@ fn a_ray_at_one_drawer_opens_that_joint_to_the_fraction() {
         )
     );
     for fraction in [f32::NAN, -0.1, 1.1, f32::INFINITY] {
-        let action = Action::Open {
+        let action = actions::Open {
             target: room.chest.into(),
             fraction,
         };
@@ -261,7 +267,7 @@ fn pointing_names_what_is_there_and_how_far() {
     let mut room = room();
     let told = room.run.act(
         room.agent,
-        Action::Point {
+        actions::Point {
             target: Target::Gaze,
         },
     );
@@ -274,7 +280,7 @@ fn pointing_names_what_is_there_and_how_far() {
         origin: eye,
         direction: Vec3::X,
     };
-    let told = room.run.act(room.agent, Action::Point { target: right });
+    let told = room.run.act(room.agent, actions::Point { target: right });
     let pointed = told.pointed.expect("somebody");
     assert_eq!(pointed.entity, room.run.house.entity_of_agent(AgentId(1)));
     assert!(
@@ -284,7 +290,7 @@ fn pointing_names_what_is_there_and_how_far() {
     );
     let told = room.run.act(
         room.agent,
-        Action::Point {
+        actions::Point {
             target: room.mug.into(),
         },
     );

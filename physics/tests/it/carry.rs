@@ -1,7 +1,7 @@
 //! Carrying: what is held passes no wall, whatever its holder does.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, AgentControl, Grasp, OutcomeCode};
+use dwell_physics::{AgentControl, Grasp, OutcomeCode, actions};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
@@ -19,7 +19,7 @@ fn doorway(half: Vec3, grasp: Grasp) -> (Run, AgentId, ObjectId) {
     run.steps(2);
     let told = run.act(
         agent,
-        Action::Pick {
+        actions::Pick {
             target: thing.into(),
             grasp,
         },
@@ -108,7 +108,7 @@ fn a_held_thing_never_crosses_a_wall_however_its_holder_moves() {
                 if run.state.held_by[thing].is_some() {
                     held_steps += 1;
                 } else {
-                    let told = run.act(agent, Action::pick(thing));
+                    let told = run.act(agent, actions::Pick::new(thing));
                     let after = run.position(thing);
                     assert!(
                         !crosses(at, after),
@@ -137,7 +137,7 @@ fn taking_a_thing_beside_a_wall_leaves_it_on_this_side() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(4.5, 0.0, 3.28), 0.0);
     run.steps(2);
-    let told = run.act(agent, Action::pick(thing));
+    let told = run.act(agent, actions::Pick::new(thing));
     assert!(
         told.success || told.code == OutcomeCode::Behind,
         "{}",
@@ -199,10 +199,10 @@ fn a_spring_sags_as_its_frequency_says() {
     }
     for (frequency_hz, damping_ratio) in [(0.0, 1.0), (f32::NAN, 1.0), (5.0, -1.0), (500.0, 1.0)] {
         let (mut run, agent, thing) = doorway(Vec3::splat(0.06), Grasp::Kinematic);
-        run.act(agent, Action::Drop);
+        run.act(agent, actions::Drop {});
         let told = run.act(
             agent,
-            Action::Pick {
+            actions::Pick {
                 target: thing.into(),
                 grasp: Grasp::Spring {
                     frequency_hz,
@@ -235,7 +235,7 @@ fn what_stands_on_a_thing_comes_along_when_it_is_taken() {
     let agent = run.agent(Vec3::new(3.0, 0.0, 2.9), 0.0);
     run.steps(10);
     assert_eq!(run.state.rests_on(&run.house, block), [Some(tray)]);
-    assert!(run.act(agent, Action::pick(tray)).success);
+    assert!(run.act(agent, actions::Pick::new(tray)).success);
     run.steps(60);
     run.walk(40, &[forward(-0.3)]);
     assert_eq!(run.state.held_by[tray], Some(agent));

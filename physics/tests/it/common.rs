@@ -318,7 +318,7 @@ impl Run {
     pub(crate) fn act(
         &mut self,
         agent: AgentId,
-        action: dwell_physics::Action,
+        action: impl dwell_physics::HandAction,
     ) -> dwell_physics::ActionOutcome {
         let outcome = self.world.act(&mut self.state, &self.rays, agent, &action);
         self.rays.update(&self.state);

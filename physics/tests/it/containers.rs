@@ -1,7 +1,7 @@
 //! Putting things in: open and roomy, or refused with the reason.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, OutcomeCode};
+use dwell_physics::{HandAction, OutcomeCode, actions};
 use dwell_scene::{AgentId, JointId, ObjectId};
 use glam::Vec3;
 
@@ -29,7 +29,7 @@ fn room(half: Vec3) -> Room {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(3.0, 0.0, 3.0), 0.0);
     run.steps(5);
-    let told = run.act(agent, Action::pick(thing));
+    let told = run.act(agent, actions::Pick::new(thing));
     assert!(told.success, "{}", told.sentence);
     Room {
         run,
@@ -41,9 +41,9 @@ fn room(half: Vec3) -> Room {
     }
 }
 
-fn put_in(container: ObjectId) -> Action {
-    Action::PutIn {
-        container: container.into(),
+fn put_in(container: ObjectId) -> impl HandAction {
+    actions::PutIn {
+        target: container.into(),
     }
 }
 
@@ -73,7 +73,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
         state.lies_in(house, room.thing, &house.object_boxes(state))
     };
     assert_eq!(lies_in(&room), [room.chest]);
-    let told = room.run.act(room.agent, Action::close(room.chest));
+    let told = room.run.act(room.agent, actions::Close::new(room.chest));
     assert!(told.success, "{}", told.sentence);
     let told = room.run.told(60).expect("a notice");
     assert_eq!(told.sentence, "The chest of drawers is closed.");
@@ -81,7 +81,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
     assert_eq!(lies_in(&room), [room.chest]);
     assert!(room.run.position(room.thing).z < 2.2, "it came along");
     // Shut away, it can be neither seen nor taken.
-    let told = room.run.act(room.agent, Action::pick(room.thing));
+    let told = room.run.act(room.agent, actions::Pick::new(room.thing));
     assert_eq!(told.code, OutcomeCode::NotVisible, "{}", told.sentence);
 }
 
@@ -133,7 +133,7 @@ fn a_full_drawer_says_so() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(3.0, 0.0, 3.2), 0.0);
     run.steps(5);
-    assert!(run.act(agent, Action::pick(thing)).success);
+    assert!(run.act(agent, actions::Pick::new(thing)).success);
     // It could stand on the block, but the drawer would not shut: 0.08 m on 0.11 m in a space of 0.17 m.
     let told = run.act(agent, put_in(chest));
     assert_eq!(
@@ -161,12 +161,12 @@ fn what_holds_nothing_and_the_thing_itself_are_refused() {
         told.sentence,
         "A thing cannot be put into itself. Choose something else."
     );
-    let told = room.run.act(room.agent, Action::place(room.thing));
+    let told = room.run.act(room.agent, actions::Place::on(room.thing));
     assert_eq!(
         told.sentence,
         "A thing cannot stand on itself. Choose something else."
     );
-    room.run.act(room.agent, Action::Drop);
+    room.run.act(room.agent, actions::Drop {});
     let told = room.run.act(room.agent, put_in(room.chest));
     assert_eq!(told.sentence, "You hold nothing. Pick something first.");
 }

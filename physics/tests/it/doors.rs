@@ -1,7 +1,7 @@
 //! Doors: shut ones stay shut, opened ones swing, blocked ones say so.
 
 use crate::common::{Build, Piece, forward};
-use dwell_physics::{Action, OutcomeCode};
+use dwell_physics::{OutcomeCode, actions};
 use dwell_scene::JointCommand;
 use glam::Vec3;
 
@@ -23,7 +23,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     let (door, joint) = build.wall_with_door(3.0, 6.0);
     let mut run = build.run();
     let id = run.agent(Vec3::new(2.6, 0.0, 4.0), 0.0);
-    let outcome = run.act(id, Action::open(door));
+    let outcome = run.act(id, actions::Open::new(door));
     assert_eq!(
         (outcome.success, outcome.code),
         (true, OutcomeCode::Started),
@@ -52,7 +52,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
     );
     assert!((run.state.joint_position[joint] - 1.6).abs() < 0.03);
     assert_eq!(
-        run.act(id, Action::open(door)).code,
+        run.act(id, actions::Open::new(door)).code,
         OutcomeCode::AlreadyOpen
     );
     run.walk(40, &[forward(1.0)]);
@@ -68,7 +68,7 @@ fn a_door_opens_lets_an_agent_through_and_shuts_again() {
         )
         .unwrap();
     run.rays.update(&run.state);
-    let outcome = run.act(id, Action::close(door));
+    let outcome = run.act(id, actions::Close::new(door));
     assert_eq!(outcome.code, OutcomeCode::Started, "{}", outcome.sentence);
     run.walk(60, &[]);
     assert_eq!(run.state.joint_position[joint], 0.0);
@@ -89,7 +89,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
     );
     let mut run = build.run();
     let id = run.agent(Vec3::new(2.6, 0.0, 4.0), 0.0);
-    run.act(id, Action::open(door));
+    run.act(id, actions::Open::new(door));
     let mut told = None;
     for _ in 0..80 {
         run.walk(1, &[]);

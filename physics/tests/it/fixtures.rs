@@ -1,7 +1,7 @@
 //! Taps and lids of the built-in apartment: what is turned on runs, what is opened stays open and takes things in.
 
 use crate::common::Run;
-use dwell_physics::{Action, OutcomeCode, PhysicsConfig};
+use dwell_physics::{OutcomeCode, PhysicsConfig, actions};
 use dwell_scene::{AgentId, JointCommand, JointId, ObjectId};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -69,7 +69,7 @@ fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
     let agent = before(&mut run, spout);
     run.steps(2);
     assert!(!run.state.is_on(&run.house, tap));
-    let told = run.act(agent, Action::toggle(tap));
+    let told = run.act(agent, actions::Toggle::new(tap));
     assert_eq!(told.code, OutcomeCode::Started, "{}", told.sentence);
     let name = run.house.objects[tap].model.replace('_', " ");
     assert_eq!(
@@ -84,7 +84,7 @@ fn a_tap_that_is_turned_on_runs_until_it_is_turned_off() {
     // Left alone it runs on.
     run.steps(60);
     assert!(run.state.is_on(&run.house, tap));
-    run.act(agent, Action::toggle(tap));
+    run.act(agent, actions::Toggle::new(tap));
     let told = run.told(60).expect("it arrives");
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     assert!(!run.state.is_on(&run.house, tap));
@@ -165,25 +165,15 @@ fn things_go_into_an_open_bin_only() {
     run.state.part_pose[root].position = floor.unwrap() + Vec3::Y * 0.06;
     run.world.adopt(&mut run.state).unwrap();
     run.steps(10);
-    let told = run.act(agent, Action::pick(fruit));
+    let told = run.act(agent, actions::Pick::new(fruit));
     assert!(told.success, "{}", told.sentence);
-    let told = run.act(
-        agent,
-        Action::PutIn {
-            container: bin.into(),
-        },
-    );
+    let told = run.act(agent, actions::PutIn { target: bin.into() });
     assert_eq!(told.code, OutcomeCode::Closed, "{}", told.sentence);
-    let told = run.act(agent, Action::open(bin));
+    let told = run.act(agent, actions::Open::new(bin));
     assert!(told.success, "{}", told.sentence);
     let told = run.told(100).expect("it arrives");
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
-    let told = run.act(
-        agent,
-        Action::PutIn {
-            container: bin.into(),
-        },
-    );
+    let told = run.act(agent, actions::PutIn { target: bin.into() });
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     run.steps(20);
     let inside = run.position(fruit) - run.position(bin);

@@ -1,7 +1,7 @@
 //! Throwing, pushing, pulling: as strong as a person, and never through what is shut.
 
 use crate::common::{Build, Piece, Run, gravity};
-use dwell_physics::{Action, OutcomeCode, Target};
+use dwell_physics::{HandAction, OutcomeCode, Target, actions};
 use dwell_scene::{AgentId, Mobility, ObjectId};
 use glam::Vec3;
 
@@ -9,15 +9,15 @@ fn hall() -> Build {
     Build::room([12.0, 3.0, 6.0])
 }
 
-fn push(target: impl Into<Target>, force_n: Option<f32>) -> Action {
-    Action::Push {
+fn push(target: impl Into<Target>, force_n: Option<f32>) -> impl HandAction {
+    actions::Push {
         target: target.into(),
         force_n,
     }
 }
 
-fn pull(target: impl Into<Target>, force_n: Option<f32>) -> Action {
-    Action::Pull {
+fn pull(target: impl Into<Target>, force_n: Option<f32>) -> impl HandAction {
+    actions::Pull {
         target: target.into(),
         force_n,
     }
@@ -32,7 +32,7 @@ fn held(mass_kg: f32) -> (Run, AgentId, ObjectId) {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(2.0, 0.0, 3.0), 0.0);
     run.steps(5);
-    let told = run.act(agent, Action::pick(ball));
+    let told = run.act(agent, actions::Pick::new(ball));
     assert!(told.success, "{}", told.sentence);
     run.world
         .place_agent(&mut run.state, agent, Vec3::new(2.0, 0.0, 3.0), -1.571)
@@ -47,8 +47,8 @@ fn a_thrown_thing_flies_as_it_was_thrown() {
     let from = run.position(dice);
     let told = run.act(
         agent,
-        Action::Throw {
-            direction: Vec3::new(2.0, 2.0, 0.0),
+        actions::Throw {
+            direction: Some(Vec3::new(2.0, 2.0, 0.0)),
             speed_m_s: 4.0,
         },
     );
@@ -66,8 +66,8 @@ fn a_thrown_thing_flies_as_it_was_thrown() {
 #[test]
 fn strength_bounds_throws() {
     let (mut run, agent, dice) = held(5.0);
-    let throw = |direction, speed_m_s| Action::Throw {
-        direction,
+    let throw = |direction, speed_m_s| actions::Throw {
+        direction: Some(direction),
         speed_m_s,
     };
     for (direction, speed) in [
@@ -191,7 +191,7 @@ fn a_pull_brings_a_thing_near_and_needs_a_free_hand() {
     );
     assert!(run.told(20).expect("a notice").success);
     assert!(run.position(crate_).z > before.z + 0.02);
-    assert!(run.act(agent, Action::pick(mug)).success);
+    assert!(run.act(agent, actions::Pick::new(mug)).success);
     let told = run.act(agent, pull(crate_, None));
     assert_eq!(
         (told.code, told.sentence.as_str()),
@@ -301,7 +301,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     let agent = run.agent(Vec3::new(2.0, 0.05, 2.9), 0.0);
     let other = run.agent(Vec3::new(2.0, 0.0, 2.0), std::f32::consts::PI);
     run.steps(20);
-    let told = run.act(agent, Action::pick(plank));
+    let told = run.act(agent, actions::Pick::new(plank));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (

@@ -1,7 +1,7 @@
 //! Everything at random, wrong ids and numbers included: nothing panics, and what must hold holds.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, AgentControl, Grasp, Target};
+use dwell_physics::{AgentControl, Grasp, HandAction, Target, actions};
 use dwell_scene::random::{RandomKey, RandomStream};
 use dwell_scene::{AgentId, AgentState, EntityId, ObjectId, PartId};
 use glam::Vec3;
@@ -81,11 +81,11 @@ fn target(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Target {
     }
 }
 
-fn action(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Action {
+fn action(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Box<dyn HandAction> {
     let target = target(run, stream, agent);
     let force_n = (stream.below(2) == 0).then(|| number(stream, 200.0).abs());
     match stream.below(16) {
-        0..=3 => Action::Pick {
+        0..=3 => Box::new(actions::Pick {
             target,
             grasp: if stream.below(3) > 0 {
                 Grasp::Kinematic
@@ -95,32 +95,32 @@ fn action(run: &Run, stream: &mut RandomStream, agent: AgentId) -> Action {
                     damping_ratio: number(stream, 2.0),
                 }
             },
-        },
-        4 => Action::Drop,
-        5 => Action::Place {
-            on: (stream.below(2) == 0).then_some(target),
-        },
-        6 => Action::PlaceAt {
+        }),
+        4 => Box::new(actions::Drop {}),
+        5 => Box::new(actions::Place {
+            target: (stream.below(2) == 0).then_some(target),
+        }),
+        6 => Box::new(actions::PlaceAt {
             point: vector(stream, 6.0),
-        },
-        7 => Action::PutIn { container: target },
-        8 => Action::Throw {
-            direction: vector(stream, 1.0),
+        }),
+        7 => Box::new(actions::PutIn { target }),
+        8 => Box::new(actions::Throw {
+            direction: Some(vector(stream, 1.0)),
             speed_m_s: number(stream, 20.0).abs(),
-        },
-        9 => Action::Push { target, force_n },
-        10 => Action::Pull { target, force_n },
-        11 | 12 => Action::Open {
+        }),
+        9 => Box::new(actions::Push { target, force_n }),
+        10 => Box::new(actions::Pull { target, force_n }),
+        11 | 12 => Box::new(actions::Open {
             target,
             fraction: if stream.below(8) == 0 {
                 number(stream, 2.0)
             } else {
                 stream.uniform_f32()
             },
-        },
-        13 => Action::Close { target },
-        14 => Action::Toggle { target },
-        _ => Action::Point { target },
+        }),
+        13 => Box::new(actions::Close { target }),
+        14 => Box::new(actions::Toggle { target }),
+        _ => Box::new(actions::Point { target }),
     }
 }
 
@@ -190,7 +190,7 @@ fn run_for(run: &mut Run, steps: std::ops::Range<usize>, checked: bool) -> Vec<u
             stream.below(2) as u32
         });
         let action = action(run, &mut stream, agent);
-        let told = run.act(agent, action);
+        let told = run.act(agent, &*action);
         assert!(
             !told.sentence.is_empty() && told.sentence.ends_with('.'),
             "{told:?}"

@@ -414,7 +414,10 @@ fn what_is_too_heavy_now_falls_from_the_hand() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(3.0, 0.0, 3.0), 0.0);
     run.steps(2);
-    assert!(run.act(agent, dwell_physics::Action::pick(cube)).success);
+    assert!(
+        run.act(agent, dwell_physics::actions::Pick::new(cube))
+            .success
+    );
     run.steps(20);
     let id = run.house.entity_of_object(cube).0;
     let heavier = format!("object/{id}/mass_kg");
@@ -452,7 +455,7 @@ fn a_hand_that_is_too_weak_opens_no_door() {
         let mut run = run.clone();
         set(&mut run, &[(address, effort)]).unwrap();
         if by_agent {
-            let told = run.act(agent, dwell_physics::Action::open(door));
+            let told = run.act(agent, dwell_physics::actions::Open::new(door));
             assert!(told.success, "{}", told.sentence);
         } else {
             run.state.joint_command[joint] = dwell_scene::JointCommand::Position(0.8);
@@ -534,7 +537,7 @@ fn what_an_agent_can_do_follows_its_numbers() {
     run.steps(2);
     let picks = |run: &mut Run| {
         run.clone()
-            .act(agent, dwell_physics::Action::pick(cube))
+            .act(agent, dwell_physics::actions::Pick::new(cube))
             .success
     };
     assert!(picks(&mut run));

@@ -81,7 +81,7 @@ fn gravity_wakes_what_sleeps() {
 fn an_overridden_mass_is_what_it_weighs() {
     let (mut run, sled) = sled();
     let agent = run.agent(Vec3::new(1.0, 0.0, 3.0), 0.0);
-    let told = |run: &mut Run| run.act(agent, dwell_physics::Action::pick(sled));
+    let told = |run: &mut Run| run.act(agent, dwell_physics::actions::Pick::new(sled));
     assert!(
         told(&mut run).sentence.contains("36.0 kg"),
         "{}",
@@ -99,7 +99,7 @@ fn an_overridden_density_is_what_a_thing_weighs() {
     let (mut run, sled) = sled();
     let agent = run.agent(Vec3::new(1.0, 0.0, 3.0), 0.0);
     let weighs = |run: &mut Run, words: &str| {
-        let told = run.act(agent, dwell_physics::Action::pick(sled));
+        let told = run.act(agent, dwell_physics::actions::Pick::new(sled));
         assert!(told.sentence.contains(words), "{}", told.sentence);
     };
     let root = run.house.objects[sled].first_part;

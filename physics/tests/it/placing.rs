@@ -1,7 +1,7 @@
 //! Putting things down: what is put down stands, or it is refused with the reason.
 
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, OutcomeCode, PhysicsConfig, Target};
+use dwell_physics::{OutcomeCode, PhysicsConfig, Target, actions};
 use dwell_scene::{AgentId, Collider, Mobility, ObjectId, Pose, SupportRelation};
 use glam::{Quat, Vec3};
 use std::f32::consts::PI;
@@ -49,7 +49,7 @@ fn table(piece: Piece, clutter: &[Vec3]) -> Setting {
     run.state.part_pose[thing_at].position = Vec3::new(3.2, 1.0, 2.3);
     run.world.adopt(&mut run.state).unwrap();
     run.rays.update(&run.state);
-    let told = run.act(agent, Action::pick(thing));
+    let told = run.act(agent, actions::Pick::new(thing));
     assert!(told.success, "{}", told.sentence);
     Setting {
         run,
@@ -97,7 +97,7 @@ fn things_of_all_shapes_stand_where_they_are_put() {
     ];
     for (k, piece) in shapes.into_iter().enumerate() {
         let mut on = table(piece, &[]);
-        let told = on.run.act(on.agent, Action::place(on.table));
+        let told = on.run.act(on.agent, actions::Place::on(on.table));
         assert_eq!(told.code, OutcomeCode::Done, "{k}: {}", told.sentence);
         assert_eq!(told.sentence, "You put the thing on the table.");
         let (moved, turn) = stays(&mut on.run, on.thing);
@@ -121,13 +121,13 @@ fn a_spot_is_found_between_other_things_and_refused_when_there_is_none() {
     }
     let small = Piece::cuboid(Vec3::splat(0.05), Vec3::ZERO);
     let mut on = table(small, &clutter);
-    let told = on.run.act(on.agent, Action::place(on.table));
+    let told = on.run.act(on.agent, actions::Place::on(on.table));
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG, "{moved} {turn}");
     let large = Piece::cuboid(Vec3::new(0.15, 0.15, 0.15), Vec3::ZERO);
     let mut on = table(large, &clutter);
-    let told = on.run.act(on.agent, Action::place(on.table));
+    let told = on.run.act(on.agent, actions::Place::on(on.table));
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -143,7 +143,7 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
     let mug = || Piece::cuboid(Vec3::new(0.04, 0.05, 0.04), Vec3::ZERO);
     let mut on = table(mug(), &[]);
     let point = Vec3::new(3.1, 0.8, 2.2);
-    let told = on.run.act(on.agent, Action::PlaceAt { point });
+    let told = on.run.act(on.agent, actions::PlaceAt { point });
     assert_eq!(told.code, OutcomeCode::Done, "{}", told.sentence);
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG);
@@ -181,7 +181,7 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
         ),
     ];
     for (point, code, sentence) in cases {
-        let told = on.run.act(on.agent, Action::PlaceAt { point });
+        let told = on.run.act(on.agent, actions::PlaceAt { point });
         assert_eq!(told.code, code, "{point}: {}", told.sentence);
         assert!(
             told.sentence.contains(sentence),
@@ -198,7 +198,7 @@ fn a_thing_is_put_at_a_point_and_nowhere_else() {
     on.run.rays.update(&on.run.state);
     for z in [6.0, 6.05, 6.3] {
         let point = Vec3::new(3.0, 0.5, z);
-        let told = on.run.act(on.agent, Action::PlaceAt { point });
+        let told = on.run.act(on.agent, actions::PlaceAt { point });
         assert!(!told.success, "{z}");
         assert!(
             [
@@ -218,7 +218,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     let mug = || Piece::cuboid(Vec3::new(0.04, 0.05, 0.04), Vec3::ZERO);
     let mut on = table(mug(), &[]);
     on.run.state.agents[on.agent].pitch_rad = -0.6;
-    let told = on.run.act(on.agent, Action::Place { on: None });
+    let told = on.run.act(on.agent, actions::Place { target: None });
     assert_eq!(
         (told.code, told.sentence.as_str(), told.object),
         (
@@ -232,7 +232,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     // Looking up, there is nothing to put it on.
     let mut on = table(mug(), &[]);
     on.run.state.agents[on.agent].pitch_rad = 1.2;
-    let told = on.run.act(on.agent, Action::Place { on: None });
+    let told = on.run.act(on.agent, actions::Place { target: None });
     assert_eq!(
         (told.code, told.sentence.as_str()),
         (
@@ -246,7 +246,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
         origin: eye,
         direction: spot - eye,
     };
-    let told = on.run.act(on.agent, Action::place(floor));
+    let told = on.run.act(on.agent, actions::Place::on(floor));
     assert_eq!(told.sentence, "You put the thing on the floor.");
     let at = on.run.position(on.thing);
     assert!((at - spot).with_y(0.0).length() < 0.02, "{at}");
@@ -316,12 +316,12 @@ fn the_apartments_things_stand_on_its_table() {
         run.state.part_pose[root].position = eye + ahead * 0.5 - Vec3::Y * 0.1;
         run.world.adopt(&mut run.state).unwrap();
         run.rays.update(&run.state);
-        let told = run.act(agent, Action::pick(*object));
+        let told = run.act(agent, actions::Pick::new(*object));
         if !told.success {
             println!("{}: {}", house.objects[*object].name, told.sentence);
             continue;
         }
-        let told = run.act(agent, Action::place(table));
+        let told = run.act(agent, actions::Place::on(table));
         if !told.success {
             println!("{}: {}", house.objects[*object].name, told.sentence);
             continue;

@@ -1,7 +1,7 @@
 //! Every code that an action can end with comes about somewhere, with its sentence.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, ActionOutcome, OutcomeCode, Target};
+use dwell_physics::{ActionOutcome, HandAction, OutcomeCode, Target, actions};
 use dwell_scene::{AgentId, EntityId, Mobility, ObjectId};
 use glam::Vec3;
 use std::collections::BTreeSet;
@@ -25,13 +25,13 @@ impl Scene {
         Self { run, agent, cases }
     }
 
-    fn tell(&mut self, action: Action, code: OutcomeCode, sentence: &'static str) {
+    fn tell(&mut self, action: impl HandAction, code: OutcomeCode, sentence: &'static str) {
         let told = self.run.act(self.agent, action);
         self.cases.push(Case(told, code, sentence));
     }
 
     fn hold(&mut self, object: ObjectId) {
-        let told = self.run.act(self.agent, Action::pick(object));
+        let told = self.run.act(self.agent, actions::Pick::new(object));
         assert!(told.success, "{}", told.sentence);
     }
 
@@ -50,16 +50,16 @@ fn cube(half: f32, at: [f32; 3]) -> Piece {
     Piece::cuboid(Vec3::splat(half), at.into())
 }
 
-fn push(target: impl Into<Target>) -> Action {
-    Action::Push {
+fn push(target: impl Into<Target>) -> impl HandAction {
+    actions::Push {
         target: target.into(),
         force_n: None,
     }
 }
 
-fn put_in(container: ObjectId) -> Action {
-    Action::PutIn {
-        container: container.into(),
+fn put_in(container: ObjectId) -> impl HandAction {
+    actions::PutIn {
+        target: container.into(),
     }
 }
 
@@ -92,47 +92,49 @@ fn of_targets_and_hands() -> Vec<Case> {
     let other = s.run.agent(Vec3::new(1.2, 0.0, 4.5), 0.0);
     s.run.rays.update(&s.run.state);
     let agent = s.agent;
-    let told = s.run.act(AgentId(9), Action::Drop);
+    let told = s.run.act(AgentId(9), actions::Drop {});
     s.cases.push(Case(
         told,
         C::UnknownAgent,
         "There is no agent 9; there are 2.",
     ));
     let mut foreign = Scene::new(room());
-    let told = s
-        .run
-        .world
-        .act(&mut foreign.run.state, &s.run.rays, agent, &Action::Drop);
+    let told = s.run.world.act(
+        &mut foreign.run.state,
+        &s.run.rays,
+        agent,
+        &actions::Drop {},
+    );
     s.cases.push(Case(
         told,
         C::ForeignState,
         "Nothing was done: the state has",
     ));
     s.tell(
-        Action::pick(ObjectId(99)),
+        actions::Pick::new(ObjectId(99)),
         C::UnknownObject,
         "There is no object 99; there are 11 objects.",
     );
     s.tell(
-        Action::pick(EntityId(-4)),
+        actions::Pick::new(EntityId(-4)),
         C::UnknownObject,
         "There is no thing -4; there are",
     );
     let wall = s.run.house.entity_of_structure(dwell_scene::StructureId(0));
     s.tell(
-        Action::pick(wall),
+        actions::Pick::new(wall),
         C::NotAThing,
         "The floor is part of the building. Choose a thing.",
     );
     let own = s.run.house.entity_of_agent(agent);
     s.tell(
-        Action::pick(own),
+        actions::Pick::new(own),
         C::Oneself,
         "That is you. Choose a thing.",
     );
     let somebody = s.run.house.entity_of_agent(other);
     s.tell(
-        Action::pick(somebody),
+        actions::Pick::new(somebody),
         C::NotAThing,
         "That is agent 1, not a thing. Choose a thing.",
     );
@@ -141,7 +143,7 @@ fn of_targets_and_hands() -> Vec<Case> {
         direction: Vec3::X,
     };
     s.tell(
-        Action::pick(nowhere),
+        actions::Pick::new(nowhere),
         C::BadNumber,
         "leads nowhere; give finite numbers",
     );
@@ -150,26 +152,30 @@ fn of_targets_and_hands() -> Vec<Case> {
         direction: Vec3::Y,
     };
     s.tell(
-        Action::pick(outside),
+        actions::Pick::new(outside),
         C::NoTarget,
         "There is nothing in that direction. Point at something.",
     );
     s.tell(
-        Action::open(table),
+        actions::Open::new(table),
         C::NotOpenable,
         "The table has nothing to open. Choose a door, drawer or lid.",
     );
     s.tell(
-        Action::close(table),
+        actions::Close::new(table),
         C::NotOpenable,
         "The table has nothing to close. Choose a door, drawer or lid.",
     );
     s.tell(
-        Action::toggle(table),
+        actions::Toggle::new(table),
         C::NoSwitch,
         "The table has no switch. Choose a lamp, radio or television.",
     );
-    s.tell(Action::toggle(lamp), C::Done, "You switch the lamp on.");
+    s.tell(
+        actions::Toggle::new(lamp),
+        C::Done,
+        "You switch the lamp on.",
+    );
     s.tell(
         push(table),
         C::NotMovable,
@@ -181,40 +187,40 @@ fn of_targets_and_hands() -> Vec<Case> {
         "The buried is stuck where it stands. Choose something else.",
     );
     s.tell(
-        Action::pick(table),
+        actions::Pick::new(table),
         C::NotPickable,
         "The table is not a thing to take. Choose something that is.",
     );
     s.tell(
-        Action::pick(anvil),
+        actions::Pick::new(anvil),
         C::TooHeavy,
         "The anvil weighs 62.4 kg; you lift 10.0 kg. Choose something lighter.",
     );
     s.tell(
-        Action::pick(kite),
+        actions::Pick::new(kite),
         C::TooLarge,
         "The kite is 1.1 m long; you carry up to 1.0 m. Choose something smaller.",
     );
-    s.tell(Action::pick(key), C::NotVisible, "screen");
+    s.tell(actions::Pick::new(key), C::NotVisible, "screen");
     s.tell(
-        Action::pick(far),
+        actions::Pick::new(far),
         C::Behind,
         "The far cup is behind you. Turn around.",
     );
     s.stand(Vec3::new(3.0, 0.0, 3.0), 0.0);
     s.tell(
-        Action::Drop,
+        actions::Drop {},
         C::HandEmpty,
         "You hold nothing. Pick something first.",
     );
     s.tell(
-        Action::Place { on: None },
+        actions::Place { target: None },
         C::HandEmpty,
         "You hold nothing. Pick something first.",
     );
     s.hold(mug);
     s.tell(
-        Action::pick(bowl),
+        actions::Pick::new(bowl),
         C::HandFull,
         "You hold the mug already. Drop it first.",
     );
@@ -223,12 +229,12 @@ fn of_targets_and_hands() -> Vec<Case> {
         C::NotContainer,
         "The table holds nothing inside.",
     );
-    let throw = Action::Throw {
-        direction: Vec3::ZERO,
+    let throw = actions::Throw {
+        direction: Some(Vec3::ZERO),
         speed_m_s: 1.0,
     };
     s.tell(throw, C::BadNumber, "You cannot throw along");
-    let at = |x: f32, y: f32, z: f32| Action::PlaceAt {
+    let at = |x: f32, y: f32, z: f32| actions::PlaceAt {
         point: Vec3::new(x, y, z),
     };
     s.tell(
@@ -247,14 +253,14 @@ fn of_targets_and_hands() -> Vec<Case> {
         C::NotVisible,
         "The table is between you and that place. Choose one in the open.",
     );
-    let told = s.run.act(other, Action::pick(mug));
+    let told = s.run.act(other, actions::Pick::new(mug));
     s.cases.push(Case(
         told,
         C::HeldByOther,
         "Agent 0 holds the mug. Wait until it is free.",
     ));
     s.tell(
-        Action::place(mug),
+        actions::Place::on(mug),
         C::NoSpace,
         "A thing cannot stand on itself. Choose something else.",
     );
@@ -270,7 +276,7 @@ fn of_walls() -> Vec<Case> {
     s.stand(Vec3::new(3.0, 0.0, 0.7), 0.0);
     for z in [0.0_f32, -0.05] {
         let point = Vec3::new(3.0, 0.9, z);
-        let told = s.run.act(s.agent, Action::PlaceAt { point });
+        let told = s.run.act(s.agent, actions::PlaceAt { point });
         assert!(!told.success && !told.sentence.is_empty(), "{told:?}");
         assert_eq!(s.run.state.held_by[mug], Some(s.agent));
     }
@@ -286,11 +292,11 @@ fn of_doors_and_drawers() -> Vec<Case> {
     let large = build.movable("trunk", cube(0.2, [3.7, 0.2, 2.6]).density(20.0));
     let mut s = Scene::new(build);
     s.tell(
-        Action::close(chest),
+        actions::Close::new(chest),
         C::AlreadyClosed,
         "The chest of drawers is closed already.",
     );
-    let nan = Action::Open {
+    let nan = actions::Open {
         target: chest.into(),
         fraction: f32::NAN,
     };
@@ -311,7 +317,7 @@ fn of_doors_and_drawers() -> Vec<Case> {
         "The chest of drawers is closed. Open it first.",
     );
     s.tell(
-        Action::open(chest),
+        actions::Open::new(chest),
         C::Started,
         "You open the chest of drawers; it takes a moment.",
     );
@@ -319,7 +325,7 @@ fn of_doors_and_drawers() -> Vec<Case> {
     s.cases
         .push(Case(told, C::Done, "The chest of drawers is open."));
     s.tell(
-        Action::open(chest),
+        actions::Open::new(chest),
         C::AlreadyOpen,
         "The chest of drawers is open already.",
     );
@@ -374,7 +380,7 @@ fn of_what_is_in_the_way() -> Vec<Case> {
     let mut s = Scene::new(build);
     s.stand(Vec3::new(2.6, 0.0, 3.2), 0.0);
     s.tell(
-        Action::open(door),
+        actions::Open::new(door),
         C::Started,
         "You open the door; it takes a moment.",
     );
@@ -404,7 +410,7 @@ fn of_feet_and_slips() -> Vec<Case> {
     s.stand(Vec3::new(3.0, 0.05, 3.0), 0.0);
     s.run.steps(20);
     s.tell(
-        Action::pick(plank),
+        actions::Pick::new(plank),
         C::StoodOn,
         "You stand on the plank. Step off it first.",
     );

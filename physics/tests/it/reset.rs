@@ -2,7 +2,7 @@
 
 use crate::arms::{STRONG, arm, arm_on};
 use crate::common::{Build, Piece, Run};
-use dwell_physics::{Action, AgentControl, BodyState, Grasp, JointState, PhysicsConfig, Target};
+use dwell_physics::{AgentControl, BodyState, Grasp, JointState, PhysicsConfig, Target, actions};
 use dwell_scene::random::RandomKey;
 use dwell_scene::{Collider, JointId, Mobility, ObjectId, PartId, Pose, Velocity};
 use glam::{Quat, Vec3};
@@ -225,7 +225,7 @@ fn what_cannot_be_set_is_refused_with_its_reason_and_changes_nothing() {
     let grasp = Grasp::default();
     let picked = run.act(
         agent,
-        Action::Pick {
+        actions::Pick {
             target: Target::Object(held),
             grasp,
         },

@@ -1,7 +1,7 @@
 //! Snapshots: they continue bit for bit, hold no mesh, and damage is refused.
 
 use crate::common::{Build, Piece, Run, forward};
-use dwell_physics::{Action, AgentControl, PhysicsConfig, PhysicsModel, PhysicsWorld};
+use dwell_physics::{AgentControl, PhysicsConfig, PhysicsModel, PhysicsWorld, actions};
 use dwell_scene::{AgentId, LawSpec, ObjectId, State};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
@@ -41,9 +41,9 @@ fn busy() -> (Run, ObjectId, AgentId) {
     let agent = run.agent(Vec3::new(2.6, 0.0, 4.4), 0.0);
     run.agent(Vec3::new(1.0, 0.0, 4.0), 1.0);
     run.steps(5);
-    let told = run.act(agent, Action::pick(mug));
+    let told = run.act(agent, actions::Pick::new(mug));
     assert!(told.success, "{}", told.sentence);
-    let told = run.act(agent, Action::open(door));
+    let told = run.act(agent, actions::Open::new(door));
     assert!(told.success, "{}", told.sentence);
     (run, door, agent)
 }
@@ -377,7 +377,7 @@ fn holds_swings_and_sleep_go_on_bit_for_bit() {
         .find(|id| run.house.objects[*id].name == "ball_0")
         .unwrap();
     run.walk(30, &[]);
-    run.act(agent, Action::Drop);
+    run.act(agent, actions::Drop {});
     let beside = run.position(held);
     let Run { world, state, .. } = &mut run;
     world
@@ -390,7 +390,7 @@ fn holds_swings_and_sleep_go_on_bit_for_bit() {
     };
     let told = run.act(
         other,
-        Action::Pick {
+        actions::Pick {
             target: held.into(),
             grasp: spring,
         },

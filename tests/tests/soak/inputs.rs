@@ -1,7 +1,7 @@
 //! What agents and joints are told, and what the world is set to: mostly with sense.
 
 use dwell::World;
-use dwell_physics::{Action, AgentControl, BodyState, Grasp, Target};
+use dwell_physics::{AgentControl, BodyState, Grasp, HandAction, Target, actions};
 use dwell_scene::random::RandomStream;
 use dwell_scene::{
     Address, AgentBody, EntityId, JointCommand, JointId, Locomotion, ObjectId, Parameter, PartId,
@@ -49,42 +49,44 @@ fn target(stream: &mut RandomStream, objects: usize) -> Target {
 }
 
 /// Any action, with and without sense.
-pub(crate) fn action(stream: &mut RandomStream, objects: usize) -> Action {
+pub(crate) fn action(stream: &mut RandomStream, objects: usize) -> Box<dyn HandAction> {
     let target = target(stream, objects);
     let number = *stream
         .choose(&[0.0, 0.5, 3.0, -1.0, 1e30, f32::NAN])
         .unwrap_or(&0.0);
     match stream.below(17) {
-        0..=4 => Action::Pick {
+        0..=4 => Box::new(actions::Pick {
             target,
             grasp: Grasp::default(),
-        },
-        5 => Action::Drop,
-        6 => Action::Place { on: None },
-        7 => Action::Place { on: Some(target) },
-        8 => Action::PlaceAt {
+        }),
+        5 => Box::new(actions::Drop {}),
+        6 => Box::new(actions::Place { target: None }),
+        7 => Box::new(actions::Place {
+            target: Some(target),
+        }),
+        8 => Box::new(actions::PlaceAt {
             point: stream.direction() * number,
-        },
-        9 => Action::PutIn { container: target },
-        10 => Action::Throw {
-            direction: stream.direction(),
+        }),
+        9 => Box::new(actions::PutIn { target }),
+        10 => Box::new(actions::Throw {
+            direction: Some(stream.direction()),
             speed_m_s: number,
-        },
-        11 => Action::Push {
+        }),
+        11 => Box::new(actions::Push {
             target,
             force_n: Some(number),
-        },
-        12 => Action::Pull {
+        }),
+        12 => Box::new(actions::Pull {
             target,
             force_n: None,
-        },
-        13 => Action::Open {
+        }),
+        13 => Box::new(actions::Open {
             target,
             fraction: number,
-        },
-        14 => Action::Close { target },
-        15 => Action::Point { target },
-        _ => Action::Toggle { target },
+        }),
+        14 => Box::new(actions::Close { target }),
+        15 => Box::new(actions::Point { target }),
+        _ => Box::new(actions::Toggle { target }),
     }
 }
 

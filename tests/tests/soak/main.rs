@@ -115,7 +115,7 @@ impl Play {
             }
             if self.stream.below(10) == 0 {
                 let wanted = inputs::action(&mut self.stream, house.objects.len());
-                let outcome = self.world.act(id, &wanted);
+                let outcome = self.world.act(id, &*wanted);
                 assert!(!outcome.sentence.is_empty(), "{wanted:?} says nothing");
             }
         }

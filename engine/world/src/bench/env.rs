@@ -1,7 +1,7 @@
 //! Environments stepped together, with everything they sense.
 
 use super::{BenchOptions, BenchProgress, open};
-use crate::action::DiscreteAction;
+use crate::actions::DiscreteAction;
 use crate::batch::Batch;
 use crate::env::{Env, EnvConfig};
 use crate::error::WorldError;

@@ -2,7 +2,7 @@
 
 mod door_opening;
 
-use crate::action::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;
 use door_opening::DoorOpening;
 use dwell_scene::bvh::{Ray, RayMask};

@@ -5,7 +5,7 @@
 
 use super::door_leaves::DoorLeaves;
 use super::{Task, TaskKind};
-use crate::action::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;

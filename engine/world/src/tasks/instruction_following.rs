@@ -6,7 +6,7 @@
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::GoalCells;
 use super::{Task, TaskKind};
-use crate::action::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::expert::{ShortestPathFollower, face};

@@ -5,7 +5,7 @@ mod free;
 mod goal_cells;
 mod instruction_following;
 
-use crate::action::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::world::World;

@@ -1,0 +1,175 @@
+//! What the table of actions says of each.
+
+use super::step_sizes::StepSizes;
+use crate::error::WorldError;
+use crate::schema::{self, FieldSchema};
+use dwell_physics::{AgentControl, HandAction, Target};
+use schemars::JsonSchema;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+/// The field of a hand's action that says what it is done to.
+const TARGET: &str = "target";
+
+/// A kind of action.
+#[derive(Clone, Copy, Debug)]
+pub struct ActionKind {
+    /// The name, as in lists, requests and files.
+    pub name: &'static str,
+    about: About,
+    control: Control,
+    hand: Option<HandReader>,
+}
+
+/// Where the sentence about a kind stands.
+#[derive(Clone, Copy, Debug)]
+enum About {
+    Here(&'static str),
+    DocComment(fn() -> String),
+}
+
+/// The velocities of the body in a step of so many seconds.
+pub(super) type Control = fn(&StepSizes, f64) -> AgentControl;
+
+/// Reads an action of the hand.
+#[derive(Clone, Copy, Debug)]
+struct HandReader {
+    field_names: fn() -> &'static [&'static str],
+    fields: fn() -> Vec<FieldSchema>,
+    read: fn(&Value) -> Result<Box<dyn HandAction>, WorldError>,
+}
+
+/// Returns an action of the feet or neck, or none at all, by the velocities that it makes.
+pub(super) const fn movement(
+    name: &'static str,
+    about: &'static str,
+    control: Control,
+) -> ActionKind {
+    ActionKind {
+        name,
+        about: About::Here(about),
+        control,
+        hand: None,
+    }
+}
+
+/// Returns an action of the hand; its doc comment, fields and ranges are those of its type.
+pub(super) const fn hand<A>(name: &'static str) -> ActionKind
+where
+    A: HandAction + DeserializeOwned + JsonSchema + 'static,
+{
+    ActionKind {
+        name,
+        about: About::DocComment(schema::about::<A>),
+        control: stand_still,
+        hand: Some(HandReader {
+            field_names: schema::field_names::<A>,
+            fields: schema::fields::<A>,
+            read: |fields| {
+                let action: A = crate::parse_settings::read("action", fields)?;
+                Ok(Box::new(action))
+            },
+        }),
+    }
+}
+
+/// The velocities of an action that moves nothing but the hand.
+pub(super) fn stand_still(_: &StepSizes, _: f64) -> AgentControl {
+    AgentControl::default()
+}
+
+impl ActionKind {
+    /// One sentence about it.
+    pub fn about(&self) -> String {
+        match self.about {
+            About::Here(about) => about.to_owned(),
+            About::DocComment(about) => about(),
+        }
+    }
+
+    /// Returns whether the hand does it, so that a request can ask for it.
+    pub fn is_of_hand(&self) -> bool {
+        self.hand.is_some()
+    }
+
+    /// The velocities of the body in a step of `step_s`.
+    pub fn control(&self, stride: &StepSizes, step_s: f64) -> AgentControl {
+        (self.control)(stride, step_s)
+    }
+
+    /// Returns whether it is done to a thing.
+    pub fn takes_target(&self) -> bool {
+        self.all_field_names().contains(&TARGET)
+    }
+
+    /// The fields of a request for it, beside those that say what it is done to.
+    pub fn fields(&self) -> Vec<FieldSchema> {
+        let mut fields = self.hand.map_or_else(Vec::new, |hand| (hand.fields)());
+        fields.retain(|field| field.name != TARGET);
+        fields
+    }
+
+    /// The doc comment of what it is done to; `None` where it is done to nothing.
+    pub fn target_about(&self) -> Option<String> {
+        let fields = self.hand.map_or_else(Vec::new, |hand| (hand.fields)());
+        let target = fields.into_iter().find(|field| field.name == TARGET)?;
+        Some(target.about)
+    }
+
+    /// The names of [`Self::fields`].
+    pub(super) fn field_names(&self) -> impl Iterator<Item = &'static str> {
+        let all = self.all_field_names().iter().copied();
+        all.filter(|name| *name != TARGET)
+    }
+
+    fn all_field_names(&self) -> &'static [&'static str] {
+        self.hand.map_or(&[], |hand| (hand.field_names)())
+    }
+
+    /// Returns what the hand does.
+    ///
+    /// `target`: what it is done to, where that is said.
+    /// `fields`: the fields of the kind.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for a field that is missing, [`WorldError::Settings`] for one that cannot be read,
+    /// [`WorldError::Usage`] for an action that is not of the hand.
+    pub(super) fn read(
+        &self,
+        target: Option<Target>,
+        mut fields: Map<String, Value>,
+    ) -> Result<Box<dyn HandAction>, WorldError> {
+        let Some(hand) = self.hand else {
+            let name = self.name;
+            return Err(WorldError::Usage(format!("{name}: no hand does it")));
+        };
+        if let Some(target) = target {
+            fields.insert(TARGET.to_owned(), to_value(&target)?);
+        }
+        (hand.read)(&Value::Object(fields)).map_err(|error| self.say_what_is_missing(error))
+    }
+
+    fn say_what_is_missing(&self, error: WorldError) -> WorldError {
+        let WorldError::Settings { error: told, .. } = &error else {
+            return error;
+        };
+        let told = told.to_string();
+        let Some((field, _)) = told
+            .strip_prefix("missing field `")
+            .and_then(|rest| rest.split_once('`'))
+        else {
+            return error;
+        };
+        let name = self.name;
+        WorldError::Config {
+            field: "action",
+            found: format!("{name} without a {field}"),
+            allowed: format!("{name} with a {field}"),
+        }
+    }
+}
+
+fn to_value(target: &impl Serialize) -> Result<Value, WorldError> {
+    serde_json::to_value(target).map_err(|error| WorldError::Usage(error.to_string()))
+}

@@ -1,0 +1,112 @@
+//! Actions: what agents do in a step or with their hands. One file each, and one line in the table below.
+//!
+//! From the table come the discrete actions and their numbers, the reader of requests, the package's checks, and the pages.
+
+mod discrete;
+mod kind;
+mod look_down;
+mod look_up;
+mod move_forward;
+mod pixel_target;
+mod request;
+mod step_sizes;
+mod stop;
+mod target;
+mod turn_left;
+mod turn_right;
+mod wait;
+
+pub use kind::ActionKind;
+pub use request::ActionRequest;
+pub use step_sizes::StepSizes;
+pub use target::{ObjectRef, PixelCamera, TargetRequest};
+
+use dwell_physics::actions as hand;
+use kind::hand as of_hand;
+
+/// Makes the table, and of its discrete actions an enum in the order of their numbers.
+macro_rules! actions {
+    (discrete: [$($Name:ident = $kind:expr,)+] others: [$($other:expr,)+]) => {
+        /// What an agent does in one step.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum DiscreteAction {
+            $(#[doc = concat!("The action of [`ActionKind`] ", stringify!($kind), ".")] $Name,)+
+        }
+
+        impl DiscreteAction {
+            /// All discrete actions, in the order of their numbers.
+            pub const ALL: [Self; [$(stringify!($Name)),+].len()] = [$(Self::$Name),+];
+        }
+
+        /// All kinds of actions, the discrete ones first, in the order of their numbers.
+        pub fn all() -> &'static [ActionKind] {
+            const ALL: &[ActionKind] = &[$($kind,)+ $($other,)+];
+            ALL
+        }
+    };
+}
+
+actions! {
+    discrete: [
+        Stop = stop::KIND,
+        MoveForward = move_forward::KIND,
+        TurnLeft = turn_left::KIND,
+        TurnRight = turn_right::KIND,
+        LookUp = look_up::KIND,
+        LookDown = look_down::KIND,
+        Wait = wait::KIND,
+        Pick = of_hand::<hand::Pick>("pick"),
+        Drop = of_hand::<hand::Drop>("drop"),
+        Open = of_hand::<hand::Open>("open"),
+        Close = of_hand::<hand::Close>("close"),
+        Toggle = of_hand::<hand::Toggle>("toggle"),
+    ]
+    others: [
+        of_hand::<hand::Place>("place"),
+        of_hand::<hand::PlaceAt>("place_at"),
+        of_hand::<hand::PutIn>("put_in"),
+        of_hand::<hand::Throw>("throw"),
+        of_hand::<hand::Push>("push"),
+        of_hand::<hand::Pull>("pull"),
+        of_hand::<hand::Point>("point"),
+    ]
+}
+
+impl DiscreteAction {
+    /// The row of the table.
+    pub fn kind(self) -> &'static ActionKind {
+        &all()[self as usize]
+    }
+
+    /// The action's name, as in action lists and files.
+    pub fn name(self) -> &'static str {
+        self.kind().name
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_action_has_a_name_of_its_own_and_says_what_it_does() {
+        let names: BTreeSet<&str> = all().iter().map(|kind| kind.name).collect();
+        assert_eq!(names.len(), all().len());
+        for kind in all() {
+            let documented = kind.fields().iter().all(|field| !field.about.is_empty());
+            assert!(documented && kind.about().ends_with('.'), "{kind:?}");
+            let target = kind.target_about();
+            assert_eq!(target.is_some(), kind.takes_target(), "{}", kind.name);
+            assert!(target.is_none_or(|about| !about.is_empty()), "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_discrete_action_is_called_as_its_variant_is() {
+        for action in DiscreteAction::ALL {
+            let variant = format!("{action:?}").to_lowercase();
+            assert_eq!(action.name().replace('_', ""), variant);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! What a pixel shows, as the target of an action.
+
+use crate::error::WorldError;
+use crate::world::World;
+use dwell_physics::Target;
+use dwell_render::Camera;
+use dwell_scene::{AgentId, Pose};
+use glam::{Vec2, Vec3};
+
+impl World {
+    /// Returns what a pixel of a camera at an agent's eye shows, as a target.
+    ///
+    /// `eye_from_camera`: where the camera is mounted.
+    /// `pixel`: column and row, counted from 0 at the top left; the middle of the pixel is meant.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for a pixel outside the image, [`WorldError::Usage`] for an agent that does not exist.
+    pub fn pixel_target(
+        &self,
+        agent: AgentId,
+        camera: &Camera,
+        eye_from_camera: Pose,
+        [column, row]: [f32; 2],
+    ) -> Result<Target, WorldError> {
+        let (width, height) = (camera.width() as f32, camera.height() as f32);
+        if !(0.0..width).contains(&column) || !(0.0..height).contains(&row) {
+            return Err(WorldError::Config {
+                field: "pixel",
+                found: format!("[{column}, {row}]"),
+                allowed: format!("[0 to {}, 0 to {}]", width - 1.0, height - 1.0),
+            });
+        }
+        let Some(state) = self.state().agents.get(agent) else {
+            return Err(WorldError::Usage(format!(
+                "no agent {}; there are {}",
+                agent.0,
+                self.state().agents.len()
+            )));
+        };
+        let eye = state.world_from_eye() * eye_from_camera;
+        let (start, direction) = camera.ray_in_camera(Vec2::new(column + 0.5, row + 0.5));
+        if direction == Vec3::ZERO {
+            return Err(WorldError::Config {
+                field: "pixel",
+                found: format!("[{column}, {row}]"),
+                allowed: "a pixel that sees something".to_owned(),
+            });
+        }
+        Ok(Target::Ray {
+            origin: eye.transform_point(start),
+            direction: eye.transform_vector(direction),
+        })
+    }
+}

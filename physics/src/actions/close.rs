@@ -1,0 +1,31 @@
+//! Closing.
+
+use super::ActionResult;
+use super::hand_action::{Hand, HandAction};
+use super::request::Target;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Closes a door, drawer or lid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Close {
+    /// What to close.
+    pub target: Target,
+}
+
+impl Close {
+    /// Closes a thing.
+    pub fn new(target: impl Into<Target>) -> Self {
+        Self {
+            target: target.into(),
+        }
+    }
+}
+
+impl HandAction for Close {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context
+            .swing(hand.state, hand.actor, &self.target, 0.0)
+    }
+}

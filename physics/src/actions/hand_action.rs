@@ -1,0 +1,43 @@
+//! What every action of the hand has in common.
+
+use super::{ActionContext, ActionResult, Actor};
+use crate::outcome::ActionOutcome;
+use dwell_scene::State;
+use std::fmt::Debug;
+
+/// Something that an agent's hand does. Each kind is a type in a file of its own.
+pub trait HandAction: Debug + Send + Sync {
+    /// Lets a hand do it.
+    ///
+    /// # Errors
+    /// The outcome that says why it cannot be done.
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult;
+}
+
+impl<A: HandAction + ?Sized> HandAction for &A {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        (**self).perform(hand)
+    }
+}
+
+/// The hand of an agent, and the world that it works on.
+pub struct Hand<'a> {
+    pub(super) context: ActionContext<'a>,
+    pub(super) state: &'a mut State,
+    pub(super) actor: Actor<'a>,
+}
+
+impl Debug for Hand<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hand")
+            .field("agent", &self.actor.id)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Hand<'_> {
+    /// Lets the hand do something, and returns what comes of it.
+    pub(super) fn perform(&mut self, action: &dyn HandAction) -> ActionOutcome {
+        action.perform(self).unwrap_or_else(|refusal| *refusal)
+    }
+}

@@ -1,0 +1,35 @@
+//! Taking an object.
+
+use super::ActionResult;
+use super::hand_action::{Hand, HandAction};
+use super::request::Target;
+use crate::hands::Grasp;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Takes an object.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Pick {
+    /// What to take.
+    pub target: Target,
+    /// How to hold it: `"kinematic"` or `{"spring": {"frequency_hz": 4, "damping_ratio": 1}}`.
+    pub grasp: Grasp,
+}
+
+impl Pick {
+    /// Takes a thing, held as usual.
+    pub fn new(target: impl Into<Target>) -> Self {
+        Self {
+            target: target.into(),
+            grasp: Grasp::default(),
+        }
+    }
+}
+
+impl HandAction for Pick {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context
+            .pick(hand.state, hand.actor, &self.target, self.grasp)
+    }
+}

@@ -1,0 +1,24 @@
+//! Pulling.
+
+use super::ActionResult;
+use super::hand_action::{Hand, HandAction};
+use super::request::Target;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Pulls something near for a quarter of a second; needs a free hand.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Pull {
+    /// What to pull; a ray says where.
+    pub target: Target,
+    /// N, above 0; more than the agent's strength is cut. Without it all of it.
+    pub force_n: Option<f32>,
+}
+
+impl HandAction for Pull {
+    fn perform(&self, hand: &mut Hand<'_>) -> ActionResult {
+        hand.context
+            .start_push(hand.state, hand.actor, &self.target, self.force_n, -1.0)
+    }
+}
