@@ -68,7 +68,7 @@ def _camera(name: str, value: object) -> dict[str, Any]:
 
 
 #: What does not change where a camera's pixels look.
-_NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects"}
+_NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects", "classes"}
 
 
 @functools.cache

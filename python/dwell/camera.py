@@ -9,25 +9,13 @@ from typing import Any, Literal, get_args
 from dwell._native import ConfigError
 from dwell.arguments import choice, finite, mapping, quoted, text, triple, whole
 
-Channel = Literal[
-    "rgb",
-    "depth",
-    "instance",
-    "semantic",
-    "semantic_fine",
-    "semantic_nyu40",
-    "normals",
-    "albedo",
-    "surfels",
-    "flow",
-    "visible_objects",
-    "boxes_2d",
-    "boxes_3d",
-]
-
 Preset = Literal["flat", "lit", "full"]
 #: How much light there may be in a picture, cheapest first.
 PRESETS: tuple[Preset, ...] = get_args(Preset)
+
+Classes = Literal["coarse", "fine", "nyu40"]
+#: The tables of semantic classes.
+CLASSES: tuple[Classes, ...] = get_args(Classes)
 
 
 #: Most pixels along an edge, and the end of all depth, as the engine has them.
@@ -60,6 +48,8 @@ class Camera:
         pitch_deg: Then up.
         roll_deg: Then about its own axis, counter-clockwise as it looks.
         max_objects: Rows of ``visible_objects``, ``boxes_2d`` and ``boxes_3d``, 1 to 4096.
+        classes: The classes of ``semantic``, which are those of ``House.semantic_classes``:
+            ``coarse``, ``fine`` or ``nyu40``.
 
     Raises:
         ConfigError: A field is of another type or out of its range; the numbers of a projection
@@ -78,6 +68,7 @@ class Camera:
     pitch_deg: float = 0.0
     roll_deg: float = 0.0
     max_objects: int = 64
+    classes: Classes = "coarse"
 
     def __post_init__(self) -> None:
         """Checks the fields."""
@@ -93,6 +84,7 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
         "height": whole(f"{name}.height", camera.height, low=1, high=MOST_PIXELS),
         "max_objects": whole(f"{name}.max_objects", camera.max_objects, low=1, high=4096),
         "preset": choice(f"{name}.preset", camera.preset, PRESETS),
+        "classes": choice(f"{name}.classes", camera.classes, CLASSES),
         "position_m": list(triple(f"{name}.position_m", camera.position_m)),
     }
     for field in ("near_m", "far_m", "yaw_deg", "pitch_deg", "roll_deg"):

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import functools
+import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
+
+from dwell import _native
 
 # Anchors of a dark-to-bright scale with steadily rising lightness, sRGB.
 _SCALE = np.array(
@@ -78,25 +83,28 @@ def flow_colors(flow: NDArray[Any]) -> NDArray[np.uint8]:
     return shown
 
 
-#: How each sensor's image is shown; what lists things has no picture.
-_SHOWN = {
+#: How the images of a style are shown; what lists things has no picture.
+_SHOWN: dict[str, Callable[[NDArray[Any]], NDArray[np.uint8]]] = {
+    "colors": lambda image: image,
     "depth": depth_colors,
-    "instance": id_colors,
-    "semantic": id_colors,
-    "semantic_fine": id_colors,
-    "semantic_nyu40": id_colors,
-    "normals": direction_colors,
-    "albedo": light_colors,
-    "surfels": lambda surfels: light_colors(surfels[..., 6:]),
+    "ids": id_colors,
+    "directions": direction_colors,
+    "light": lambda image: light_colors(image[..., -3:]),
     "flow": flow_colors,
 }
 
 
+@functools.cache
+def _styles() -> dict[str, str | None]:
+    """How people are shown what each sensor gives."""
+    return {row["name"]: row["picture_style"] for row in json.loads(_native.sensors_json())}
+
+
 def has_picture(channel: str) -> bool:
     """Whether a sensor gives an image, and not a list."""
-    return channel == "rgb" or channel in _SHOWN
+    return _styles().get(channel) in _SHOWN
 
 
 def picture(channel: str, image: NDArray[Any]) -> Image.Image:
     """A sensor's image as a picture for people: colours as they are, others in colours."""
-    return Image.fromarray(image if channel == "rgb" else _SHOWN[channel](image))
+    return Image.fromarray(_SHOWN[str(_styles()[channel])](image))

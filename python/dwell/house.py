@@ -16,12 +16,12 @@ from dwell.navigation import Navigation, Walker, walker_json
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from dwell.camera import Classes
     from dwell.configs import GeneratorSettings
     from dwell.editing import HouseEdit
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]
-Table = Literal["coarse", "fine", "nyu40"]
 
 #: Houses that a list of names holds at most.
 _MOST_LISTED = 1_000_000
@@ -249,12 +249,11 @@ class House:
         seed = None if seed is None else whole("seed", seed)
         return self._native.describe(text("level", level), seed)
 
-    def semantic_classes(self, table: Table = "coarse") -> list[str]:
+    def semantic_classes(self, table: Classes = "coarse") -> list[str]:
         """The names of the numbers in semantic images; 0 is void.
 
         Args:
-            table: ``coarse`` for ``semantic``, ``fine`` for ``semantic_fine``, ``nyu40`` for
-                ``semantic_nyu40``.
+            table: The ``classes`` of ``semantic``: ``coarse``, ``fine`` or ``nyu40``.
         """
         return self._native.semantic_classes(text("table", table))
 

@@ -25,8 +25,9 @@ from dwell.arguments import (
     unit_quaternion,
     whole,
 )
-from dwell.camera import MOST_PIXELS, Camera, Channel, camera_settings
+from dwell.camera import MOST_PIXELS, Camera, camera_settings
 from dwell.configs import bodies
+from dwell.engine_types import Channel
 from dwell.guide_api import GuideApi
 from dwell.heads import Head
 from dwell.house import House
@@ -279,9 +280,8 @@ class World(ActionApi, GuideApi, SoundApi):
 
         Returns:
             ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m along -Z
-            (range for fisheyes and cameras that see all around); ``instance``, ``semantic``,
-            ``semantic_fine`` and ``semantic_nyu40`` (height, width, 1) int32; in the camera's frame
-            (right, up, back) ``normals`` (height, width, 3) float32 and ``surfels`` (height, width,
+            (range for fisheyes and cameras that see all around); ``instance`` and
+            ``semantic`` (height, width, 1) int32; in the camera's frame (right, up, back) ``normals`` (height, width, 3) float32 and ``surfels`` (height, width,
             9) float32, position in m, normal, reflectance; ``albedo`` (height, width, 3) float32,
             linear reflectance 0 to 1; ``flow`` (height, width, 2) float32, pixels right and down
             since the step before; of what is in view, by id, unused rows 0: ``visible_objects``

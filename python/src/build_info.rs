@@ -49,11 +49,17 @@ pub(crate) fn tasks_json() -> String {
     tasks.collect::<Value>().to_string()
 }
 
-/// The sensors: `[{name, about}]`.
+/// The sensors: `[{name, about, picture_style}]`; the style is null where a sensor is not one of pictures.
 #[pyfunction]
 pub(crate) fn sensors_json() -> String {
     let sensors = dwell::sensors::all().iter();
-    let rows = sensors.map(|kind| json!({"name": kind.name, "about": kind.about}));
+    let rows = sensors.map(|kind| {
+        json!({
+            "name": kind.name,
+            "about": kind.about,
+            "picture_style": kind.picture_style(),
+        })
+    });
     rows.collect::<Value>().to_string()
 }
 

@@ -1,9 +1,9 @@
 //! One picture of a world, as Python asks for it.
 
 use crate::errors::PyFault;
-use dwell::sensors::{Observation, ObservationData};
+use dwell::sensors::{ImageSettings, Observation, ObservationData};
 use dwell::{CameraMount, PictureRequest, World, camera_mount};
-use dwell_render::{Camera, Preset, Projection};
+use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::{rotation_from_forward, rotation_from_yaw_pitch};
 use dwell_scene::{AgentId, Pose};
@@ -40,6 +40,7 @@ struct CameraSettings {
     pitch_deg: f32,
     roll_deg: f32,
     max_objects: u32,
+    classes: ClassSet,
 }
 
 impl Default for CameraSettings {
@@ -57,6 +58,7 @@ impl Default for CameraSettings {
             pitch_deg: 0.0,
             roll_deg: 0.0,
             max_objects: 64,
+            classes: ClassSet::Coarse,
         }
     }
 }
@@ -105,7 +107,11 @@ pub(crate) fn render(
         preset: own.preset,
     };
     let threads = Threads::requested(None)?;
-    Ok(world.look(&request, channels, own.max_objects, threads)?)
+    let images = ImageSettings {
+        max_objects: own.max_objects,
+        classes: own.classes,
+    };
+    Ok(world.look(&request, channels, images, threads)?)
 }
 
 /// An observation as an array of its own shape.

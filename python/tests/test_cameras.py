@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 import dwell
-from dwell.camera import Channel
+from dwell.camera import Classes
+from dwell.engine_types import Channel
 from dwell.envs import DwellEnv
 
 
@@ -20,8 +21,6 @@ def test_every_camera_and_sensor_gives_arrays_of_its_shape(apartment: dwell.Hous
         "depth": ((24, 32, 1), np.float32),
         "instance": ((24, 32, 1), np.int32),
         "semantic": ((24, 32, 1), np.int32),
-        "semantic_fine": ((24, 32, 1), np.int32),
-        "semantic_nyu40": ((24, 32, 1), np.int32),
         "normals": ((24, 32, 3), np.float32),
         "albedo": ((24, 32, 3), np.float32),
         "surfels": ((24, 32, 9), np.float32),
@@ -48,6 +47,12 @@ def test_every_camera_and_sensor_gives_arrays_of_its_shape(apartment: dwell.Hous
         assert (thing[0], thing[1], 0 <= thing[2] <= 1) == (box[0], rows.size, True)
         ends = (columns.min(), rows.min(), columns.max() + 1, rows.max() + 1, rows.size)
         assert tuple(box[1:]) == ends
+    for classes in get_args(Classes):
+        camera = dwell.Camera(32, 24, classes=classes)
+        image = world.render(agent=0, camera=camera, channels=["semantic"])["semantic"]
+        assert image.max() < len(apartment.semantic_classes(classes))
+    with pytest.raises(dwell.ConfigError, match='"semantic" with the setting classes = "fine"'):
+        world.render(channels=["semantic_fine"])  # type: ignore[list-item] # what is refused
     names = apartment.semantic_classes("nyu40")
     assert (len(names), names[1], names[40]) == (41, "wall", "otherprop")
     with pytest.raises(dwell.ConfigError, match="nyu40"):

@@ -14,7 +14,7 @@ from PIL import Image
 
 import dwell
 from dwell import _native, plans
-from dwell.camera import Channel
+from dwell.engine_types import Channel
 
 WALL = (40, 40, 44)
 

@@ -74,21 +74,56 @@ pub fn env_with(config: EnvConfig, sensors: &[&str]) -> Env {
 /// # Panics
 /// When the task, a law or a sensor does not exist.
 pub fn env_in(engines: Arc<Engines>, config: EnvConfig, sensors: &[&str]) -> Env {
-    let settings = |name: &str| match name {
-        "rgb" | "depth" | "instance" | "semantic" | "semantic_fine" | "semantic_nyu40"
-        | "normals" | "albedo" | "surfels" | "flow" | "visible_objects" | "boxes_2d"
-        | "boxes_3d" => {
-            json!({"width": 32, "height": 24})
-        }
-        _ => json!({}),
-    };
-    let sensors = sensors.iter().map(|name| SensorConfig {
-        kind: (*name).to_owned(),
-        settings: settings(name),
-    });
+    let sensors = sensors.iter().map(|name| small_sensor(name));
     let config = EnvConfig {
         sensors: Some(sensors.collect()),
         ..config
     };
     Env::new(engines, &config).expect("task, laws and sensors exist")
+}
+
+/// A sensor by its name, small where it is one of pictures.
+fn small_sensor(name: &str) -> SensorConfig {
+    let mut all = dwell::sensors::all().iter();
+    let shows_pictures = all.any(|kind| kind.name == name && kind.shows_pictures());
+    SensorConfig {
+        kind: name.to_owned(),
+        settings: if shows_pictures {
+            json!({"width": 32, "height": 24})
+        } else {
+            json!({})
+        },
+    }
+}
+
+/// An environment in the apartment with every sensor, `semantic` by each table of classes, all small.
+///
+/// # Panics
+/// When the task or a law does not exist.
+pub fn env_of_every_sensor(config: EnvConfig) -> Env {
+    let mut sensors = Vec::new();
+    for kind in dwell::sensors::all() {
+        let one = small_sensor(kind.name);
+        let tables = if kind.name == "semantic" {
+            &["fine", "nyu40"][..]
+        } else {
+            &[]
+        };
+        let more: Vec<SensorConfig> = tables
+            .iter()
+            .map(|table| {
+                let mut further = one.clone();
+                further.settings["classes"] = json!(table);
+                further.settings["name"] = json!(format!("semantic_{table}"));
+                further
+            })
+            .collect();
+        sensors.push(one);
+        sensors.extend(more);
+    }
+    let config = EnvConfig {
+        sensors: Some(sensors),
+        ..config
+    };
+    Env::new(apartment(), &config).expect("task and laws exist")
 }

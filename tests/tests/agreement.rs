@@ -9,7 +9,7 @@
     reason = "figures and skips are printed; a test fails by panicking"
 )]
 
-use dwell::sensors::{self, Observation, ObservationData};
+use dwell::sensors::{self, ImageSettings, Observation, ObservationData};
 use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, viewpoints};
 use dwell_physics::AgentControl;
 use dwell_render::{BackEnd, Camera, Frame, ImageChannels, Preset, View, VisibleObject, sightings};
@@ -110,7 +110,12 @@ fn look(
         };
         views.push(
             world
-                .look(&request, names, 64, Threads::exactly(2))
+                .look(
+                    &request,
+                    names,
+                    ImageSettings::default(),
+                    Threads::exactly(2),
+                )
                 .unwrap(),
         );
     }

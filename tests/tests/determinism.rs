@@ -9,7 +9,7 @@ use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, WorldConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, LawSpec, Locomotion};
-use dwell_tests::observations::{all_sensors, observe};
+use dwell_tests::observations::observe;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::Arc;
@@ -52,7 +52,7 @@ fn noisy_env() -> Env {
         },
         ..EnvConfig::default()
     };
-    dwell_tests::env_with(config, &all_sensors())
+    dwell_tests::env_of_every_sensor(config)
 }
 
 fn batch(count: usize, threads: usize) -> Batch {

@@ -5,7 +5,7 @@
 use dwell::sensors::{Observation, ObservationData, SensorSpec};
 use dwell::{CameraMount, Engines, PictureRequest, World};
 use dwell_physics::AgentControl;
-use dwell_render::{Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
+use dwell_render::{ClassSet, Dollhouse, DollhouseConfig, Preset, Projection, StoreyMap};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, House, HouseData, Pose, StructureKind};
 use dwell_tests::golden::views::{self, ROOMS};
@@ -62,8 +62,13 @@ fn pictures_are_the_golden_ones() {
         }
     }
     let world = turned(views::company());
-    for image in views::at(&world, eyes(), &sensors()).unwrap() {
+    for image in views::at(&world, eyes(), &sensors(), ClassSet::Coarse).unwrap() {
         golden.check(&format!("sensor_{}", image.spec.name), &image);
+    }
+    for (name, classes) in [("fine", ClassSet::Fine), ("nyu40", ClassSet::Nyu40)] {
+        for image in views::at(&world, eyes(), &["semantic"], classes).unwrap() {
+            golden.check(&format!("sensor_semantic_{name}"), &image);
+        }
     }
     plans(&mut golden);
     let faults = golden.finish();
@@ -234,7 +239,14 @@ fn every_preset_and_kind_of_camera_has_golden_pictures() {
 #[test]
 fn small_errors_of_exact_sensors_are_found() {
     let world = turned(views::company());
-    for image in views::at(&world, eyes(), &["depth", "instance", "boxes_2d"]).unwrap() {
+    for image in views::at(
+        &world,
+        eyes(),
+        &["depth", "instance", "boxes_2d"],
+        ClassSet::Coarse,
+    )
+    .unwrap()
+    {
         let name = format!("sensor_{}", image.spec.name);
         let judge = |data: ObservationData| {
             let spoilt = Observation {

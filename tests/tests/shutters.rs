@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use dwell::sensors::ObservationData;
+use dwell::sensors::{ImageSettings, ObservationData};
 use dwell::{
     Batch, CameraMount, DiscreteAction, Env, EnvConfig, PictureRequest, SensorConfig, WorldConfig,
 };
@@ -145,7 +145,12 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
                     place: CameraMount::Agent(AgentId(0), Pose::IDENTITY),
                     preset: Preset::Lit,
                 };
-                let picture = world.look(&request, &["rgb".to_owned()], 64, Threads::ONE);
+                let picture = world.look(
+                    &request,
+                    &["rgb".to_owned()],
+                    ImageSettings::default(),
+                    Threads::ONE,
+                );
                 let ObservationData::Uint8(rgb) = &picture.unwrap()[0].data else {
                     panic!("colours are bytes")
                 };

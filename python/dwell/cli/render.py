@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, get_args
 
-from dwell.camera import PRESETS, Camera, Channel
+from dwell.camera import CLASSES, PRESETS, Camera
 from dwell.cli.common import (
     ProgressBar,
     add_back_end,
@@ -19,6 +19,7 @@ from dwell.cli.common import (
     print_json,
 )
 from dwell.cli.write_files import save_picture, write_image
+from dwell.engine_types import Channel
 
 if TYPE_CHECKING:
     from dwell.world import World
@@ -72,6 +73,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--width-m", type=number, default=6.0, help="what an orthographic image spans"
     )
     parser.add_argument("--preset", choices=PRESETS, default="lit")
+    parser.add_argument("--classes", choices=CLASSES, default="coarse", help="those of semantic")
     parser.add_argument(
         "--map", action="store_true", help="the plan of every storey, with names and a scale"
     )
@@ -206,10 +208,10 @@ def _camera(args: argparse.Namespace) -> Camera:
     """The camera that the options describe."""
     import math
 
-    kind, height, preset = args.projection, args.height, args.preset
+    kind, height, preset, classes = args.projection, args.height, args.preset, args.classes
     width = 640 if args.width is None else args.width
     if kind == "pinhole" and not args.intrinsics:
-        return Camera(width, height, args.fov_deg, preset=preset)
+        return Camera(width, height, args.fov_deg, preset=preset, classes=classes)
     numbers: dict[str, Any] = {}
     if kind in ("pinhole", "brown_conrady", "fisheye"):
         widest = 360.0 if kind == "fisheye" else 179.0
@@ -229,4 +231,4 @@ def _camera(args: argparse.Namespace) -> Camera:
     elif kind in ("equirectangular", "cubemap"):
         height = max(width // 2, 1) if kind == "equirectangular" else 6 * width
     projection = {"kind": kind, **numbers, **args.intrinsics}
-    return Camera(width, height, preset=preset, projection=projection)
+    return Camera(width, height, preset=preset, projection=projection, classes=classes)

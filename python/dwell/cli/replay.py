@@ -7,9 +7,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
-from dwell.camera import PRESETS, Camera, Channel
+from dwell.camera import CLASSES, PRESETS, Camera
 from dwell.cli.common import ProgressBar, add_back_end, back_end, count, number, path, print_json
 from dwell.cli.write_files import add_bits, save_sound, write_image
+from dwell.engine_types import Channel
 
 if TYPE_CHECKING:
     from dwell.replays import Replay, ReplayStep
@@ -35,6 +36,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--height", type=count, default=240)
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument("--preset", choices=PRESETS, default="lit")
+    parser.add_argument("--classes", choices=CLASSES, default="coarse", help="those of semantic")
     add_back_end(parser)
     add_bits(parser)
     parser.add_argument("--out", type=path, metavar="DIR", help="where --sensors go")
@@ -94,7 +96,9 @@ class _Taker:
                 raise ValueError(f"--sensors: no {name!r}; allowed are {allowed}")
         self._channels = [name for name in known if name in names]
         self._hears = _AUDIO in names
-        self._camera = Camera(args.width, args.height, args.fov_deg, preset=args.preset)
+        self._camera = Camera(
+            args.width, args.height, args.fov_deg, preset=args.preset, classes=args.classes
+        )
         self._out: Path = args.out
         self._every: int = args.every
         self._heard: list[Any] = []

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dwell.camera import Camera, Channel
+from dwell.camera import Camera
+from dwell.engine_types import Channel
 from dwell.false_color import picture
 from dwell.house import House
 from dwell.world import World

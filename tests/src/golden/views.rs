@@ -1,9 +1,9 @@
 //! The views that golden pictures show: of built-in houses alone.
 
 use crate::apartment;
-use dwell::sensors::Observation;
+use dwell::sensors::{ImageSettings, Observation};
 use dwell::{CameraMount, Engines, PictureRequest, World, WorldConfig, WorldError};
-use dwell_render::{Camera, Preset, Projection, RenderError};
+use dwell_render::{Camera, ClassSet, Preset, Projection, RenderError};
 use dwell_scene::parallel::Threads;
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, Pose};
@@ -159,10 +159,11 @@ pub fn look(
             preset,
         },
         sensors,
+        ClassSet::Coarse,
     )
 }
 
-/// Returns what sensors give for a picture.
+/// Returns what sensors give for a picture. `classes`: those of `semantic`.
 ///
 /// # Errors
 /// [`WorldError`] for a sensor that there is not.
@@ -170,7 +171,12 @@ pub fn at(
     world: &World,
     request: PictureRequest,
     sensors: &[&str],
+    classes: ClassSet,
 ) -> Result<Vec<Observation>, WorldError> {
     let names: Vec<String> = sensors.iter().map(|name| (*name).to_owned()).collect();
-    world.look(&request, &names, 16, Threads::ONE)
+    let settings = ImageSettings {
+        max_objects: 16,
+        classes,
+    };
+    world.look(&request, &names, settings, Threads::ONE)
 }

@@ -47,6 +47,7 @@ pub(crate) fn all(root: &Path) -> Vec<Stage> {
             &format!("-m mypy --config-file {CONFIG} python/dwell"),
         ),
         python(root, "stubtest", &stubtest),
+        python(root, "generated", "docs/write_generated.py --check"),
     ];
     for stage in &mut stages {
         match stage.name {

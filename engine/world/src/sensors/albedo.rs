@@ -1,6 +1,6 @@
 //! Reflectance of surfaces.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
@@ -12,13 +12,14 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(|_| &IMAGE),
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "albedo",
     about: ABOUT,
     shape: ObservationShape::Image(3),
+    shown: PictureStyle::Light,
     dtype: Dtype::Float32,
     unit: "1",
     low: 0.0,
@@ -31,7 +32,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
 };
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+    image::build(|_| &IMAGE, value, site)
 }
 
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {

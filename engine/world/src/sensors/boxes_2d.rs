@@ -1,6 +1,6 @@
 //! Boxes around things in the image.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -13,13 +13,14 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(|_| &IMAGE),
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_2d",
     about: ABOUT,
     shape: ObservationShape::List(6),
+    shown: PictureStyle::List,
     dtype: Dtype::Int32,
     unit: "id, px",
     low: 0.0,
@@ -32,7 +33,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
 };
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+    image::build(|_| &IMAGE, value, site)
 }
 
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {

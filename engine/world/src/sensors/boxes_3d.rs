@@ -1,6 +1,6 @@
 //! Oriented boxes around things in view.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -13,13 +13,14 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(|_| &IMAGE),
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "boxes_3d",
     about: ABOUT,
     shape: ObservationShape::List(11),
+    shown: PictureStyle::List,
     dtype: Dtype::Float32,
     unit: "id, m, m, 1",
     low: -1e9,
@@ -32,7 +33,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
 };
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+    image::build(|_| &IMAGE, value, site)
 }
 
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {

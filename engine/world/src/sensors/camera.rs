@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
-use dwell_render::{Camera, Preset, Projection};
+use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, Pose, math};
 use glam::{Quat, Vec3};
@@ -43,6 +43,8 @@ pub struct CameraConfig {
     pub preset: String,
     /// Rows of sensors that list things; 1 to 4,096, default 64.
     pub max_objects: u32,
+    /// The classes of `semantic`, which are those of `House.semantic_classes`: `"coarse"` (default), `"fine"` or `"nyu40"`.
+    pub classes: ClassSet,
 }
 
 impl Default for CameraConfig {
@@ -62,6 +64,7 @@ impl Default for CameraConfig {
             far_m: 50.0,
             preset: "lit".to_owned(),
             max_objects: 64,
+            classes: ClassSet::Coarse,
         }
     }
 }

@@ -10,6 +10,7 @@ use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
+use serde::Serialize;
 
 /// What tells one sensor of pictures from another.
 #[derive(Debug)]
@@ -17,6 +18,7 @@ pub(crate) struct ImageSensorKind {
     pub(super) name: &'static str,
     pub(super) about: &'static str,
     pub(super) shape: ObservationShape,
+    pub(super) shown: PictureStyle,
     pub(super) dtype: Dtype,
     pub(super) unit: &'static str,
     pub(super) low: f64,
@@ -26,6 +28,47 @@ pub(crate) struct ImageSensorKind {
     pub(super) channels: ImageChannels,
     /// Writes the observation.
     pub(super) write: fn(ImageContext<'_>, ObservationBuffer<'_>),
+}
+
+/// The sensor of pictures whose classes, where it gives any, are those of a table.
+pub(crate) type ImageOfClasses = fn(ClassSet) -> &'static ImageSensorKind;
+
+/// How people are shown an observation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PictureStyle {
+    /// Colours as they are, sRGB.
+    Colors,
+    /// Distances: near is bright.
+    Depth,
+    /// Ids or classes: a colour for each.
+    Ids,
+    /// Unit vectors.
+    Directions,
+    /// Linear light, in the last three channels.
+    Light,
+    /// Movement in the image.
+    Flow,
+    /// No picture: a list of what is in view.
+    List,
+}
+
+/// What observations of pictures depend on beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageSettings {
+    /// Rows of those that list things, 1 to 4,096; default 64.
+    pub max_objects: u32,
+    /// The classes of `semantic`; default coarse ones.
+    pub classes: ClassSet,
+}
+
+impl Default for ImageSettings {
+    fn default() -> Self {
+        Self {
+            max_objects: 64,
+            classes: ClassSet::Coarse,
+        }
+    }
 }
 
 /// The shape of an observation.
@@ -106,11 +149,12 @@ struct ImageSensor {
 
 /// Builds a sensor from its settings.
 pub(super) fn build(
-    kind: &'static ImageSensorKind,
+    of: ImageOfClasses,
     value: &serde_json::Value,
     site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
     let config: CameraConfig = settings(value)?;
+    let kind = of(config.classes);
     let eye = config.build(&site.config.agents)?;
     Ok(Box::new(ImageSensor { kind, config, eye }))
 }
@@ -167,8 +211,6 @@ pub struct Observation {
 impl World {
     /// Returns what sensors of pictures, by name, give for a camera: one picture for all of them.
     ///
-    /// `max_objects`: rows of those that list things, 1 to 4,096.
-    ///
     /// # Errors
     /// [`WorldError::Unknown`] lists the sensors there are; [`WorldError::Config`] for a wrong `max_objects`;
     /// [`WorldError::Render`] for a pose that is not finite.
@@ -179,9 +221,13 @@ impl World {
         &self,
         request: &PictureRequest,
         names: &[String],
-        max_objects: u32,
+        settings: ImageSettings,
         threads: Threads,
     ) -> Result<Vec<Observation>, WorldError> {
+        let ImageSettings {
+            max_objects,
+            classes,
+        } = settings;
         if !(1..=4096).contains(&max_objects) {
             return Err(WorldError::Config {
                 field: "max_objects",
@@ -189,14 +235,13 @@ impl World {
                 allowed: "1 to 4096".to_owned(),
             });
         }
-        let images = || super::all().iter().filter_map(|kind| kind.image);
+        let images = || super::all().iter().filter(|kind| kind.shows_pictures());
         let find = |name: &String| {
-            let found = images().find(|kind| kind.name == name);
-            found.ok_or_else(|| WorldError::Unknown {
-                kind: "image",
-                name: name.clone(),
-                known: images().map(|kind| kind.name.to_owned()).collect(),
-            })
+            let kind = images().find(|kind| kind.name == name);
+            let image = kind.and_then(|kind| kind.image);
+            image
+                .map(|of| of(classes))
+                .ok_or_else(|| super::unknown("image", name, images()))
         };
         let kinds: Vec<&ImageSensorKind> = names.iter().map(find).collect::<Result<_, _>>()?;
         let wanted = kinds.iter().map(|kind| kind.channels);

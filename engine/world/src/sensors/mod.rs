@@ -21,8 +21,6 @@ mod normals;
 mod object_list;
 mod rgb;
 mod semantic;
-mod semantic_fine;
-mod semantic_nyu40;
 mod surfels;
 mod visible_objects;
 mod wheel_odometry;
@@ -30,12 +28,13 @@ mod wheel_odometry;
 pub use crate::eye_camera::EyeCamera;
 pub use camera::CameraConfig;
 pub(crate) use camera::mount;
-pub use image::{Observation, ObservationData};
+pub use image::{ImageSettings, Observation, ObservationData, PictureStyle};
 
 use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::sensor_requests::{Requests, Results};
 use crate::world::World;
+use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
 use std::fmt::Debug;
@@ -154,13 +153,19 @@ pub struct SensorKind {
     /// Builds one from its settings (a JSON object; `{}` gives the defaults).
     pub build: SensorBuilder,
     /// What [`World::look`] needs of a sensor of pictures.
-    pub(crate) image: Option<&'static image::ImageSensorKind>,
+    pub(crate) image: Option<image::ImageOfClasses>,
 }
 
 impl SensorKind {
     /// Returns whether it is one of pictures: [`World::look`] knows it.
     pub fn shows_pictures(&self) -> bool {
         self.image.is_some()
+    }
+
+    /// Returns how people are shown its observation; `None` where it is not one of pictures.
+    pub fn picture_style(&self) -> Option<PictureStyle> {
+        let image = self.image?;
+        Some(image(ClassSet::Coarse).shown)
     }
 }
 
@@ -171,8 +176,6 @@ pub fn all() -> &'static [SensorKind] {
         depth::KIND,
         instance::KIND,
         semantic::KIND,
-        semantic_fine::KIND,
-        semantic_nyu40::KIND,
         normals::KIND,
         albedo::KIND,
         surfels::KIND,
@@ -200,12 +203,7 @@ pub fn build(
     site: SensorSetup<'_>,
 ) -> Result<Box<dyn Sensor>, WorldError> {
     let Some(kind) = all().iter().find(|kind| kind.name == name) else {
-        let known = all().iter().map(|kind| kind.name.to_owned()).collect();
-        return Err(WorldError::Unknown {
-            kind: "sensor",
-            name: name.to_owned(),
-            known,
-        });
+        return Err(unknown("sensor", name, all().iter()));
     };
     (kind.build)(settings, site).map_err(|error| match &error {
         // Of this kind there is one alone, called as the kind is.
@@ -222,6 +220,26 @@ pub fn build(
         }
         _ => error,
     })
+}
+
+/// The refusal of a name that no sensor has; an earlier name leads to the setting that took its place.
+fn unknown<'a>(
+    kind: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'a SensorKind>,
+) -> WorldError {
+    match semantic::setting_of_earlier_name(name) {
+        Some(classes) => WorldError::Config {
+            field: kind,
+            found: format!("{name:?}"),
+            allowed: format!("\"semantic\" with the setting classes = {classes:?}"),
+        },
+        None => WorldError::Unknown {
+            kind,
+            name: name.to_owned(),
+            known: known.map(|kind| kind.name.to_owned()).collect(),
+        },
+    }
 }
 
 /// Reads a sensor's settings; `null` counts as `{}`.
@@ -257,6 +275,11 @@ mod tests {
             "a sensor's name is \"where\"; allowed is \"gps\", the only one of its kind: give {\"gps\": {}}"
         );
         assert!(build("rgb", &json!({"name": "left"}), site).is_ok());
+        assert_eq!(
+            told("semantic_nyu40", json!({})),
+            "sensor is \"semantic_nyu40\"; allowed is \"semantic\" with the setting classes = \"nyu40\""
+        );
+        assert!(build("semantic", &json!({"classes": "nyu40"}), site).is_ok());
         assert!(told("gps", json!({"nme": 1})).contains("unknown field `nme`"));
     }
 }

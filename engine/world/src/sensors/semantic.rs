@@ -1,24 +1,26 @@
-//! Coarse semantic classes.
+//! Semantic classes.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
-use dwell_render::ImageChannels;
+use dwell_render::{ClassSet, ImageChannels};
 
-const ABOUT: &str = "Coarse semantic classes: 0 void, then the rows of the category table, then the house's own \
-                     (House.semantic_classes); shape (height, width, 1).";
+const NAME: &str = "semantic";
+const COARSE_ABOUT: &str = "Coarse semantic classes: 0 void, then the rows of the category table, then the house's own \
+                            (House.semantic_classes); shape (height, width, 1).";
 
 pub(super) const KIND: SensorKind = SensorKind {
-    name: IMAGE.name,
-    about: ABOUT,
+    name: NAME,
+    about: COARSE_ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(of_classes),
 };
 
-static IMAGE: ImageSensorKind = ImageSensorKind {
-    name: "semantic",
-    about: ABOUT,
+static COARSE: ImageSensorKind = ImageSensorKind {
+    name: NAME,
+    about: COARSE_ABOUT,
     shape: ObservationShape::Image(1),
+    shown: PictureStyle::Ids,
     dtype: Dtype::Int32,
     unit: "class",
     low: 0.0,
@@ -27,15 +29,50 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
         semantic: true,
         ..ImageChannels::NONE
     },
-    write,
+    write: write_coarse,
 };
 
-fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+static FINE: ImageSensorKind = ImageSensorKind {
+    about: "Semantic classes by the finest name of each thing: 0 void, then the rows of the category table, then the \
+            house's own (House.semantic_classes); shape (height, width, 1).",
+    channels: ImageChannels {
+        instance: true,
+        ..ImageChannels::NONE
+    },
+    write: |look, out| look.write_classes(ClassSet::Fine, out),
+    ..COARSE
+};
+
+static NYU40: ImageSensorKind = ImageSensorKind {
+    about: "NYU-40 classes: 0 void, 1 wall, 2 floor to 40 otherprop (House.semantic_classes); shape (height, width, 1).",
+    write: |look, out| look.write_classes(ClassSet::Nyu40, out),
+    ..FINE
+};
+
+/// The sensor whose classes are those of a table.
+fn of_classes(classes: ClassSet) -> &'static ImageSensorKind {
+    match classes {
+        ClassSet::Coarse => &COARSE,
+        ClassSet::Fine => &FINE,
+        ClassSet::Nyu40 => &NYU40,
+    }
 }
 
-fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
+fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    image::build(of_classes, value, site)
+}
+
+fn write_coarse(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
     if let ObservationBuffer::Int32(out) = out {
         out.copy_from_slice(&look.frame.semantic);
+    }
+}
+
+/// The setting that an earlier name of a sensor of classes stands for.
+pub(super) fn setting_of_earlier_name(name: &str) -> Option<&'static str> {
+    match name {
+        "semantic_fine" => Some("fine"),
+        "semantic_nyu40" => Some("nyu40"),
+        _ => None,
     }
 }

@@ -1,6 +1,6 @@
 //! Surface elements.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
 use dwell_render::ImageChannels;
@@ -13,13 +13,14 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(|_| &IMAGE),
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "surfels",
     about: ABOUT,
     shape: ObservationShape::Image(9),
+    shown: PictureStyle::Light,
     dtype: Dtype::Float32,
     unit: "m, 1, 1",
     low: -1e6,
@@ -35,7 +36,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
 };
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+    image::build(|_| &IMAGE, value, site)
 }
 
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {

@@ -1,6 +1,6 @@
 //! What is in view, and how much of it is hidden.
 
-use super::image::{self, ImageContext, ImageSensorKind, ObservationShape};
+use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
@@ -13,13 +13,14 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
-    image: Some(&IMAGE),
+    image: Some(|_| &IMAGE),
 };
 
 static IMAGE: ImageSensorKind = ImageSensorKind {
     name: "visible_objects",
     about: ABOUT,
     shape: ObservationShape::List(3),
+    shown: PictureStyle::List,
     dtype: Dtype::Float32,
     unit: "id, px, 1",
     low: 0.0,
@@ -32,7 +33,7 @@ static IMAGE: ImageSensorKind = ImageSensorKind {
 };
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    image::build(&IMAGE, value, site)
+    image::build(|_| &IMAGE, value, site)
 }
 
 fn write(look: ImageContext<'_>, out: ObservationBuffer<'_>) {
