@@ -2,6 +2,7 @@
 
 use crate::bands::{self, BAND_COUNT};
 use crate::error::{AcousticsError, range};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Reference temperature, K.
@@ -12,7 +13,7 @@ const T01_K: f64 = 273.16;
 const REFERENCE_KPA: f64 = 101.325;
 
 /// The state of the air.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Air {
     /// Temperature, degrees Celsius; -40 to 60.

@@ -2,10 +2,11 @@
 
 use crate::air::Air;
 use crate::error::{AcousticsError, range};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Settings of an [`AcousticScene`](crate::AcousticScene).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 #[expect(
     clippy::struct_excessive_bools,

@@ -9,13 +9,10 @@ import dwell
 from dwell import _native
 from dwell.actions import action_table
 from dwell.envs.spaces import action_space
-from pages import rust
-from pages.observations import fields_table, settings_table
+from dwell.schemas import settings
+from pages.observations import fields_table
+from pages.schema_words import schema_words
 from pages.tables import code, number, table
-
-_STRIDE = "engine/world/src/actions/step_sizes.rs"
-_OUTCOME = "physics/src/outcome.rs"
-_CONTROL = "physics/src/agents/control.rs"
 
 #: The ways of getting about whose limits the page lists.
 _BASES = ("walking", "differential_drive", "holonomic")
@@ -29,9 +26,9 @@ def discrete() -> list[tuple[int, str, str]]:
     return [(k, name, said[name]) for k, name in enumerate(_native.actions())]
 
 
-def controls() -> list[rust.Item]:
+def controls() -> list[dict[str, Any]]:
     """The fields of a control; the first four are the columns of an array."""
-    return rust.items(_CONTROL, "AgentControl")
+    return settings()["AgentControl"]
 
 
 def hand() -> list[dict[str, Any]]:
@@ -39,12 +36,12 @@ def hand() -> list[dict[str, Any]]:
     return [kind for kind in action_table()["kinds"] if kind["is_of_hand"]]
 
 
-def _control_row(place: int, item: rust.Item) -> tuple[str, ...]:
-    unit = next((unit for end, unit in _UNITS.items() if item.name.endswith(end)), "")
-    kind = rust.plain_type(item.type or "")
-    column = str(place) if item.type == "f32" else ""
+def _control_row(place: int, field: dict[str, Any]) -> tuple[str, ...]:
+    name, kind = field["name"], schema_words(field["schema"])
+    unit = next((unit for end, unit in _UNITS.items() if name.endswith(end)), "")
+    column = str(place) if kind == "number" else ""
     span = "any finite" if "number" in kind else "false, true"
-    return (code(item.name), column, kind, unit, span, item.about)
+    return (code(name), column, kind, unit, span, field["about"])
 
 
 def _limits(base: str) -> list[tuple[str, ...]]:
@@ -67,7 +64,7 @@ def _limits(base: str) -> list[tuple[str, ...]]:
 def page() -> str:
     """The page."""
     space = action_space()
-    stride = settings_table(_STRIDE, "StepSizes")
+    stride = fields_table(settings()["StepSizes"])
     head = ("address", "default", "unit", "lowest", "highest")
     bases = "\n".join(f"### {_words(base)}\n\n{table(head, _limits(base))}" for base in _BASES)
     return f"""# Actions
@@ -113,7 +110,7 @@ at:
 {
         table(
             ("code", "what it says"),
-            ((code(one.name), one.about) for one in rust.items(_OUTCOME, "OutcomeCode")),
+            ((code(one["name"]), one["about"]) for one in action_table()["codes"]),
         )
     }"""
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import json
+from typing import Any
 
 from dwell import _native
 from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS
+from dwell.schemas import settings
 from pages import rust
-from pages.observations import observation_table, settings_table, specifications
-from pages.sources import text
+from pages.observations import fields_table, observation_table, specifications
 from pages.tables import code
 
 _TASKS = "engine/world/src/tasks"
-_CONFIG = "engine/world/src/config.rs"
-_BODY = "engine/scene/src/state/body.rs"
 
 
-def _section(task: dict[str, object]) -> str:
+def _section(task: dict[str, Any]) -> str:
     name = str(task["name"])
     file = f"{_TASKS}/{rust.snake(name)}.rs"
     sensors = [str(sensor) for sensor in json.loads(json.dumps(task["sensors"]))]
@@ -34,15 +33,15 @@ Without `sensors`; [all that can be asked for](observations.md).
 {observation_table(specifications(sensors, name))}
 ### Settings of {name}
 
-{_settings(file, f"{name}Settings")}"""
+{_settings(task["settings"])}"""
 
 
-def _settings(file: str, struct: str) -> str:
-    if f"struct {struct} {{}}" in text(file):
+def _settings(fields: list[dict[str, Any]]) -> str:
+    if not fields:
         return "There are none.\n"
     return f"""`task_settings` is a mapping with these fields.
 
-{settings_table(file, struct)}"""
+{fields_table(fields)}"""
 
 
 def page() -> str:
@@ -66,10 +65,10 @@ Every step's `info` holds {info}, `scene_id` and `episode_id`. Where a task has 
 `world` of an environment, and the further arguments of `dwell.World`. In Python `sound_head` is a
 `dwell.Head` or the path of its SOFA file.
 
-{settings_table(_CONFIG, "WorldConfig")}
+{fields_table(settings()["WorldConfig"])}
 ## Bodies of agents
 
 The mappings of `agents`; how fast a body moves is under
 [limits of bodies](actions.md#limits-of-bodies).
 
-{settings_table(_BODY, "AgentBody")}"""
+{fields_table(settings()["AgentBody"])}"""

@@ -7,8 +7,12 @@ from __future__ import annotations
 
 import json
 import re
+import textwrap
+from typing import Any
 
 from dwell import _native
+from dwell.schemas import settings
+from dwell.schemas import words as schema_words_of
 from pages.observations import observation_table, specifications
 from pages.sources import text
 from pages.tables import code, table
@@ -17,6 +21,27 @@ from pages.tables import code, table
 _PART = re.compile(r"(<!-- generated: (.+?) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
 _PAGES = ("docs/cameras.md", "docs/environments-at-a-glance.md")
 _TYPES = "python/dwell/engine_types.py"
+
+#: Typed dictionaries, the engine's types whose fields they have, and their texts.
+_TYPED_DICTS = (
+    ("WorldSettings", "WorldConfig", "What :class:`dwell.World` may be told besides."),
+    ("BodySettings", "AgentBody", "In what an agent's body differs from the default."),
+    ("AirSettings", "Air", "The air of an :class:`dwell.AcousticScene`."),
+    ("AcousticSettings", "AcousticConfig", "What :class:`dwell.AcousticScene` may be told."),
+    ("GeneratorSettings", "HouseSpec", "What :meth:`dwell.House.generate` may be told."),
+)
+#: What the package has as arguments of their own.
+_OWN = {"WorldSettings": ("agents", "laws", "parameters")}
+#: What the package takes in other forms than the engine.
+_ANNOTATIONS = {
+    ("WorldSettings", "sound_head"): "Head | str | os.PathLike[str] | None",
+    ("WorldSettings", "sound_root"): "str | os.PathLike[str] | None",
+    ("BodySettings", "locomotion"): "Locomotion",
+    ("AcousticSettings", "air"): "AirSettings",
+    ("GeneratorSettings", "rooms"): "Sequence[str]",
+    ("GeneratorSettings", "adjacency"): "Sequence[tuple[str, str]]",
+}
+_PYTHON = {"boolean": "bool", "integer": "int", "number": "float", "string": "str"}
 
 
 def files() -> dict[str, str]:
@@ -55,16 +80,52 @@ def _sensors_of_pictures() -> str:
     return observation_table(specifications(names))
 
 
-def _types() -> str:
-    return f'''"""Types that the engine's tables say; written by docs/write_generated.py."""
+_HEAD = '''"""Types that the engine's tables say; written by docs/write_generated.py."""
 
 from __future__ import annotations
 
-from typing import Literal
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal, TypedDict
 
-{_literal("Channel", [name for name, style in _styles().items() if style is not None])}'''
+if TYPE_CHECKING:
+    from dwell.heads import Head
+'''
+
+
+def _types() -> str:
+    channels = [name for name, style in _styles().items() if style is not None]
+    (locomotion,) = (row for row in settings()["AgentBody"] if row["name"] == "locomotion")
+    kinds = [kind["required"][0] for kind in locomotion["schema"]["oneOf"]]
+    aliases = [
+        _literal("Channel", channels),
+        _literal("LocomotionName", kinds),
+        "Locomotion = str | Mapping[str, Mapping[str, float]]\n",
+    ]
+    dicts = [_typed_dict(*row) for row in _TYPED_DICTS]
+    return "\n".join([_HEAD, *aliases]) + "".join(f"\n\n{one}" for one in dicts)
 
 
 def _literal(name: str, values: list[str]) -> str:
     rows = "".join(f'    "{value}",\n' for value in values)
-    return f"{name} = Literal[\n{rows}]\n"
+    return f"{name} = Literal[\n{rows}]"
+
+
+def _typed_dict(name: str, kind: str, about: str) -> str:
+    rows = [row for row in settings()[kind] if row["name"] not in _OWN.get(name, ())]
+    lines = [f"class {name}(TypedDict, total=False):", f'    """{about}"""', ""]
+    for row in rows:
+        lines += [f"    #: {line}" for line in textwrap.wrap(row["about"], 92)]
+        annotation = _ANNOTATIONS.get((name, row["name"])) or _annotation(row["schema"])
+        lines.append(f"    {row['name']}: {annotation}")
+    return "\n".join([*lines, ""])
+
+
+def _annotation(schema: dict[str, Any]) -> str:
+    """The type of Python that a value has, as arguments are given."""
+    words = schema_words_of(schema)
+    if words:
+        return f"Literal[{', '.join(json.dumps(word) for word in words)}]"
+    kinds = schema["type"]
+    kind = kinds if isinstance(kinds, str) else next(one for one in kinds if one != "null")
+    return _PYTHON[kind]

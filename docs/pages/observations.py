@@ -10,18 +10,16 @@ from dwell import _native
 from dwell.envs.config import env_json
 from dwell.envs.python_tasks import NativeSensors, NativeSettings
 from dwell.envs.spaces import SensorSpace, specs
-from pages import rust
 from pages.schema_words import schema_words
 from pages.tables import code, number, table
 
 #: Shapes and ranges do not depend on the house.
 _ROOM_M = (4.0, 2.5, 4.0)
-_SENSORS = "engine/world/src/sensors"
 
 
 def sensor_names() -> list[str]:
     """The names of all sensors that the engine has."""
-    return [row["name"] for row in json.loads(_native.sensors_json())]
+    return [*_sensors()]
 
 
 def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -> list[SensorSpace]:
@@ -31,16 +29,20 @@ def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -
     return specs(_native.Batch([room.native], config))
 
 
-def with_setting(**setting: float) -> list[str]:
-    """The sensors that have a setting."""
+def _sensors() -> dict[str, dict[str, Any]]:
+    return {row["name"]: row for row in json.loads(_native.sensors_json())}
 
-    def has(name: str) -> bool:
-        try:
-            return bool(specifications({name: setting}))
-        except dwell.ConfigError:
-            return False
 
-    return [name for name in sensor_names() if has(name)]
+def _by_settings() -> list[tuple[list[str], list[dict[str, Any]]]]:
+    """Sensors that have the same settings, with the fields of these."""
+    groups: list[tuple[list[str], list[dict[str, Any]]]] = []
+    for name, row in _sensors().items():
+        same = [names for names, fields in groups if fields == row["settings"]]
+        if same:
+            same[0].append(name)
+        else:
+            groups.append(([name], row["settings"]))
+    return groups
 
 
 def observation_table(rows: list[SensorSpace]) -> str:
@@ -60,12 +62,6 @@ def _row(spec: SensorSpace) -> tuple[str, ...]:
     return (code(spec.name), kind, code(spec.shape), spec.dtype, unit, *bounds, spec.about)
 
 
-def settings_table(path: str, struct: str) -> str:
-    """Name, type and text of the fields of a struct of settings."""
-    rows = [(code(one.name), _type(one), one.about) for one in rust.items(path, struct)]
-    return table(("field", "type", "what it is"), rows)
-
-
 def fields_table(fields: list[dict[str, Any]]) -> str:
     """Name, type and text of fields that the engine describes."""
     rows = [(code(one["name"]), schema_words(one["schema"]), one["about"]) for one in fields]
@@ -76,14 +72,15 @@ def _listed(names: list[str]) -> str:
     return ", ".join(code(name) for name in names)
 
 
-def _type(item: rust.Item) -> str:
-    return rust.plain_type(item.type or "")
+def _section(names: list[str], fields: list[dict[str, Any]]) -> str:
+    if not fields:
+        return f"The others have no settings: {_listed(names)}.\n"
+    return f"Of {_listed(names)}.\n\n{fields_table(fields)}"
 
 
 def page() -> str:
     """The page."""
-    cameras, ears = with_setting(near_m=0.1), with_setting(window_s=0.1)
-    bare = [name for name in sensor_names() if name not in (*cameras, *ears)]
+    sections = [_section(*group) for group in _by_settings()]
     return f"""# Observations
 
 `sensors` of an environment names them, or maps names to settings; every one below can be asked
@@ -99,15 +96,6 @@ env = gymnasium.make(
 ```
 
 {observation_table(specifications(sensor_names()))}
-## Settings of cameras
+## Settings
 
-Of {_listed(cameras)}.
-
-{settings_table(f"{_SENSORS}/camera.rs", "CameraConfig")}
-## Settings of ears
-
-Of {_listed(ears)}.
-
-{settings_table(f"{_SENSORS}/audio.rs", "AudioConfig")}
-The others have no settings: {_listed(bare)}.
-"""
+{chr(10).join(sections)}"""

@@ -1,16 +1,19 @@
-"""The built half of dwell: conversions only. Structured values cross as JSON text, arrays as NumPy arrays.
+"""The built half of dwell: conversions only. Structured values cross as they are or as JSON text, arrays as NumPy arrays.
 
 Every function releases the GIL while the engines work, raises subclasses of ``DwellError``, and turns a bug of the
 engines into ``EngineBug`` instead of taking the process down.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self
+
+#: Mappings, lists, text and numbers.
+_Data: TypeAlias = Mapping[str, Any] | Sequence[Any]
 
 __all__ = [
     "AcousticScene",
@@ -51,6 +54,7 @@ __all__ = [
     "response_metrics_json",
     "seed_range",
     "sensors_json",
+    "settings_json",
     "signals_json",
     "spares",
     "surfaces",
@@ -193,28 +197,28 @@ class World:
         """The world of environment ``env`` of a batch, which both go on to use."""
     def step(self, controls: NDArray[np.float32]) -> None:
         """One control step; ``controls``: shape (agent, 4): forward m/s, right m/s, yaw rad/s (positive to the left), pitch rad/s (positive up)."""
-    def step_json(self, controls_json: str) -> None:
+    def step_fields(self, controls: _Data) -> None:
         """One control step; ``[{"forward_m_s": 1.0, ...}, ...]``, the fields of the native ``AgentControl``."""
-    def act(self, agent: int, action_json: str) -> str:
+    def act(self, agent: int, action: _Data) -> dict[str, Any]:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
-    def notices_json(self) -> str:
+    def notices(self) -> list[dict[str, Any]]:
         """``[{agent, outcome}, ...]``: what became, in the last step, of actions that take time."""
     def config_json(self) -> str:
         """The settings, all of them, as the constructor reads them."""
-    def place_agent(self, agent: int, place_json: str) -> None:
+    def place_agent(self, agent: int, place: _Data) -> None:
         """``{position, yaw_deg, pitch_deg, linear_m_s, yaw_rate_rad_s, crouched_by_m, wheel_rad_s}``."""
     def agents_json(self) -> str: ...
     def objects_json(self) -> str:
         """Id, name, category, position, room, held, on, openness of every object now."""
-    def object_json(self, named_json: str) -> str:
-        """The same of one object, by its name or id in JSON."""
+    def object_json(self, named: str | int) -> str:
+        """The same of one object, by its name or id."""
     def events_json(self) -> str: ...
     def start_report_json(self) -> str: ...
     def render(self, view_json: str, channels: Sequence[str]) -> dict[str, NDArray[Any]]:
         """``view_json``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
-    def play(self, sound_json: str) -> int:
+    def play(self, sound: _Data) -> int:
         """``{sound: {signal | file: name}, at: {position | object | agent: ...}, level_db, loops}``."""
     def stop_sound(self, handle: int) -> None: ...
     def start_sound(self, handle: int) -> None: ...
@@ -230,7 +234,7 @@ class World:
     ) -> list[tuple[float, float, float]] | None: ...
     def guide(self, agent: int, goal: tuple[float, float, float]) -> int | None:
         """The next discrete action on the way to a point, doors opened on the way; None on arrival."""
-    def act_discrete(self, agent: int, action: int) -> str:
+    def act_discrete(self, agent: int, action: int) -> dict[str, Any]:
         """One control step of a discrete action with default strides; answers as :meth:`act`."""
     def face(self, agent: int, object: str) -> int | None:
         """The discrete turn or nod that brings an object into view; None when it is."""
@@ -242,7 +246,7 @@ class World:
     def set_joints(self, joints: Sequence[tuple[int, float, float]]) -> None:
         """Puts joints (id) to a position and a velocity at once."""
     def body_json(self, object: str, part: str | None) -> str: ...
-    def set_bodies(self, bodies_json: str) -> None: ...
+    def set_bodies(self, bodies: _Data) -> None: ...
     def parameter_json(self, address: str) -> str: ...
     def parameters_json(self) -> str: ...
     def set_parameters(self, values: Sequence[tuple[str, float]]) -> None:
@@ -358,10 +362,13 @@ def spares(
 
 def actions() -> list[str]: ...
 def action_table_json() -> str:
-    """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}]}``."""
+    """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}], codes}``."""
 
 def tasks_json() -> str: ...
 def sensors_json() -> str: ...
+def settings_json() -> str:
+    """``{type: [{name, about, required, schema}]}``: the fields of settings."""
+
 def laws_json() -> str: ...
 def vocabulary() -> list[str]: ...
 def charset() -> str: ...

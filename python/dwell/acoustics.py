@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.arguments import point, quoted, to_json, whole
-from dwell.configs import AcousticSettings, checked
+from dwell.configs import checked
 from dwell.echogram import Echogram
+from dwell.engine_types import AcousticSettings
 from dwell.heads import Head
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
@@ -49,7 +50,7 @@ class AcousticScene:
         """
         self.house = house if isinstance(house, House) else House.open(house)
         rows, values = found(laws)
-        settings = checked(AcousticSettings, config)
+        settings = checked("AcousticConfig", config)
         self._native = _native.AcousticScene(
             self.house.native, to_json(settings), to_json(rows), to_json(values)
         )

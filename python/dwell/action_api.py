@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
 from dwell import ConfigError, _native
-from dwell.actions import Outcome, action_json, takes_target
-from dwell.arguments import mapping, quoted, to_json, whole
+from dwell.actions import Outcome, checked_action, takes_target
+from dwell.arguments import mapping, quoted, whole
 from dwell.object_state_api import StateApi
 
 
@@ -63,10 +62,10 @@ class ActionApi(StateApi):
         if object is not None:
             request["object"] = object
         agent = whole("agent", agent)
-        checked = json.loads(action_json(request))
+        checked = checked_action(request)
         if "object" in checked and not takes_target(checked.get("kind", "")):
             self._refuse_not_held(agent, checked["kind"], checked.pop("object"))
-        return Outcome._of(json.loads(self._native.act(agent, to_json(checked))))
+        return Outcome._of(self._native.act(agent, checked))
 
     def _refuse_not_held(self, agent: int, kind: str, named: str | int) -> None:
         """Refuses to let go of what an agent does not hold; its own name is allowed."""
@@ -80,7 +79,7 @@ class ActionApi(StateApi):
 
     def notices(self) -> list[tuple[int | None, Outcome]]:
         """What became, in the last step, of actions that take time: who began it, and its end."""
-        notices = json.loads(self._native.notices_json())
+        notices = self._native.notices()
         return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
 
     def do(self, action: int | str, *, agent: int = 0) -> Outcome:
@@ -90,4 +89,4 @@ class ActionApi(StateApi):
             raise ConfigError(f"no action {quoted(action)}; there are {', '.join(names)}")
         number = names.index(action) if isinstance(action, str) else action
         number, agent = whole("action", number, high=len(names) - 1), whole("agent", agent)
-        return Outcome._of(json.loads(self._native.act_discrete(agent, number)))
+        return Outcome._of(self._native.act_discrete(agent, number))

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from dwell import _native
-from dwell.arguments import fields, finite, text, to_json, whole
+from dwell.arguments import fields, finite, text, whole
 from dwell.camera import Camera, camera_settings
 from dwell.schemas import Check, checks
 
@@ -95,6 +95,6 @@ def takes_target(kind: str) -> bool:
     return kind not in rows or rows[kind]["target"] is not None
 
 
-def action_json(request: Mapping[str, Any]) -> str:
-    """An action as the native half reads it."""
-    return to_json(fields("", request, _checks()))
+def checked_action(request: Mapping[str, Any]) -> dict[str, Any]:
+    """An action with its fields checked, as the native half takes it."""
+    return fields("", request, _checks())

@@ -9,17 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import fields, finite, flag, pair, quoted
-
-#: The fields of a control, and what they may be.
-CONTROL = {
-    "forward_m_s": finite,
-    "right_m_s": finite,
-    "yaw_rate_rad_s": finite,
-    "pitch_rate_rad_s": finite,
-    "wheel_rad_s": pair,
-    "crouch": flag,
-}
+from dwell.arguments import fields, quoted
+from dwell.schemas import setting_checks
 
 
 def controls_of(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
@@ -32,7 +23,8 @@ def controls_of(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
     except TypeError:
         raise ConfigError(f"controls is {quoted(controls)}; {expected}") from None
     if isinstance(rows, list) and any(isinstance(row, Mapping) for row in rows):
-        return [fields(f"controls[{k}]", row, CONTROL) for k, row in enumerate(rows)]
+        known = setting_checks("AgentControl")
+        return [fields(f"controls[{k}]", row, known) for k, row in enumerate(rows)]
     try:
         array = np.asarray(rows)
         if array.dtype.kind not in "fiu" and array.size > 0:

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from dwell.camera import Classes
-    from dwell.configs import GeneratorSettings
     from dwell.editing import HouseEdit
+    from dwell.engine_types import GeneratorSettings
 
 Level = Literal["object", "room", "house", "graph", "instructions"]
 Form = Literal["dwell", "suncg", "glb"]

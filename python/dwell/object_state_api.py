@@ -74,7 +74,7 @@ class StateApi:
             (False, 'child_room', True)
         """
         named = text("name", name) if isinstance(name, str) else whole("name", name, high=2**31 - 1)
-        found: dict[str, Any] = json.loads(self._native.object_json(json.dumps(named)))
+        found: dict[str, Any] = json.loads(self._native.object_json(named))
         return found
 
 

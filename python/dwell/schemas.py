@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import functools
+import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from dwell.arguments import finite, flag, mapping, pair, point, text, whole
+from dwell import _native
+from dwell._native import ConfigError
+from dwell.arguments import fields, finite, flag, mapping, pair, point, quoted, text, whole
 
 Check = Callable[[str, object], Any]
 
@@ -16,13 +20,28 @@ _BOUNDS = {
     "uint": (0, 2**64 - 1),
     "uint64": (0, 2**64 - 1),
 }
+#: What the package takes in other forms than the engine.
+_WITHOUT_CHECK = {"agents", "laws", "locomotion", "parameters", "sound_head", "sound_root"}
 #: Checks of lists of numbers by their length.
 _LISTS: dict[int, Check] = {2: pair, 3: point}
 
 
-def checks(fields: Sequence[Mapping[str, Any]]) -> dict[str, Check]:
+@functools.cache
+def settings() -> dict[str, list[dict[str, Any]]]:
+    """The fields of settings by the engine's name of their type."""
+    found: dict[str, list[dict[str, Any]]] = json.loads(_native.settings_json())
+    return found
+
+
+@functools.cache
+def setting_checks(kind: str) -> dict[str, Check]:
+    """A check for each field of a type of settings that has one; others are the engine's."""
+    return checks([row for row in settings()[kind] if row["name"] not in _WITHOUT_CHECK])
+
+
+def checks(rows: Sequence[Mapping[str, Any]]) -> dict[str, Check]:
     """A check for each field, by its name."""
-    return {field["name"]: check_of(field["schema"]) for field in fields}
+    return {row["name"]: check_of(row["schema"]) for row in rows}
 
 
 def check_of(schema: Mapping[str, Any]) -> Check:
@@ -31,6 +50,9 @@ def check_of(schema: Mapping[str, Any]) -> Check:
     Raises:
         LookupError: There is none for such a schema.
     """
+    allowed = words(schema)
+    if allowed:
+        return functools.partial(_word, allowed)
     kinds = _kinds(schema)
     for kind in ("object", "array", "number", "integer", "boolean", "string"):
         if kind in kinds and kinds.keys() <= {kind, "null"}:
@@ -57,8 +79,33 @@ def _check_of_kind(kind: str, schema: Mapping[str, Any]) -> Check:
         low, high = _BOUNDS[schema["format"]]
         return lambda name, value: whole(name, value, low=low, high=high)
     if kind == "array":
-        return _LISTS[schema["minItems"]]
+        return _LISTS.get(schema.get("minItems", 0), _as_is)
+    if kind == "object" and schema.get("properties"):
+        parts = {name: check_of(part) for name, part in schema["properties"].items()}
+        return lambda name, value: fields(name, value, parts)
     return {"number": finite, "boolean": flag, "string": text, "object": mapping}[kind]
+
+
+def words(schema: Mapping[str, Any]) -> list[str]:
+    """The words of which a value is one; none where it may be anything else."""
+    several = schema.get("anyOf") or schema.get("oneOf")
+    if several:
+        parts = [words(one) for one in several if one.get("type") != "null"]
+        return [word for part in parts for word in part] if all(parts) else []
+    return [schema["const"]] if "const" in schema else [*schema.get("enum", [])]
+
+
+def _word(allowed: Sequence[str], name: str, value: object) -> str:
+    """Text; which words there are, the engine says."""
+    if not isinstance(value, str):
+        raise ConfigError(
+            f"{name} is {quoted(value)}; allowed are {', '.join(map(quoted, allowed))}"
+        )
+    return text(name, value)
+
+
+def _as_is(_name: str, value: object) -> object:
+    return value
 
 
 def _text_or_mapping(name: str, value: object) -> str | dict[str, Any]:

@@ -10,20 +10,20 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import choice, finite, flag, path, point, to_json, whole
+from dwell.arguments import choice, finite, flag, path, point, whole
 from dwell.object_state_api import StateApi
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
 
 
-def _play_json(
+def _played(
     sound: str | os.PathLike[str],
     at: str | int | Sequence[float],
     *,
     level_db: float | None,
     loop: bool,
-) -> str:
+) -> dict[str, Any]:
     """What ``World.play`` asks of the native side.
 
     Raises:
@@ -38,14 +38,12 @@ def _play_json(
         place = {"agent": whole("at", at)}
     else:
         place = {"position": point("at", at)}
-    return to_json(
-        {
-            "sound": {kind: name},
-            "at": place,
-            "level_db": None if level_db is None else finite("level_db", level_db),
-            "loops": flag("loop", loop),
-        }
-    )
+    return {
+        "sound": {kind: name},
+        "at": place,
+        "level_db": None if level_db is None else finite("level_db", level_db),
+        "loops": flag("loop", loop),
+    }
 
 
 def emitter_sound(
@@ -122,7 +120,7 @@ class SoundApi(StateApi):
             [True]
             >>> world.stop_sound(bell)
         """
-        return self._native.play(_play_json(sound, at, level_db=level_db, loop=loop))
+        return self._native.play(_played(sound, at, level_db=level_db, loop=loop))
 
     def stop_sound(self, handle: int) -> None:
         """Silences a sound within 5 ms of the next step.

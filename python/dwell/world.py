@@ -39,7 +39,7 @@ from dwell.world_settings import Laws, with_head, world_settings
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from dwell.configs import BodySettings, WorldSettings
+    from dwell.engine_types import BodySettings, WorldSettings
 
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
@@ -190,7 +190,7 @@ class World(ActionApi, GuideApi, SoundApi):
         if isinstance(rows, np.ndarray):
             self._native.step(rows)
         else:
-            self._native.step_json(to_json(rows))
+            self._native.step_fields(rows)
 
     def place_agent(
         self,
@@ -243,7 +243,7 @@ class World(ActionApi, GuideApi, SoundApi):
             "crouched_by_m": finite("crouched_by_m", crouched_by_m),
             "wheel_rad_s": None if wheel_rad_s is None else pair("wheel_rad_s", wheel_rad_s),
         }
-        self._native.place_agent(whole("agent", agent), to_json(row))
+        self._native.place_agent(whole("agent", agent), row)
         warn_outside_rooms(self.house, "an agent", position)
 
     def events(self) -> list[dict[str, Any]]:
@@ -280,9 +280,10 @@ class World(ActionApi, GuideApi, SoundApi):
 
         Returns:
             ``rgb`` (height, width, 3) uint8 sRGB; ``depth`` (height, width, 1) float32 m along -Z
-            (range for fisheyes and cameras that see all around); ``instance`` and
-            ``semantic`` (height, width, 1) int32; in the camera's frame (right, up, back) ``normals`` (height, width, 3) float32 and ``surfels`` (height, width,
-            9) float32, position in m, normal, reflectance; ``albedo`` (height, width, 3) float32,
+            (range for fisheyes and cameras that see all around); ``instance`` and ``semantic``
+            (height, width, 1) int32; in the camera's frame (right, up, back) ``normals`` (height,
+            width, 3) float32 and ``surfels`` (height, width, 9) float32, position in m, normal,
+            reflectance; ``albedo`` (height, width, 3) float32,
             linear reflectance 0 to 1; ``flow`` (height, width, 2) float32, pixels right and down
             since the step before; of what is in view, by id, unused rows 0: ``visible_objects``
             (max_objects, 3) float32, id, pixels, part hidden by others; ``boxes_2d`` (max_objects,
@@ -458,7 +459,7 @@ class World(ActionApi, GuideApi, SoundApi):
             "linear_m_s": triple("linear_m_s", linear_m_s),
             "angular_rad_s": triple("angular_rad_s", angular_rad_s),
         }
-        self._native.set_bodies(to_json([row]))
+        self._native.set_bodies([row])
 
     def parameter(self, address: str) -> dict[str, Any]:
         """What stands at an address: value, unit, low, high."""

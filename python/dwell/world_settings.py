@@ -13,7 +13,7 @@ from typing import Any
 from dwell import _native
 from dwell._native import ConfigError
 from dwell.arguments import fields, finite, mapping, path, quoted, text, whole
-from dwell.configs import WorldSettings, bodies, checked
+from dwell.configs import bodies, checked
 from dwell.files import read_json
 from dwell.heads import Head, head_of
 
@@ -184,7 +184,7 @@ def world_settings(
     further = {} if further is None else mapping("world", further)
     for name in sorted(_FOUND & set(further)):
         raise ConfigError(f"world: holds {name!r}; give it as the argument {name}= instead")
-    further = checked(WorldSettings, further)
+    further = checked("WorldConfig", further)
     if "agents" in further:
         further = {**further, "agents": bodies(further["agents"])}
     if (head := further.get("sound_head")) is not None:

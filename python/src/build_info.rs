@@ -2,7 +2,7 @@
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use dwell::DiscreteAction;
+use dwell::{DiscreteAction, schema};
 use dwell_scene::parallel::{self, Threads};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -14,7 +14,7 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
-/// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field]}`, the discrete ones first, in the order of
+/// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field], codes: [{name, about}]}`, the discrete ones first, in the order of
 /// their numbers. A field is `{name, about, required, schema}`; a kind's `target` says what it is done to, and is null where it is
 /// done to nothing; the fields that name a target stand once.
 #[pyfunction]
@@ -29,11 +29,12 @@ pub(crate) fn action_table_json() -> String {
         })
     });
     let kinds: Value = kinds.collect();
-    let target = dwell::schema::fields::<dwell::actions::TargetRequest>();
-    json!({"kinds": kinds, "target": target}).to_string()
+    let target = schema::fields::<dwell::actions::TargetRequest>();
+    let codes = schema::variants::<dwell_physics::OutcomeCode>();
+    json!({"kinds": kinds, "target": target, "codes": codes}).to_string()
 }
 
-/// The tasks: `[{name, version, about, asks, max_steps, sensors}]`.
+/// The tasks: `[{name, version, about, asks, max_steps, sensors, settings}]`.
 #[pyfunction]
 pub(crate) fn tasks_json() -> String {
     let tasks = dwell::tasks::all().iter().map(|kind| {
@@ -44,12 +45,13 @@ pub(crate) fn tasks_json() -> String {
             "asks": kind.asks,
             "max_steps": kind.max_steps,
             "sensors": kind.sensors,
+            "settings": (kind.settings)(),
         })
     });
     tasks.collect::<Value>().to_string()
 }
 
-/// The sensors: `[{name, about, picture_style}]`; the style is null where a sensor is not one of pictures.
+/// The sensors: `[{name, about, settings, picture_style}]`; the style is null where a sensor is not one of pictures.
 #[pyfunction]
 pub(crate) fn sensors_json() -> String {
     let sensors = dwell::sensors::all().iter();
@@ -57,10 +59,26 @@ pub(crate) fn sensors_json() -> String {
         json!({
             "name": kind.name,
             "about": kind.about,
+            "settings": (kind.settings)(),
             "picture_style": kind.picture_style(),
         })
     });
     rows.collect::<Value>().to_string()
+}
+
+/// The fields of other settings by the name of their type: `{type: [{name, about, required, schema}]}`.
+#[pyfunction]
+pub(crate) fn settings_json() -> String {
+    json!({
+        "AcousticConfig": schema::fields::<dwell_acoustics::AcousticConfig>(),
+        "AgentBody": schema::fields::<dwell_scene::AgentBody>(),
+        "AgentControl": schema::fields::<dwell_physics::AgentControl>(),
+        "Air": schema::fields::<dwell_acoustics::Air>(),
+        "HouseSpec": schema::fields::<dwell_houses::generate::HouseSpec>(),
+        "StepSizes": schema::fields::<dwell::StepSizes>(),
+        "WorldConfig": schema::fields::<dwell::WorldConfig>(),
+    })
+    .to_string()
 }
 
 /// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those asked for by name alone.

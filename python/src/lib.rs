@@ -28,6 +28,7 @@ mod panics;
 mod picture;
 mod pictures_for_people;
 mod prepared_env;
+mod values;
 mod world;
 mod world_access;
 
@@ -51,6 +52,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::action_table_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::tasks_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::settings_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::sensors_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::laws_json, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::furniture_kinds, module)?)?;

@@ -8,6 +8,7 @@ use crate::house::{PyHouse, describe_level};
 use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
+use crate::values::{self, Data};
 use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, StepSizes, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
@@ -160,24 +161,30 @@ impl PyWorld {
         self.with(py, |running| Ok(running.world.step(&controls)?))
     }
 
-    fn step_json(&self, py: Python<'_>, controls_json: &str) -> PyResult<()> {
+    fn step_fields(&self, py: Python<'_>, controls: Data) -> PyResult<()> {
         self.with(py, |running| {
-            let controls: Vec<AgentControl> = serde_json::from_str(controls_json)?;
+            let controls: Vec<AgentControl> = controls.read()?;
             Ok(running.world.step(&controls)?)
         })
     }
 
-    fn act(&self, py: Python<'_>, agent: usize, action_json: &str) -> PyResult<String> {
-        self.with(py, |running| {
+    fn act<'py>(&self, py: Python<'py>, agent: usize, action: Data) -> PyResult<Bound<'py, PyAny>> {
+        let outcome = self.with(py, |running| {
             let agent = running.agent(agent)?;
-            let request: ActionRequest = serde_json::from_str(action_json)?;
+            let request: ActionRequest = action.read()?;
             let outcome = running.world.act_on(agent, &request)?;
-            Ok(running.outcome_json(&outcome)?.to_string())
-        })
+            running.outcome(&outcome)
+        })?;
+        values::object(py, &outcome)
     }
 
-    fn act_discrete(&self, py: Python<'_>, agent: usize, action: usize) -> PyResult<String> {
-        self.with(py, |running| {
+    fn act_discrete<'py>(
+        &self,
+        py: Python<'py>,
+        agent: usize,
+        action: usize,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let outcome = self.with(py, |running| {
             let agent = running.agent(agent)?;
             let last = DiscreteAction::ALL.len() - 1;
             let known = DiscreteAction::ALL.get(action).copied();
@@ -185,25 +192,27 @@ impl PyWorld {
                 PyFault::Config(format!("action {action}; allowed are 0 to {last}"))
             })?;
             let outcome = running.world.act_discrete(agent, action, &running.stride)?;
-            Ok(running.outcome_json(&outcome)?.to_string())
-        })
+            running.outcome(&outcome)
+        })?;
+        values::object(py, &outcome)
     }
 
-    fn notices_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
+    fn notices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let notices = self.look(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {
-                let outcome = running.outcome_json(&notice.outcome)?;
+                let outcome = running.outcome(&notice.outcome)?;
                 let agent = notice.agent.map(|agent| agent.0);
                 notices.push(json!({"agent": agent, "outcome": outcome}));
             }
-            Ok(serde_json::Value::from(notices).to_string())
-        })
+            Ok(serde_json::Value::from(notices))
+        })?;
+        values::object(py, &notices)
     }
 
-    fn place_agent(&self, py: Python<'_>, agent: usize, place_json: &str) -> PyResult<()> {
+    fn place_agent(&self, py: Python<'_>, agent: usize, place: Data) -> PyResult<()> {
         self.with(py, |running| {
-            let row: AgentRow = serde_json::from_str(place_json)?;
+            let row: AgentRow = place.read()?;
             let placement = AgentPlacement {
                 agent: running.agent(agent)?,
                 position: row.position.into(),
@@ -232,10 +241,10 @@ impl PyWorld {
         })
     }
 
-    /// One object, by its name or the sensors' id, in JSON both.
-    fn object_json(&self, py: Python<'_>, named_json: &str) -> PyResult<String> {
+    /// One object, by its name or the sensors' id.
+    fn object_json(&self, py: Python<'_>, named: Data) -> PyResult<String> {
         self.look(py, |running| {
-            let id = running.object(&serde_json::from_str(named_json)?)?;
+            let id = running.object(&named.read()?)?;
             Ok(serde_json::to_string(&dwell::object_state(
                 running.world,
                 id,
@@ -294,9 +303,9 @@ impl PyWorld {
         heard.into_pyarray(py).reshape([2, samples])
     }
 
-    fn play(&self, py: Python<'_>, sound_json: &str) -> PyResult<u64> {
+    fn play(&self, py: Python<'_>, sound: Data) -> PyResult<u64> {
         self.with(py, |running| {
-            let row: SoundRow = serde_json::from_str(sound_json)?;
+            let row: SoundRow = sound.read()?;
             let place = match row.at {
                 SoundPlaceRow::Position(position) => SoundPlace::Point(position.into()),
                 SoundPlaceRow::Object(name) => SoundPlace::Object(running.object(&json!(name))?),
@@ -492,9 +501,9 @@ impl PyWorld {
         })
     }
 
-    fn set_bodies(&self, py: Python<'_>, bodies_json: &str) -> PyResult<()> {
+    fn set_bodies(&self, py: Python<'_>, bodies: Data) -> PyResult<()> {
         self.with(py, |running| {
-            let rows: Vec<BodyRow> = serde_json::from_str(bodies_json)?;
+            let rows: Vec<BodyRow> = bodies.read()?;
             let bodies: Vec<BodyState> = rows
                 .iter()
                 .map(|row| {

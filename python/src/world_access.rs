@@ -69,10 +69,7 @@ impl WorldAccess<'_> {
         }
     }
 
-    pub(crate) fn outcome_json(
-        &self,
-        outcome: &ActionOutcome,
-    ) -> Result<serde_json::Value, PyFault> {
+    pub(crate) fn outcome(&self, outcome: &ActionOutcome) -> Result<serde_json::Value, PyFault> {
         let house = self.world.house();
         let name = |object: ObjectId| house.objects[object].name.clone();
         let pointed = outcome.pointed.map(|pointed| {

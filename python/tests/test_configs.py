@@ -9,7 +9,7 @@ import pytest
 
 import dwell
 from dwell import _native
-from dwell.configs import (
+from dwell.engine_types import (
     AcousticSettings,
     AirSettings,
     BodySettings,

@@ -20,8 +20,8 @@ import dwell
 import dwell.envs
 import dwell.world
 from dwell import _native
-from dwell.agent_controls import CONTROL
 from dwell.envs.native_batch import INFO_KEYS
+from dwell.schemas import settings
 
 ROOT = Path(__file__).resolve().parents[2]
 MARKDOWN = sorted(
@@ -135,8 +135,8 @@ def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> N
 
 
 def test_every_sensor_is_under_settings_once(pages: ModuleType) -> None:
-    settings = pages.observations.page().split("## Settings of cameras")[1]
-    named = re.findall(r"`(\w+)`", " ".join(re.findall(r"^(?:Of|The others) .*$", settings, re.M)))
+    below = pages.observations.page().split("## Settings")[1]
+    named = re.findall(r"`(\w+)`", " ".join(re.findall(r"^(?:Of|The others) .*$", below, re.M)))
     assert sorted(named) == sorted(pages.observations.sensor_names())
 
 
@@ -153,7 +153,7 @@ def test_every_action_stands_in_the_tables(pages: ModuleType, apartment: dwell.H
     kinds = re.findall(r"\w+", str(refused.value).split("there are")[1])
     assert [row[0] for row in rows_of(page, "## Hands")] == kinds
     continuous = rows_of(page, "## Continuous")
-    assert [row[0] for row in continuous] == list(CONTROL)
+    assert [row[0] for row in continuous] == [row["name"] for row in settings()["AgentControl"]]
     assert [row[1] for row in continuous] == ["0", "1", "2", "3", "", ""]
 
 
@@ -218,11 +218,11 @@ def test_every_example_is_in_the_guide(pages: ModuleType) -> None:
         assert program in made[f"guide/{example.stem}.md"]
 
 
-def test_a_type_or_item_that_nobody_explained_is_refused(pages: ModuleType) -> None:
-    with pytest.raises(LookupError, match="no word for the type Thing"):
-        pages.rust.plain_type("Option<Thing>")
-    with pytest.raises(LookupError, match="no enum or struct Nothing"):
-        pages.rust.items("engine/world/src/action.rs", "Nothing")
+def test_a_type_that_nobody_explained_is_refused(pages: ModuleType) -> None:
+    words = importlib.import_module("pages.schema_words").schema_words
+    assert words({"type": ["number", "null"]}) == "number, or none"
+    with pytest.raises(LookupError, match="no word for"):
+        words({"type": "thing"})
 
 
 def test_the_site_builds_strictly(tmp_path: Path) -> None:

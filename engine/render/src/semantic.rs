@@ -1,6 +1,7 @@
 //! Classes of things, as the semantic image numbers them.
 
 use dwell_scene::{House, Object, StructureKind};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -53,7 +54,7 @@ static TABLE: LazyLock<ClassTable> = LazyLock::new(|| {
 });
 
 /// Which names things are classed by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ClassSet {
     /// `table`, `chair`, ...: the rows of `assets/categories.csv`.

@@ -4,11 +4,12 @@ use crate::error::WorldError;
 use dwell_acoustics::{AcousticConfig, HeadId};
 use dwell_render::BackEnd;
 use dwell_scene::{AgentBody, LawSpec, SceneError};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Rates, laws and parameters of a world. Every field has a default; unknown fields are refused.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct WorldConfig {
     /// Control steps per second of simulated time; 1 to 1,000, default 20.
@@ -18,20 +19,24 @@ pub struct WorldConfig {
     /// Sound samples per second; 8,000 to 192,000, default 16,000; a whole number of samples must fit a control step.
     pub sound_rate_hz: u32,
     /// How carefully sound is traced: `"rl"` (fast, default), `"full"` or `"reference"` (slow).
+    #[schemars(extend("enum" = AcousticConfig::PRESETS))]
     pub sound_preset: String,
     /// The head on which all agents' ears are, of those that [`Engines::add_head`](crate::Engines::add_head) got; without one a
     /// sphere.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Option<u64>")]
     pub sound_head: Option<HeadId>,
     /// The folder below which sound files are, as a path; without one no file is played.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sound_root: Option<String>,
     /// Who renders pictures: `"cpu"` (default), `"gpu"`, or `"gpu:NAME"` with a part of an adapter's name.
     #[serde(skip_serializing_if = "is_default")]
+    #[schemars(with = "String")]
     pub renderer: BackEnd,
     /// The agents' bodies, one for each agent.
     pub agents: Vec<AgentBody>,
     /// Laws to install.
+    #[schemars(with = "Vec<serde_json::Map<String, serde_json::Value>>")]
     pub laws: Vec<LawSpec>,
     /// How long things may come to rest before the world begins, s, 0 to 60; less where all rest sooner. Without it nothing is moved
     /// in advance in a world, and 2 s pass before an environment's.

@@ -47,6 +47,32 @@ pub fn fields<T: JsonSchema + DeserializeOwned>() -> Vec<FieldSchema> {
     field_names::<T>().iter().zip(required).map(one).collect()
 }
 
+/// A word that stands for a variant of an enum.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VariantSchema {
+    /// The word.
+    pub name: String,
+    /// The doc comment, on one line.
+    pub about: String,
+}
+
+/// The variants without fields of an enum, in the order in which it declares them.
+pub fn variants<T: JsonSchema>() -> Vec<VariantSchema> {
+    let mut root = root::<T>();
+    let variants = root["oneOf"].as_array_mut().map(std::mem::take);
+    let one = |mut variant: Value| {
+        Some(VariantSchema {
+            name: variant["const"].as_str()?.to_owned(),
+            about: take_about(&mut variant),
+        })
+    };
+    variants
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(one)
+        .collect()
+}
+
 /// The names of a struct's fields, in the order in which it declares them; none where it reads anything else.
 pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
@@ -70,10 +96,14 @@ fn take_about(schema: &mut Value) -> String {
         .as_object_mut()
         .and_then(|schema| schema.remove("description"));
     let about = about.as_ref().and_then(Value::as_str).unwrap_or_default();
+    let mut about = about.replace('\n', " ").replace("[`", "`");
+    while let Some(at) = about.find("`]") {
+        let rest = &about[at + 2..];
+        let target = rest.strip_prefix('(').and_then(|rest| rest.find(')'));
+        let end = at + 2 + target.map_or(0, |length| length + 2);
+        about.replace_range(at + 1..end, "");
+    }
     about
-        .replace('\n', " ")
-        .replace("[`", "`")
-        .replace("`]", "`")
 }
 
 /// Hears the names of fields for which a struct asks, and gives nothing.
@@ -114,7 +144,7 @@ mod tests {
     #[expect(dead_code, reason = "only its declaration is looked at")]
     struct Thing {
         /// How much,
-        /// m; see [`Thing`].
+        /// m; see [`Thing`] and [`Thing::name`](Thing).
         #[schemars(range(min = 0.0, max = 2.0))]
         width_m: f32,
         /// Its name.
@@ -122,11 +152,20 @@ mod tests {
         name: Option<String>,
     }
 
+    #[derive(serde::Deserialize, JsonSchema)]
+    #[serde(rename_all = "snake_case")]
+    enum Weight {
+        /// As lead.
+        VeryHeavy,
+        /// As cork.
+        Light,
+    }
+
     #[test]
     fn fields_stand_in_order_with_their_text_type_and_range() {
         let [width, name] = fields::<Thing>().try_into().unwrap();
         assert_eq!((width.name, width.required), ("width_m", true));
-        assert_eq!(width.about, "How much, m; see `Thing`.");
+        assert_eq!(width.about, "How much, m; see `Thing` and `Thing::name`.");
         assert_eq!(
             width.schema,
             json!({"type": "number", "format": "float", "minimum": 0.0, "maximum": 2.0})
@@ -141,5 +180,11 @@ mod tests {
             "What a thing is.  `Thing` has two fields."
         );
         assert_eq!(fields::<u32>(), []);
+        let [heavy, light] = variants::<Weight>().try_into().unwrap();
+        assert_eq!(
+            (heavy.name.as_str(), heavy.about.as_str()),
+            ("very_heavy", "As lead.")
+        );
+        assert_eq!(light.name, "light");
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::PhysicsError;
 use dwell_scene::{AgentState, Locomotion};
 use glam::Vec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Furthest an agent looks up or down, rad.
@@ -16,7 +17,7 @@ const FASTEST: f32 = 1e6;
 ///
 /// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`. An agent on legs has these
 /// velocities at once, up to its speed limit; wheels go towards them as fast as they accelerate.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AgentControl {
     /// m/s towards where it faces; negative: backwards.

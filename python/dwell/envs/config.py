@@ -12,15 +12,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, finite, mapping, quoted, text, texts, to_json, whole
+from dwell.arguments import fields, mapping, quoted, text, texts, to_json, whole
 from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
 from dwell.house_list import HouseList
+from dwell.schemas import setting_checks
 from dwell.world_settings import Laws, world_settings
 
 Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | House]
-
-_STRIDE = {"forward_m": finite, "turn_deg": finite, "look_deg": finite}
 
 
 class EnvSettings(TypedDict, total=False):
@@ -169,7 +168,7 @@ def env_json(
     if native.settings is not None:
         config["task_settings"] = mapping("task_settings", native.settings)
     if stride is not None:
-        config["stride"] = fields("stride", stride, _STRIDE)
+        config["stride"] = fields("stride", stride, setting_checks("StepSizes"))
     if native.sensors is not None:
         config["sensors"] = _sensors(native.sensors)
     return to_json(config)

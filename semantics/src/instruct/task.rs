@@ -7,6 +7,7 @@ use crate::vocabulary;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, ObjectId, RoomId};
 use glam::Vec2;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How near to a thing's outline an agent must be to have found it, m.
@@ -15,7 +16,9 @@ pub(super) const FOUND_M: f32 = 1.5;
 const FOUND_HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
 /// What is asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum InstructionKind {
     /// Go to a room.

@@ -4,10 +4,11 @@ use super::rooms::GeneratedRoomKind;
 use crate::error::HousesError;
 use dwell_furniture::style::{STYLES, StyleSplit};
 use dwell_scene::Daytime;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What kind of home.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HomeKind {
     /// One room with a bathroom.
@@ -21,7 +22,7 @@ pub enum HomeKind {
 }
 
 /// How doors between rooms stand at the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DoorStates {
     /// All shut.
@@ -36,7 +37,7 @@ pub enum DoorStates {
 }
 
 /// Which looks of furniture a house may have; those of `val` and `test` never occur in `train`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum AssetSplit {
     /// Looks for training.
@@ -72,7 +73,7 @@ impl AssetSplit {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct HouseSpec {
     /// What kind of home.

@@ -4,10 +4,11 @@
 use super::numeric_field::{NumericField, number, parameters, set};
 use super::{Locomotion, Parameter};
 use crate::error::SceneError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The body of an agent: a capsule with an eye and two ears.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AgentBody {
     /// Radius of the capsule, m; 0.05 to 1.
@@ -16,19 +17,19 @@ pub struct AgentBody {
     pub height_m: f32,
     /// Height of eyes and ears above the feet, m; at most the height.
     pub eye_height_m: f32,
-    /// The highest step it climbs, m.
+    /// The highest step it climbs, m; 0 to 1.
     pub step_height_m: f32,
-    /// The steepest slope it walks up, rad.
+    /// The steepest slope it walks up, rad; 0 to 1.4.
     pub max_slope_rad: f32,
-    /// The heaviest thing it lifts, kg. What weighs more falls from its hand with the next step.
+    /// The heaviest thing it lifts, kg; 0 to 500. What weighs more falls from its hand with the next step.
     pub lift_kg: f32,
-    /// How far from its eye its hand reaches, m.
+    /// How far from its eye its hand reaches, m; 0.1 to 5.
     pub reach_m: f32,
-    /// The force with which it pushes what is in its way and what its hand pushes and pulls, N.
+    /// The force with which it pushes what is in its way and what its hand pushes and pulls, N; 0 to 10,000.
     pub push_force_n: f32,
-    /// The strongest pull of its hand on a door or drawer, N·m or N.
+    /// The strongest pull of its hand on a door or drawer, N·m or N; 0 to 10,000.
     pub hand_effort: f32,
-    /// The largest edge of what it carries, m.
+    /// The largest edge of what it carries, m; 0.05 to 5.
     pub max_carry_size_m: f32,
     /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
     /// In a world it is what `agent/N/camera/fov_deg` reads until that is set.
@@ -73,7 +74,7 @@ const BODY: &[NumericField<AgentBody>] = &[
 ];
 
 impl AgentBody {
-    /// The strongest pull of an ordinary hand on a door or drawer, N·m or N.
+    /// The strongest pull of an ordinary hand on a door or drawer, N·m or N; 0 to 10,000.
     pub(super) const HAND_EFFORT: f32 = 40.0;
 
     /// The range of the field of view of cameras at an agent's eyes, degrees.

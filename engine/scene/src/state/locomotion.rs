@@ -4,10 +4,11 @@
 use super::Parameter;
 use super::numeric_field::{NumericField, number, parameters, set};
 use crate::error::SceneError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How an agent gets about.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Locomotion {
     /// On legs: any direction at once, up to a speed; it can crouch.
@@ -25,7 +26,7 @@ impl Default for Locomotion {
 }
 
 /// How an agent walks, runs and crouches.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeggedLocomotion {
     /// The fastest it runs, m/s; 0 to 100, default 100: as fast as it is told.
@@ -48,7 +49,7 @@ impl Default for LeggedLocomotion {
 }
 
 /// A base on two driven wheels side by side, in whose middle it turns.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DifferentialDrive {
     /// Distance between the points where the wheels touch the floor, m; 0.01 to 5, default 0.3.
@@ -76,7 +77,7 @@ impl Default for DifferentialDrive {
 }
 
 /// A base that moves in any direction and turns at the same time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct HolonomicBase {
     /// The fastest it goes forward or backward, m/s; 0 to 100, default 1.

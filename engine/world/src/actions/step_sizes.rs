@@ -1,10 +1,11 @@
 //! How far the movement actions go.
 
 use crate::error::WorldError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How far the movement actions go in one control step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StepSizes {
     /// m a step; 0.001 to 1, default 0.1 (2 m/s at 20 Hz).

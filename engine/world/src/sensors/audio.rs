@@ -4,9 +4,11 @@ use super::{
     Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_scene::AgentId;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -19,11 +21,12 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "audio",
     about: ABOUT,
     build,
+    settings: schema::fields::<AudioConfig>,
     image: None,
 };
 
 /// The settings of the ears.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct AudioConfig {
     /// Which agent's ears.

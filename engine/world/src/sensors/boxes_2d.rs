@@ -1,9 +1,11 @@
 //! Boxes around things in the image.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::object_list;
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Boxes around objects and agents in the image, by id: id, first column and row, the column and row \
@@ -13,6 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 

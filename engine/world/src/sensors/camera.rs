@@ -6,11 +6,12 @@ use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::space::rotation_from_yaw_pitch;
 use dwell_scene::{AgentBody, AgentId, Pose, math};
 use glam::{Quat, Vec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A camera at an agent's eyes, or mounted beside them. Several sensors of one kind need names; two cameras side by side are a
 /// stereo pair.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraConfig {
     /// The key in the observation; by default the sensor's kind.
@@ -26,6 +27,7 @@ pub struct CameraConfig {
     pub fov_deg: Option<f32>,
     /// The kind of camera with its numbers, in place of `fov_deg`: `{"kind": "pinhole", "fx": ...}`, `brown_conrady`,
     /// `fisheye`, `equirectangular`, `cubemap`, `orthographic`.
+    #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     pub projection: Option<Projection>,
     /// Where the camera is against the eyes: to the right, up, back, m; default none of them.
     pub position_m: [f32; 3],

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 use dwell_scene::space::yaw_from_forward;
 use dwell_scene::{AgentId, Id, math};
 use glam::Vec3;
@@ -16,6 +17,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "compass",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

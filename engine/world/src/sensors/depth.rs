@@ -1,8 +1,10 @@
 //! Depth image.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Depth image: metres along the camera's -Z (range for fisheyes and cameras that see all around), \
@@ -12,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 use dwell_scene::{AgentId, Id};
 
 const ABOUT: &str = "Position in the frame of the episode's start: metres forward and metres to the left; shape (2,).";
@@ -13,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gps",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 use dwell_scene::{AgentId, Id};
 
 const ABOUT: &str = "Rate of turn to the left as the agent's gyro reads it, rad/s: the mean over the last step, with the \
@@ -17,6 +18,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gyro",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

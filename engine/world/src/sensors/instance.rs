@@ -1,8 +1,10 @@
 //! Instance ids.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Instance ids: 0 void, then structure pieces, objects, agents, in file order; shape (height, width, \
@@ -12,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 
 const ABOUT: &str =
     "The instruction as text; its characters are dwell_semantics::instruct::CHARSET.";
@@ -13,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "instruction",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 
 const ABOUT: &str =
     "The instruction as tokens of the versioned vocabulary; shape (tokens,), 0 = padding.";
@@ -13,6 +14,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "instruction_tokens",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

@@ -32,6 +32,7 @@ pub use image::{ImageSettings, Observation, ObservationData, PictureStyle};
 
 use crate::episode::Episode;
 use crate::error::WorldError;
+use crate::schema::FieldSchema;
 use crate::sensor_requests::{Requests, Results};
 use crate::world::World;
 use dwell_render::ClassSet;
@@ -152,6 +153,8 @@ pub struct SensorKind {
     pub about: &'static str,
     /// Builds one from its settings (a JSON object; `{}` gives the defaults).
     pub build: SensorBuilder,
+    /// The fields of its settings.
+    pub settings: fn() -> Vec<FieldSchema>,
     /// What [`World::look`] needs of a sensor of pictures.
     pub(crate) image: Option<image::ImageOfClasses>,
 }
@@ -253,7 +256,7 @@ pub(crate) fn settings<T: serde::de::DeserializeOwned + Default>(
 }
 
 /// The settings of a sensor that has none.
-#[derive(Debug, Default, serde::Deserialize)]
+#[derive(Debug, Default, serde::Deserialize, schemars::JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NoSettings {}
 

@@ -1,8 +1,10 @@
 //! Colour image.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::ImageChannels;
 
 const ABOUT: &str = "Colour image: shape (height, width, 3), sRGB bytes.";
@@ -11,6 +13,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 

@@ -1,8 +1,10 @@
 //! Semantic classes.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::{ClassSet, ImageChannels};
 
 const NAME: &str = "semantic";
@@ -13,6 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: NAME,
     about: COARSE_ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(of_classes),
 };
 

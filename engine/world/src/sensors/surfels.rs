@@ -1,8 +1,10 @@
 //! Surface elements.
 
+use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};
 use super::{Dtype, ObservationBuffer, Sensor, SensorKind, SensorSetup};
 use crate::error::WorldError;
+use crate::schema;
 use dwell_render::ImageChannels;
 use glam::Vec2;
 
@@ -13,6 +15,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: IMAGE.name,
     about: ABOUT,
     build,
+    settings: schema::fields::<CameraConfig>,
     image: Some(|_| &IMAGE),
 };
 

@@ -5,6 +5,7 @@ use super::{
     SensorSpec, settings,
 };
 use crate::error::WorldError;
+use crate::schema;
 use dwell_scene::{AgentId, Id, math};
 
 const ABOUT: &str = "Where the base believes to be from its wheels and nominal geometry, since it was placed: metres \
@@ -17,6 +18,7 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "wheel_odometry",
     about: ABOUT,
     build,
+    settings: schema::fields::<NoSettings>,
     image: None,
 };
 

@@ -9,11 +9,13 @@ use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
+use crate::schema;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, Pose};
 use dwell_semantics::vocabulary;
 use glam::Vec3;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "Free";
@@ -27,11 +29,12 @@ pub(super) const KIND: TaskKind = TaskKind {
     asks: false,
     max_steps: 1000,
     sensors: &["rgb", "depth", "semantic", "audio"],
+    settings: schema::fields::<FreeSettings>,
     build,
 };
 
 /// The task's settings.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct FreeSettings {
     /// Where an episode starts: `"house"` (default), where the house has its first agent start, if it says so; `"anywhere"`,
@@ -40,7 +43,7 @@ struct FreeSettings {
 }
 
 /// Where an episode starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StartChoice {
     /// At the house's start of the first agent, where it has one; else anywhere.

@@ -11,6 +11,7 @@ use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::expert::{ShortestPathFollower, face};
 use crate::metrics::NavigationMetrics;
+use crate::schema;
 use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt::{self, PollEvery};
@@ -19,6 +20,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose, State};
 use dwell_semantics::instruct::{self, Instruction, InstructionKind};
 use glam::{Vec2, Vec3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "InstructionFollowing";
@@ -44,11 +46,12 @@ pub(super) const KIND: TaskKind = TaskKind {
         "instruction",
         "instruction_tokens",
     ],
+    settings: schema::fields::<InstructionFollowingSettings>,
     build,
 };
 
 /// The task's settings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct InstructionFollowingSettings {
     /// Kinds of instructions to draw from; default all.

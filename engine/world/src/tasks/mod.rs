@@ -8,6 +8,7 @@ mod instruction_following;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
+use crate::schema::FieldSchema;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use std::fmt::Debug;
@@ -48,6 +49,8 @@ pub struct TaskKind {
     pub max_steps: u64,
     /// The sensors that its environment has when nobody says otherwise.
     pub sensors: &'static [&'static str],
+    /// The fields of its settings.
+    pub settings: fn() -> Vec<FieldSchema>,
     /// Builds one.
     pub build: TaskBuilder,
 }

@@ -1,0 +1,108 @@
+//! Values of Python as the engines read them, and back: mappings, lists, text and numbers, without JSON text in between.
+
+use crate::errors::{PyFault, to_python};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Number, Value};
+
+/// How deep lists and mappings lie in each other at most.
+const DEEPEST: usize = 100;
+
+/// An argument of mappings, lists, text and numbers.
+pub(crate) struct Data(Value);
+
+impl<'py> FromPyObject<'_, 'py> for Data {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        value(&object, 0).map(Self)
+    }
+}
+
+impl Data {
+    /// Reads what the engine takes.
+    pub(crate) fn read<T: DeserializeOwned>(self) -> Result<T, PyFault> {
+        Ok(serde_json::from_value(self.0)?)
+    }
+}
+
+fn refused(what: &str) -> PyErr {
+    to_python(PyFault::Config(what.to_owned()))
+}
+
+fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
+    if depth > DEEPEST {
+        return Err(refused(
+            "nested too deep; allowed are 100 lists and mappings in each other",
+        ));
+    }
+    if object.is_none() {
+        return Ok(Value::Null);
+    }
+    if let Ok(flag) = object.cast::<PyBool>() {
+        return Ok(Value::Bool(flag.is_true()));
+    }
+    if let Ok(text) = object.cast::<PyString>() {
+        return Ok(Value::String(text.to_str()?.to_owned()));
+    }
+    if object.is_instance_of::<PyInt>() {
+        let number: Option<Number> = match object.extract::<i64>() {
+            Ok(number) => Some(number.into()),
+            Err(_) => match object.extract::<u64>() {
+                Ok(number) => Some(number.into()),
+                Err(_) => Number::from_f64(object.extract()?),
+            },
+        };
+        return number
+            .map(Value::Number)
+            .ok_or_else(|| refused("a number that is not finite"));
+    }
+    if let Ok(number) = object.cast::<PyFloat>() {
+        let number = Number::from_f64(number.value());
+        return number
+            .map(Value::Number)
+            .ok_or_else(|| refused("a number that is not finite"));
+    }
+    if object.is_instance_of::<PyList>() || object.is_instance_of::<PyTuple>() {
+        let rows = object.try_iter()?.map(|row| value(&row?, depth + 1));
+        return rows.collect::<PyResult<_>>().map(Value::Array);
+    }
+    if let Ok(rows) = object.cast::<PyMapping>() {
+        let mut map = Map::new();
+        for row in rows.items()?.iter() {
+            let (name, part): (String, Bound<'_, PyAny>) = row.extract()?;
+            map.insert(name, value(&part, depth + 1)?);
+        }
+        return Ok(Value::Object(map));
+    }
+    Err(refused("expected numbers, text, lists or mappings"))
+}
+
+/// A value as Python's own.
+pub(crate) fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Null => py.None().into_bound(py),
+        Value::Bool(flag) => PyBool::new(py, *flag).to_owned().into_any(),
+        Value::String(text) => PyString::new(py, text).into_any(),
+        Value::Number(number) => match (number.as_i64(), number.as_u64()) {
+            (Some(number), _) => number.into_pyobject(py)?.into_any(),
+            (_, Some(number)) => number.into_pyobject(py)?.into_any(),
+            _ => PyFloat::new(py, number.as_f64().unwrap_or(f64::NAN)).into_any(),
+        },
+        Value::Array(rows) => {
+            let list = PyList::empty(py);
+            for row in rows {
+                list.append(object(py, row)?)?;
+            }
+            list.into_any()
+        }
+        Value::Object(rows) => {
+            let dict = PyDict::new(py);
+            for (name, part) in rows {
+                dict.set_item(name, object(py, part)?)?;
+            }
+            dict.into_any()
+        }
+    })
+}
