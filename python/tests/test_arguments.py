@@ -37,8 +37,8 @@ MOON = "world/gravity_m_s2"
         (lambda: DwellEnv(houses=7), "houses is 7"),  # type: ignore[arg-type]
         (lambda: DwellEnv(houses=[]), "at least one"),
         (
-            lambda: DwellEnv("Free", sensors={"where": {"kind": "gps"}}),
-            'a sensor\'s name is "where"; allowed is "gps", the only one of its kind: give {"gps"',
+            lambda: DwellEnv("Free", sensors={"what": {"kind": "instruction"}}),
+            'a sensor\'s name is "what"; allowed is "instruction", the only one of its kind',
         ),
         (
             lambda: DwellEnv(task_settings={"min_distance_m": 5, "max_distance_m": 2}),

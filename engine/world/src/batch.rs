@@ -2,7 +2,8 @@
 
 use crate::actions::DiscreteAction;
 use crate::batch_pictures::{self, PendingPictures};
-use crate::env::{Env, StepInfo};
+use crate::env::Env;
+use crate::episode::StepInfo;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;

@@ -4,12 +4,11 @@ use crate::actions::{DiscreteAction, StepSizes};
 use crate::camera_capture::PictureRequest;
 use crate::config::WorldConfig;
 use crate::engines::Engines;
-use crate::episode::{Episode, Verdict};
+use crate::episode::{Episode, StepInfo};
 use crate::error::WorldError;
-use crate::metrics::NavigationMetrics;
 use crate::sensor_requests::{Requests, Results};
 use crate::sensors::{self, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec};
-use crate::tasks::{self, Task, TaskKind};
+use crate::tasks::{self, Task, TaskKind, TaskSetup};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
 use dwell_scene::parallel::Threads;
@@ -32,6 +31,8 @@ pub struct EnvConfig {
     pub task_settings: serde_json::Value,
     /// Rates, laws, parameters.
     pub world: WorldConfig,
+    /// The agent whom the task is about, and who acts; default 0.
+    pub agent: u32,
     /// How far movement actions go.
     pub stride: StepSizes,
     /// Sensors by name with their settings; `None`: the task's own choice.
@@ -55,33 +56,21 @@ impl Default for EnvConfig {
             task: "InstructionFollowing".to_owned(),
             task_settings: serde_json::Value::Null,
             world: WorldConfig::default(),
+            agent: 0,
             stride: StepSizes::default(),
             sensors: None,
         }
     }
 }
 
-/// What a step reports beside the observation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepInfo {
-    /// Reward, end, success.
-    pub verdict: Verdict,
-    /// Whether the action did what it means.
-    pub action_success: bool,
-    /// Why not, as a sentence; empty when it did.
-    pub action_error: String,
-    /// Distances and path.
-    pub progress: NavigationMetrics,
-    /// Whether this step was cut short by something in the way.
-    pub collision: bool,
-}
-
-/// An environment with one agent.
+/// An environment about one of the agents of a world; the others stand still.
 #[derive(Debug)]
 pub struct Env {
     pub(crate) world: World,
     task: Box<dyn Task>,
     pub(crate) kind: &'static TaskKind,
+    /// Whom the task is about.
+    pub(crate) agent: AgentId,
     stride: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     requests: Requests,
@@ -104,9 +93,23 @@ impl Env {
     pub fn new(engines: Arc<Engines>, config: &EnvConfig) -> Result<Self, WorldError> {
         let kind = tasks::find(&config.task)?;
         config.stride.check()?;
-        let task = (kind.build)(&config.task_settings, config.stride)?;
+        let agent = AgentId(config.agent);
+        if agent.index() >= config.world.agents.len().max(1) {
+            let count = config.world.agents.len();
+            return Err(WorldError::Config {
+                field: "agent",
+                found: agent.0.to_string(),
+                allowed: format!("below the number of agents, {count}"),
+            });
+        }
+        let setup = TaskSetup {
+            agent,
+            stride: config.stride,
+        };
+        let task = (kind.build)(&config.task_settings, setup)?;
         let site = SensorSetup {
             config: &config.world,
+            agent,
         };
         let defaults: Vec<SensorConfig> = kind
             .sensors
@@ -151,6 +154,7 @@ impl Env {
             world,
             task,
             kind,
+            agent,
             stride: config.stride,
             sensors,
             requests,
@@ -283,7 +287,7 @@ impl Env {
         let Some(episode) = self.episode.as_mut() else {
             return Err(WorldError::Usage("step: no episode has begun".to_owned()));
         };
-        let agent = AgentId(0);
+        let agent = self.agent;
         let outcome = self.world.act_discrete(agent, action, &self.stride)?;
         self.steps += 1;
         let verdict = self.task.judge(&self.world, episode, action);
@@ -295,6 +299,7 @@ impl Env {
             .get(agent)
             .is_some_and(|agent| agent.collided);
         Ok(StepInfo {
+            agent,
             verdict,
             action_success: outcome.success,
             action_error: if outcome.success {
@@ -395,6 +400,7 @@ impl Env {
 mod tests {
     use super::*;
     use crate::Batch;
+    use crate::episode::Verdict;
 
     fn env() -> Env {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
@@ -456,6 +462,64 @@ mod tests {
             .place_agent(AgentId(0), glam::Vec3::ONE, 1.0)
             .unwrap();
         assert_eq!(play(&mut changed), first);
+    }
+
+    /// The second agent does, sees and is judged as the first does where the first alone plays; the other stands still.
+    #[test]
+    fn an_environment_is_about_the_agent_that_it_names() {
+        let sensors = ["gps", "compass", "gyro", "wheel_odometry"];
+        let env = |agent: u32| {
+            let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+            let named = |kind: &str, other: u32| SensorConfig {
+                kind: kind.to_owned(),
+                settings: match other {
+                    0 => serde_json::Value::Null,
+                    _ => serde_json::json!({"name": format!("other_{kind}"), "agent": 1 - agent}),
+                },
+            };
+            let all = sensors.map(|kind| [named(kind, 0), named(kind, 1)]);
+            let config = EnvConfig {
+                task: "Free".to_owned(),
+                task_settings: serde_json::json!({"start": "anywhere"}),
+                world: WorldConfig {
+                    agents: vec![dwell_scene::AgentBody::default(); 2],
+                    ..WorldConfig::default()
+                },
+                agent,
+                sensors: Some(all.into_iter().flatten().collect()),
+                ..EnvConfig::default()
+            };
+            Env::new(Engines::new(Arc::new(house)), &config).unwrap()
+        };
+        for agent in [AgentId(0), AgentId(1)] {
+            let mut env = env(agent.0);
+            env.reset(3).unwrap();
+            let other = AgentId(1 - agent.0);
+            let before = env.world().state().agents[other].position;
+            for action in [DiscreteAction::TurnLeft, DiscreteAction::MoveForward] {
+                assert_eq!(env.step(action).unwrap().agent, agent);
+            }
+            let state = env.world().state();
+            assert!((state.agents[other].position - before).length() < 1e-3);
+            let observed = |name: &str| {
+                let specs = env.specs();
+                let index = specs.iter().position(|spec| spec.name == name).unwrap();
+                let mut out = vec![0.0; specs[index].len()];
+                env.observe(index, ObservationBuffer::Float32(&mut out))
+                    .unwrap();
+                out
+            };
+            assert!((observed("compass")[0] - 9_f32.to_radians()).abs() < 1e-3);
+            assert!(observed("other_compass")[0].abs() < 1e-6);
+            assert!(observed("other_gps").iter().all(|way| way.abs() < 1e-3));
+        }
+        let none = EnvConfig {
+            agent: 1,
+            ..EnvConfig::default()
+        };
+        let engines = env(0).world.engines().clone();
+        let told = Env::new(engines, &none).unwrap_err().to_string();
+        assert_eq!(told, "agent is 1; allowed is below the number of agents, 1");
     }
 
     /// A task that starts nothing.

@@ -3,11 +3,11 @@
 use crate::env::Env;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
-use dwell_scene::Pose;
+use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
 /// What [`Env::snapshot`] begins with: its kind and version.
-const MAGIC: &[u8] = b"dwenv3";
+const MAGIC: &[u8] = b"dwenv4";
 
 /// An episode at one moment. Its goal comes from the seed again.
 #[derive(Serialize, Deserialize)]
@@ -17,7 +17,7 @@ struct EnvSnapshot {
     steps: u64,
     done: bool,
     instruction: String,
-    start: Pose,
+    starts: IdVec<AgentId, Pose>,
     progress: NavigationMetrics,
     world: Vec<u8>,
 }
@@ -41,7 +41,7 @@ impl Env {
             steps: self.steps,
             done: self.done,
             instruction: episode.instruction.clone(),
-            start: episode.start,
+            starts: episode.starts.clone(),
             progress: episode.progress,
             world: self.world.snapshot(),
         };
@@ -59,7 +59,7 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv3\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv4\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
         if moment.task != self.kind.name {
@@ -74,7 +74,7 @@ impl Env {
         };
         episode.tokens.clone_from(tokens);
         episode.instruction = moment.instruction;
-        (episode.start, episode.progress) = (moment.start, moment.progress);
+        (episode.starts, episode.progress) = (moment.starts, moment.progress);
         (self.steps, self.done) = (moment.steps, moment.done);
         Ok(())
     }
@@ -85,7 +85,8 @@ mod tests {
     use super::*;
     use crate::actions::DiscreteAction;
     use crate::engines::Engines;
-    use crate::env::{EnvConfig, StepInfo};
+    use crate::env::EnvConfig;
+    use crate::episode::StepInfo;
     use std::sync::Arc;
 
     fn env() -> Env {

@@ -1,7 +1,7 @@
-//! Episodes, and how their steps are judged.
+//! What an episode asks for, how its steps are judged, and what they report.
 
 use crate::metrics::NavigationMetrics;
-use dwell_scene::Pose;
+use dwell_scene::{AgentId, IdVec, Pose};
 use serde::Serialize;
 
 /// What an episode asks for, and how far it has come.
@@ -11,10 +11,19 @@ pub struct Episode {
     pub instruction: String,
     /// The instruction as tokens, padded with 0.
     pub tokens: Vec<i32>,
-    /// Where the agent started.
-    pub start: Pose,
+    /// Whom it is about.
+    pub agent: AgentId,
+    /// Where each agent started.
+    pub starts: IdVec<AgentId, Pose>,
     /// Distance, path, collisions.
     pub progress: NavigationMetrics,
+}
+
+impl Episode {
+    /// Returns where an agent started.
+    pub fn start_of(&self, agent: AgentId) -> Pose {
+        self.starts.get(agent).copied().unwrap_or(Pose::IDENTITY)
+    }
 }
 
 /// How a step is judged.
@@ -26,4 +35,21 @@ pub struct Verdict {
     pub terminated: bool,
     /// Whether what was asked is done.
     pub success: bool,
+}
+
+/// What a step reports beside the observation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepInfo {
+    /// Who made the step.
+    pub agent: AgentId,
+    /// Reward, end, success.
+    pub verdict: Verdict,
+    /// Whether the action did what it means.
+    pub action_success: bool,
+    /// Why not, as a sentence; empty when it did.
+    pub action_error: String,
+    /// Distances and path.
+    pub progress: NavigationMetrics,
+    /// Whether this step was cut short by something in the way.
+    pub collision: bool,
 }

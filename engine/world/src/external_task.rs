@@ -5,7 +5,8 @@ use crate::episode::Verdict;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;
-use dwell_scene::{AgentId, Pose};
+use crate::tasks::starts;
+use dwell_scene::Pose;
 use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
 use dwell_semantics::vocabulary;
 
@@ -21,19 +22,23 @@ impl Env {
     pub fn set_goal(&mut self, asked: Option<(&str, Option<f64>)>) -> Result<(), WorldError> {
         let tokens = asked.map(|(text, _)| self.tokens_of(text)).transpose()?;
         check_distance(asked.and_then(|(_, distance_m)| distance_m))?;
-        let agent = self.world.state().agents.get(AgentId(0));
-        let start = agent.map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad));
+        let about = self.world.state().agents.get(self.agent);
+        let start = about.map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad));
+        let now = start.map(|start| starts(&self.world, self.agent, start));
         let Some(episode) = self.episode.as_mut() else {
             let message = "ask: no episode has begun; call reset first";
             return Err(WorldError::Usage(message.to_owned()));
         };
-        episode.start = start.unwrap_or(episode.start);
+        if let Some(now) = now {
+            episode.starts = now;
+        }
         let mut distance_m = episode.progress.start_distance_m;
         if let (Some((text, way_m)), Some(tokens)) = (asked, tokens) {
             text.clone_into(&mut episode.instruction);
             (episode.tokens, distance_m) = (tokens, way_m);
         }
-        episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
+        episode.progress =
+            NavigationMetrics::new(episode.start_of(self.agent).position, distance_m);
         Ok(())
     }
 

@@ -29,14 +29,17 @@ pub(super) const KIND: SensorKind = SensorKind {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct AudioConfig {
-    /// Which agent's ears.
-    agent: u32,
+    /// The key in the observation; by default the sensor's kind.
+    name: Option<String>,
+    /// Which agent's ears; by default those of the one whom the environment is about.
+    agent: Option<u32>,
     /// Length of the window, s; default one control step; at most 10.
     window_s: Option<f64>,
 }
 
 #[derive(Debug)]
 struct AudioSensor {
+    name: String,
     agent: AgentId,
     samples: usize,
     /// Samples of the latest observation that were louder than it can hold.
@@ -55,14 +58,7 @@ fn clip(samples: &mut [f32]) -> u64 {
 
 fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
     let config: AudioConfig = settings(value)?;
-    if config.agent as usize >= site.config.agents.len() {
-        let allowed = format!("below the number of agents, {}", site.config.agents.len());
-        return Err(WorldError::Config {
-            field: "agent",
-            found: config.agent.to_string(),
-            allowed,
-        });
-    }
+    let agent = site.agent(config.agent)?;
     let window_s = config.window_s.unwrap_or_else(|| site.config.step_s());
     let samples = (window_s * f64::from(site.config.sound_rate_hz)).round();
     if !(window_s <= 10.0 && samples >= 1.0) {
@@ -74,7 +70,8 @@ fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sen
         });
     }
     Ok(Box::new(AudioSensor {
-        agent: AgentId(config.agent),
+        name: super::key(KIND.name, config.name)?,
+        agent,
         samples: samples as usize,
         clipped: AtomicU64::new(0),
     }))
@@ -83,7 +80,7 @@ fn build(value: &serde_json::Value, site: SensorSetup<'_>) -> Result<Box<dyn Sen
 impl Sensor for AudioSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
-            name: "audio".to_owned(),
+            name: self.name.clone(),
             shape: vec![2, self.samples],
             dtype: Dtype::Float32,
             unit: "Pa",

@@ -1,10 +1,11 @@
 //! The settings that all camera sensors share. Sensors with equal settings share one picture.
 
+use super::SensorSetup;
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
 use dwell_render::{Camera, ClassSet, Preset, Projection};
 use dwell_scene::space::rotation_from_yaw_pitch;
-use dwell_scene::{AgentBody, AgentId, Pose, math};
+use dwell_scene::{Id, Pose, math};
 use glam::{Quat, Vec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,8 +17,8 @@ use serde::{Deserialize, Serialize};
 pub struct CameraConfig {
     /// The key in the observation; by default the sensor's kind.
     pub name: Option<String>,
-    /// Which agent's eyes.
-    pub agent: u32,
+    /// Which agent's eyes; by default those of the one whom the environment is about.
+    pub agent: Option<u32>,
     /// Pixels across; 1 to 8,192, default 128.
     pub width: u32,
     /// Pixels down; 1 to 8,192, default 128.
@@ -53,7 +54,7 @@ impl Default for CameraConfig {
     fn default() -> Self {
         Self {
             name: None,
-            agent: 0,
+            agent: None,
             width: 128,
             height: 128,
             fov_deg: None,
@@ -84,7 +85,7 @@ impl CameraConfig {
     ///
     /// # Errors
     /// [`WorldError::Config`] or [`WorldError::Render`] names the field.
-    pub fn build(&self, agents: &[AgentBody]) -> Result<EyeCamera, WorldError> {
+    pub fn build(&self, setup: SensorSetup<'_>) -> Result<EyeCamera, WorldError> {
         let fault = |field: &'static str, found: String, allowed: String| {
             Err(WorldError::Config {
                 field,
@@ -92,10 +93,8 @@ impl CameraConfig {
                 allowed,
             })
         };
-        let Some(body) = agents.get(self.agent as usize) else {
-            let allowed = format!("below the number of agents, {}", agents.len());
-            return fault("agent", self.agent.to_string(), allowed);
-        };
+        let agent = setup.agent(self.agent)?;
+        let body = &setup.config.agents[agent.index()];
         let Some(preset) = Preset::of(&self.preset) else {
             let allowed = Preset::ALL.map(|preset| format!("{:?}", preset.name()));
             return fault("preset", format!("{:?}", self.preset), allowed.join(", "));
@@ -134,7 +133,7 @@ impl CameraConfig {
             }
         };
         Ok(EyeCamera {
-            agent: AgentId(self.agent),
+            agent,
             camera: camera.with_range(self.near_m, self.far_m)?,
             fov_deg,
             eye_from_camera: mount(self.position_m, angles),

@@ -1,13 +1,13 @@
 //! Where an agent faces, relative to where it faced at the start.
 
 use super::{
-    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec, settings,
+    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
+    SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
+use dwell_scene::math;
 use dwell_scene::space::yaw_from_forward;
-use dwell_scene::{AgentId, Id, math};
 use glam::Vec3;
 
 const ABOUT: &str =
@@ -17,23 +17,24 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "compass",
     about: ABOUT,
     build,
-    settings: schema::fields::<NoSettings>,
+    settings: schema::fields::<AgentSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct CompassSensor;
+struct CompassSensor(AgentSensor);
 
-fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let NoSettings {} = settings(value)?;
-    Ok(Box::new(CompassSensor))
+fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(CompassSensor(AgentSensor::build(
+        KIND.name, value, setup,
+    )?)))
 }
 
 impl Sensor for CompassSensor {
     fn spec(&self) -> SensorSpec {
         let pi = std::f64::consts::PI;
         SensorSpec {
-            name: "compass".to_owned(),
+            name: self.0.name.clone(),
             shape: vec![1],
             dtype: Dtype::Float32,
             unit: "rad",
@@ -44,10 +45,12 @@ impl Sensor for CompassSensor {
     }
 
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
-        if let (Some(agent), ObservationBuffer::Float32(out)) =
-            (seen.world.state().agents.get(AgentId::from_index(0)), out)
-        {
-            let start_yaw = yaw_from_forward(seen.episode.start.transform_vector(Vec3::NEG_Z));
+        if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
+            let start_yaw = yaw_from_forward(
+                seen.episode
+                    .start_of(self.0.agent)
+                    .transform_vector(Vec3::NEG_Z),
+            );
             out[0] = math::wrap_angle(agent.yaw_rad - start_yaw);
         }
     }

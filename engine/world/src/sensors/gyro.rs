@@ -1,12 +1,11 @@
 //! What an agent's gyro reads.
 
 use super::{
-    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec, settings,
+    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
+    SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
-use dwell_scene::{AgentId, Id};
 
 const ABOUT: &str = "Rate of turn to the left as the agent's gyro reads it, rad/s: the mean over the last step, with the \
                      errors that laws give it; shape (1,).";
@@ -18,22 +17,23 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "gyro",
     about: ABOUT,
     build,
-    settings: schema::fields::<NoSettings>,
+    settings: schema::fields::<AgentSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct GyroSensor;
+struct GyroSensor(AgentSensor);
 
-fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let NoSettings {} = settings(value)?;
-    Ok(Box::new(GyroSensor))
+fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(GyroSensor(AgentSensor::build(
+        KIND.name, value, setup,
+    )?)))
 }
 
 impl Sensor for GyroSensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
-            name: "gyro".to_owned(),
+            name: self.0.name.clone(),
             shape: vec![1],
             dtype: Dtype::Float32,
             unit: "rad/s",
@@ -44,9 +44,7 @@ impl Sensor for GyroSensor {
     }
 
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
-        if let (Some(agent), ObservationBuffer::Float32(out)) =
-            (seen.world.state().agents.get(AgentId::from_index(0)), out)
-        {
+        if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             out[0] = agent.gyro_rad_s.clamp(-FULL_SCALE_RAD_S, FULL_SCALE_RAD_S);
         }
     }

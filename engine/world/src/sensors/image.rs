@@ -155,7 +155,7 @@ pub(super) fn build(
 ) -> Result<Box<dyn Sensor>, WorldError> {
     let config: CameraConfig = settings(value)?;
     let kind = of(config.classes);
-    let eye = config.build(&site.config.agents)?;
+    let eye = config.build(site)?;
     Ok(Box::new(ImageSensor { kind, config, eye }))
 }
 

@@ -37,6 +37,7 @@ use crate::sensor_requests::{Requests, Results};
 use crate::world::World;
 use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, AgentState, Id};
 use serde::Serialize;
 use std::fmt::Debug;
 
@@ -138,6 +139,77 @@ pub trait Sensor: Debug + Send + Sync {
 pub struct SensorSetup<'a> {
     /// The world's settings.
     pub config: &'a crate::config::WorldConfig,
+    /// Whom the environment is about: the agent of sensors that name none.
+    pub agent: AgentId,
+}
+
+impl SensorSetup<'_> {
+    /// The agent of a sensor whose settings name one, or none.
+    ///
+    /// # Errors
+    /// [`WorldError::Config`] for an agent that does not exist.
+    fn agent(&self, named: Option<u32>) -> Result<AgentId, WorldError> {
+        let agent = named.map_or(self.agent, AgentId);
+        if agent.index() < self.config.agents.len() {
+            return Ok(agent);
+        }
+        Err(WorldError::Config {
+            field: "agent",
+            found: agent.0.to_string(),
+            allowed: format!("below the number of agents, {}", self.config.agents.len()),
+        })
+    }
+}
+
+/// The settings of a sensor of an agent that has no others.
+#[derive(Debug, Default, serde::Deserialize, schemars::JsonSchema)]
+#[serde(default, deny_unknown_fields)]
+struct AgentSettings {
+    /// The key in the observation; by default the sensor's kind.
+    name: Option<String>,
+    /// Which agent's; by default the one whom the environment is about.
+    agent: Option<u32>,
+}
+
+/// The agent of a sensor, and its key in the observation.
+#[derive(Debug)]
+struct AgentSensor {
+    name: String,
+    agent: AgentId,
+}
+
+impl AgentSensor {
+    fn build(
+        kind: &str,
+        value: &serde_json::Value,
+        setup: SensorSetup<'_>,
+    ) -> Result<Self, WorldError> {
+        let AgentSettings { name, agent } = settings(value)?;
+        Ok(Self {
+            name: key(kind, name)?,
+            agent: setup.agent(agent)?,
+        })
+    }
+
+    /// The agent's state in a world.
+    fn state<'a>(&self, seen: SensorContext<'a>) -> Option<&'a AgentState> {
+        seen.world.state().agents.get(self.agent)
+    }
+}
+
+/// The key of a sensor in the observation.
+///
+/// # Errors
+/// [`WorldError::Config`] for an empty name.
+fn key(kind: &str, name: Option<String>) -> Result<String, WorldError> {
+    match name {
+        Some(name) if name.is_empty() => Err(WorldError::Config {
+            field: "name",
+            found: "\"\"".to_owned(),
+            allowed: "a word".to_owned(),
+        }),
+        name => Ok(name.unwrap_or_else(|| kind.to_owned())),
+    }
 }
 
 /// Builds a sensor from its settings (a JSON object; `null` gives the defaults).
@@ -269,18 +341,27 @@ mod tests {
     #[test]
     fn a_name_for_what_has_none_leads_to_the_settings_that_are_meant() {
         let config = WorldConfig::default();
-        let site = SensorSetup { config: &config };
+        let site = SensorSetup {
+            config: &config,
+            agent: AgentId(0),
+        };
         let told = |kind: &str, settings: serde_json::Value| {
             build(kind, &settings, site).unwrap_err().to_string()
         };
         assert_eq!(
-            told("gps", json!({"name": "where"})),
-            "a sensor's name is \"where\"; allowed is \"gps\", the only one of its kind: give {\"gps\": {}}"
+            told("instruction", json!({"name": "what"})),
+            "a sensor's name is \"what\"; allowed is \"instruction\", the only one of its kind: give {\"instruction\": {}}"
         );
         assert!(build("rgb", &json!({"name": "left"}), site).is_ok());
         assert_eq!(
             told("semantic_nyu40", json!({})),
             "sensor is \"semantic_nyu40\"; allowed is \"semantic\" with the setting classes = \"nyu40\""
+        );
+        let second = build("gps", &json!({"name": "where", "agent": 0}), site).unwrap();
+        assert_eq!(second.spec().name, "where");
+        assert_eq!(
+            told("gyro", json!({"agent": 1})),
+            "agent is 1; allowed is below the number of agents, 1"
         );
         assert!(build("semantic", &json!({"classes": "nyu40"}), site).is_ok());
         assert!(told("gps", json!({"nme": 1})).contains("unknown field `nme`"));

@@ -1,12 +1,12 @@
 //! Where a base believes to be, from its wheels alone.
 
 use super::{
-    Dtype, NoSettings, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup,
-    SensorSpec, settings,
+    AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,
+    SensorSetup, SensorSpec,
 };
 use crate::error::WorldError;
 use crate::schema;
-use dwell_scene::{AgentId, Id, math};
+use dwell_scene::math;
 
 const ABOUT: &str = "Where the base believes to be from its wheels and nominal geometry, since it was placed: metres \
                      forward, metres to the left, radians to the left in (-pi, pi]; zeros without wheels; shape (3,).";
@@ -18,22 +18,23 @@ pub(super) const KIND: SensorKind = SensorKind {
     name: "wheel_odometry",
     about: ABOUT,
     build,
-    settings: schema::fields::<NoSettings>,
+    settings: schema::fields::<AgentSettings>,
     image: None,
 };
 
 #[derive(Debug)]
-struct WheelOdometrySensor;
+struct WheelOdometrySensor(AgentSensor);
 
-fn build(value: &serde_json::Value, _: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
-    let NoSettings {} = settings(value)?;
-    Ok(Box::new(WheelOdometrySensor))
+fn build(value: &serde_json::Value, setup: SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError> {
+    Ok(Box::new(WheelOdometrySensor(AgentSensor::build(
+        KIND.name, value, setup,
+    )?)))
 }
 
 impl Sensor for WheelOdometrySensor {
     fn spec(&self) -> SensorSpec {
         SensorSpec {
-            name: "wheel_odometry".to_owned(),
+            name: self.0.name.clone(),
             shape: vec![3],
             dtype: Dtype::Float32,
             unit: "m, m, rad",
@@ -44,9 +45,7 @@ impl Sensor for WheelOdometrySensor {
     }
 
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
-        if let (Some(agent), ObservationBuffer::Float32(out)) =
-            (seen.world.state().agents.get(AgentId::from_index(0)), out)
-        {
+        if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             let [forward, left, heading] = agent.base.odometry;
             let shown = |way: f64| way.clamp(-FURTHEST_M, FURTHEST_M) as f32;
             let turns = (heading / std::f64::consts::TAU).round();

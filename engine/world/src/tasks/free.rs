@@ -4,15 +4,15 @@
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
 use super::door_leaves::DoorLeaves;
-use super::{Task, TaskKind};
-use crate::actions::{DiscreteAction, StepSizes};
+use super::{Task, TaskKind, TaskSetup, starts};
+use crate::actions::DiscreteAction;
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, AgentId, Pose};
+use dwell_scene::{AgentBody, AgentId, Id, Pose};
 use dwell_semantics::vocabulary;
 use glam::Vec3;
 use schemars::JsonSchema;
@@ -37,7 +37,7 @@ pub(super) const KIND: TaskKind = TaskKind {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct FreeSettings {
-    /// Where an episode starts: `"house"` (default), where the house has its first agent start, if it says so; `"anywhere"`,
+    /// Where an episode starts: `"house"` (default), where the house has the agent's start, if it says so; `"anywhere"`,
     /// another place each time.
     start: StartChoice,
 }
@@ -46,7 +46,7 @@ struct FreeSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StartChoice {
-    /// At the house's start of the first agent, where it has one; else anywhere.
+    /// At the house's start of the agent, where it has one; else anywhere.
     #[default]
     House,
     /// Anywhere, another place each time.
@@ -56,18 +56,22 @@ enum StartChoice {
 /// How far the place where one can stand may be from the house's start, m.
 const NEAR_M: f32 = 0.3;
 
-fn build(value: &serde_json::Value, _: StepSizes) -> Result<Box<dyn Task>, WorldError> {
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
     let settings = if value.is_null() {
         FreeSettings::default()
     } else {
         crate::parse_settings::read("task_settings", value)?
     };
-    Ok(Box::new(FreeTask { settings }))
+    Ok(Box::new(FreeTask {
+        settings,
+        agent: setup.agent,
+    }))
 }
 
 #[derive(Debug)]
 struct FreeTask {
     settings: FreeSettings,
+    agent: AgentId,
 }
 
 impl FreeTask {
@@ -84,7 +88,7 @@ impl FreeTask {
             why,
         };
         let grid = world.engines().navigation(body)?;
-        let of_house = world.house().agent_starts.first();
+        let of_house = world.house().agent_starts.get(self.agent.index());
         if let Some(start) = of_house.filter(|_| self.settings.start == StartChoice::House) {
             if grid.nearest(start.position, NEAR_M).is_none() {
                 let at = start.position.to_array();
@@ -109,24 +113,26 @@ impl FreeTask {
 
 impl Task for FreeTask {
     fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
-        let agent = AgentId(0);
+        let agent = self.agent;
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
             return Err(WorldError::Usage(format!(
-                "{NAME} needs a world with one agent"
+                "{NAME} needs a world with agent {}",
+                agent.0
             )));
         };
         let (position, yaw_rad) = self.start(world, &body, key)?;
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
+            agent,
             instruction: INSTRUCTION.to_owned(),
             tokens: vocabulary::tokenize(INSTRUCTION)?,
-            start: Pose::from_position_yaw(position, yaw_rad),
+            starts: starts(world, agent, Pose::from_position_yaw(position, yaw_rad)),
             progress: NavigationMetrics::new(position, None),
         })
     }
 
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
-        if let Some(agent) = world.state().agents.get(AgentId(0)) {
+        if let Some(agent) = world.state().agents.get(self.agent) {
             let progress = &mut episode.progress;
             progress.advance(agent.position, None, agent.collided);
         }

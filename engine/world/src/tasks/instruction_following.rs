@@ -5,7 +5,7 @@
 
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::GoalCells;
-use super::{Task, TaskKind};
+use super::{Task, TaskKind, TaskSetup, starts};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
@@ -72,7 +72,7 @@ impl Default for InstructionFollowingSettings {
     }
 }
 
-fn build(value: &serde_json::Value, stride: StepSizes) -> Result<Box<dyn Task>, WorldError> {
+fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
     let settings: InstructionFollowingSettings = if value.is_null() {
         InstructionFollowingSettings::default()
     } else {
@@ -96,7 +96,7 @@ fn build(value: &serde_json::Value, stride: StepSizes) -> Result<Box<dyn Task>, 
     }
     Ok(Box::new(InstructionFollowing {
         settings,
-        stride,
+        setup,
         offers: Vec::new(),
         active: None,
     }))
@@ -123,7 +123,8 @@ impl ActiveInstruction {
     /// Leads to goals elsewhere from now on; `false` when there are none. Of a cell on whose border the agent stands the
     /// thing may be hidden, though it is seen from the middle.
     fn leave_out_goals_here(&mut self, world: &World, stride: &StepSizes) -> bool {
-        let Some(agent) = world.state().agents.get(AgentId(0)) else {
+        let id = self.expert_path.agent();
+        let Some(agent) = world.state().agents.get(id) else {
             return false;
         };
         let grid = self.expert_path.grid().clone();
@@ -133,7 +134,7 @@ impl ActiveInstruction {
         if self.goals.is_empty() || self.goals.len() == before {
             return false;
         }
-        self.expert_path = ShortestPathFollower::new(AgentId(0), grid, &self.goals, *stride);
+        self.expert_path = ShortestPathFollower::new(id, grid, &self.goals, *stride);
         true
     }
 }
@@ -141,8 +142,7 @@ impl ActiveInstruction {
 #[derive(Debug)]
 struct InstructionFollowing {
     settings: InstructionFollowingSettings,
-    /// How far the agent's steps go, for the expert.
-    stride: StepSizes,
+    setup: TaskSetup,
     /// What the house offers at its start; found once.
     offers: Vec<PlayableInstruction>,
     active: Option<ActiveInstruction>,
@@ -158,7 +158,7 @@ impl InstructionFollowing {
         let scene = engines.semantics().scene(state);
         for kind in &self.settings.kinds {
             for instruction in instruct::candidates(&scene, *kind) {
-                let goals = goal_cells(world, &ground, &instruction);
+                let goals = goal_cells(world, self.setup.agent, &ground, &instruction);
                 if !goals.is_empty() {
                     offers.push(PlayableInstruction { instruction, goals });
                 }
@@ -169,7 +169,12 @@ impl InstructionFollowing {
 }
 
 /// The walkable cells of the largest island in which an instruction is fulfilled by someone who looks the right way.
-fn goal_cells(world: &World, ground: &GoalCells<'_>, instruction: &Instruction) -> Vec<NavCell> {
+fn goal_cells(
+    world: &World,
+    agent: AgentId,
+    ground: &GoalCells<'_>,
+    instruction: &Instruction,
+) -> Vec<NavCell> {
     if !instruction.goal.rooms.is_empty() {
         return ground.within(world.house(), &instruction.goal.rooms);
     }
@@ -177,7 +182,7 @@ fn goal_cells(world: &World, ground: &GoalCells<'_>, instruction: &Instruction) 
     let scene = world.engines().semantics().scene(state);
     let eye_m = state
         .agents
-        .get(AgentId(0))
+        .get(agent)
         .map_or(1.25, |agent| agent.body.eye_height_m);
     // A little nearer than asked, so that an agent that stops on the cell's border still counts.
     let radius_m = instruction.goal.radius_m * 0.8;
@@ -211,10 +216,11 @@ fn goal_cells(world: &World, ground: &GoalCells<'_>, instruction: &Instruction) 
 
 impl Task for InstructionFollowing {
     fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
-        let agent = AgentId(0);
+        let agent = self.setup.agent;
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
             return Err(WorldError::Usage(format!(
-                "{NAME} needs a world with one agent"
+                "{NAME} needs a world with agent {}",
+                agent.0
             )));
         };
         let grid = world.engines().navigation(&body)?;
@@ -232,7 +238,8 @@ impl Task for InstructionFollowing {
         let found = order.into_iter().find_map(|k| {
             interrupt::check();
             let offer = &self.offers[k];
-            let guide = ShortestPathFollower::new(agent, grid.clone(), &offer.goals, self.stride);
+            let guide =
+                ShortestPathFollower::new(agent, grid.clone(), &offer.goals, self.setup.stride);
             let range = self.settings.min_distance_m..=self.settings.max_distance_m;
             let allowed = |cell: NavCell| {
                 grid.island(cell) == Some(0)
@@ -257,9 +264,10 @@ impl Task for InstructionFollowing {
         world.place_agent(agent, position, yaw_rad)?;
         let distance_m = guide.at(start);
         let episode = Episode {
+            agent,
             instruction: instruction.text.clone(),
             tokens: instruction.tokens()?,
-            start: Pose::from_position_yaw(position, yaw_rad),
+            starts: starts(world, agent, Pose::from_position_yaw(position, yaw_rad)),
             progress: NavigationMetrics::new(position, distance_m),
         };
         let (expert_path, goals) = (guide.clone(), offer.goals.clone());
@@ -273,7 +281,8 @@ impl Task for InstructionFollowing {
     }
 
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict {
-        let (Some(active), Some(agent)) = (&self.active, world.state().agents.get(AgentId(0)))
+        let (Some(active), Some(agent)) =
+            (&self.active, world.state().agents.get(self.setup.agent))
         else {
             return Verdict::default();
         };
@@ -290,7 +299,7 @@ impl Task for InstructionFollowing {
             let scene = world.engines().semantics().scene(world.state());
             let judged = active
                 .instruction
-                .verify_at_stop(&scene, world.rays(), AgentId(0));
+                .verify_at_stop(&scene, world.rays(), self.setup.agent);
             verdict.terminated = true;
             verdict.success = judged == instruct::InstructionProgress::Success;
             if verdict.success {
@@ -310,13 +319,13 @@ impl Task for InstructionFollowing {
         let Some(object) = active.instruction.goal.objects.first() else {
             return DiscreteAction::Stop;
         };
-        if let Some(turn) = face(world, AgentId(0), *object, &self.stride) {
+        if let Some(turn) = face(world, self.setup.agent, *object, &self.setup.stride) {
             return turn;
         }
         let scene = world.engines().semantics().scene(world.state());
-        let judged = (active.instruction).verify(&scene, world.rays(), AgentId(0));
+        let judged = (active.instruction).verify(&scene, world.rays(), self.setup.agent);
         if judged == instruct::InstructionProgress::Continue
-            && active.leave_out_goals_here(world, &self.stride)
+            && active.leave_out_goals_here(world, &self.setup.stride)
         {
             return DiscreteAction::Wait;
         }
@@ -331,7 +340,11 @@ mod tests {
 
     #[test]
     fn a_nearest_start_beyond_the_furthest_is_refused() {
-        let made = |settings| build(&settings, StepSizes::default()).map(|_| ());
+        let setup = TaskSetup {
+            agent: AgentId(0),
+            stride: StepSizes::default(),
+        };
+        let made = |settings| build(&settings, setup).map(|_| ());
         made(json!({"min_distance_m": 3.0, "max_distance_m": 3.0})).unwrap();
         let told = made(json!({"min_distance_m": 5.0, "max_distance_m": 2.0}));
         assert_eq!(

@@ -11,6 +11,7 @@ use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
 use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, IdVec, Pose};
 use std::fmt::Debug;
 
 /// A task. One value plays one episode after another in one world.
@@ -31,8 +32,17 @@ pub trait Task: Debug + Send + Sync {
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 
-/// Builds a task from its settings (a JSON object; `null` gives the defaults) for an agent that walks so.
-pub type TaskBuilder = fn(&serde_json::Value, StepSizes) -> Result<Box<dyn Task>, WorldError>;
+/// Whom a task is about.
+#[derive(Clone, Copy, Debug)]
+pub struct TaskSetup {
+    /// The agent that acts.
+    pub agent: AgentId,
+    /// How far its movement actions go.
+    pub stride: StepSizes,
+}
+
+/// Builds a task from its settings (a JSON object; `null` gives the defaults).
+pub type TaskBuilder = fn(&serde_json::Value, TaskSetup) -> Result<Box<dyn Task>, WorldError>;
 
 /// A kind of task that can be asked for by name.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +63,20 @@ pub struct TaskKind {
     pub settings: fn() -> Vec<FieldSchema>,
     /// Builds one.
     pub build: TaskBuilder,
+}
+
+/// Returns where all agents stand, the one whom the task is about at `start`.
+pub(crate) fn starts(world: &World, agent: AgentId, start: Pose) -> IdVec<AgentId, Pose> {
+    let agents = world.state().agents.iter_ids();
+    agents
+        .map(|(id, state)| {
+            if id == agent {
+                start
+            } else {
+                Pose::from_position_yaw(state.position, state.yaw_rad)
+            }
+        })
+        .collect()
 }
 
 /// All tasks.
