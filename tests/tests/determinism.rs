@@ -21,8 +21,8 @@ const FIRST_STEPS: usize = 60;
 const SEED: u64 = 2024;
 /// Set for a process that plays again, to where its digests go.
 const AGAIN: &str = "DWELL_DETERMINISM_OUT";
-/// Set to why the golden digest changes, to write the new one.
-const MINT: &str = "DWELL_MINT";
+/// Writes golden files anew. The golden digest asks that its value says why.
+const UPDATE: &str = "UPDATE_GOLDEN";
 
 fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
     LawSpec {
@@ -123,7 +123,7 @@ fn is_the_golden_kind() -> bool {
     return false;
 }
 
-/// Compares with the last line of the golden file, `DIGEST  WHY`, or adds one where [`MINT`] says why.
+/// Compares with the last line of the golden file, `DIGEST  WHY`, or adds one where [`UPDATE`] says why.
 fn check_golden(digest: u64) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("digests/episode.txt");
     if !is_the_golden_kind() {
@@ -136,10 +136,10 @@ fn check_golden(digest: u64) {
     if golden.is_some_and(|(golden, _)| golden == found) {
         return;
     }
-    let why = std::env::var(MINT).unwrap_or_default();
+    let why = std::env::var(UPDATE).unwrap_or_default();
     assert!(
         why.trim().len() >= 10,
-        "the episode has the digest {found}, not {golden:?}. If it changed on purpose, {MINT}=\"why it changed\" writes it \
+        "the episode has the digest {found}, not {golden:?}. If it changed on purpose, {UPDATE}=\"why it changed\" writes it \
          to tests/digests/episode.txt"
     );
     std::fs::write(&path, format!("{text}{found}  {}\n", why.trim())).unwrap();
