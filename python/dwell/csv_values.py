@@ -55,7 +55,9 @@ def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> f
     if isinstance(told, str) and delimiter != "," and told.count(",") == 1 and "." not in told:
         told = told.replace(",", ".")
     try:
-        found = float(told)  # type: ignore[arg-type]
+        # To Python 3_9.9 is a number; to tables it is a slip.
+        is_slip = isinstance(told, str) and "_" in told
+        found = math.nan if is_slip else float(told)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         found = math.nan
     if math.isfinite(found):

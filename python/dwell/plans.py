@@ -198,7 +198,8 @@ def _called(room: dict[str, Any]) -> str:
 
 def _font(size: float) -> _Font:
     try:
-        return ImageFont.load_default(size)
+        # Nobody reads letters of less than a pixel; the font refuses them.
+        return ImageFont.load_default(max(size, 1.0))
     except TypeError:  # Pillow before 10.1 has one size
         return ImageFont.load_default()
 

@@ -439,7 +439,7 @@ def test_what_is_printed_as_json_stays_json(capsys: pytest.CaptureFixture[str]) 
     from dwell.cli.common import Printable, print_json
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "stdout", Printable(sys.stdout))
+        patch.setattr(sys, "stdout", Printable(sys.stdout, "standard output"))
         print_json({"name": ODD})
     assert json.loads(capsys.readouterr().out) == {"name": ODD}
 

@@ -38,7 +38,7 @@ def parser(chosen: str | None = None) -> argparse.ArgumentParser:
         if name == chosen:
             module = importlib.import_module(f"dwell.cli.{name}")
             module.configure(command)
-            command.set_defaults(run=module.run)
+            command.set_defaults(run=module.run, parser=command)
     return top
 
 
@@ -48,14 +48,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         0 done, 1 failed with a sentence on standard error, 2 bad usage, 130 interrupted.
     """
-    from dwell.cli.common import Printable
+    from dwell.cli.common import Printable, sentence
 
-    # One place for all that is printed: names come from strangers.
-    with (
-        contextlib.redirect_stdout(Printable(sys.stdout)),
-        contextlib.redirect_stderr(Printable(sys.stderr)),
-    ):
-        return _run(arguments)
+    with contextlib.ExitStack() as stack:
+        # A stream that the caller closed is none to Python.
+        nowhere = stack.enter_context(open(os.devnull, "w", encoding="utf-8"))
+        out = Printable(sys.stdout or nowhere, "standard output")
+        told = Printable(sys.stderr or nowhere, "standard error")
+        # One place for all that is printed: names come from strangers.
+        stack.enter_context(contextlib.redirect_stdout(out))
+        stack.enter_context(contextlib.redirect_stderr(told))
+        status = 0
+        try:
+            status = _run(arguments)
+            out.flush()
+        except OSError as error:
+            out.discard()
+            # Who closed a pipe has read enough; of what failed before there is a sentence already.
+            if status == 0 and not isinstance(error, BrokenPipeError):
+                print(f"dwell: {sentence(error)}", file=sys.stderr)
+            status = status or 1
+        return status
 
 
 def _run(arguments: Sequence[str] | None) -> int:

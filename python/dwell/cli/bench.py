@@ -9,15 +9,42 @@ from pathlib import Path
 from typing import Any
 
 from dwell.camera import PRESETS
-from dwell.cli.common import ProgressBar, add_back_end, back_end, count, path, print_json
+from dwell.cli.common import (
+    ProgressBar,
+    add_back_end,
+    back_end,
+    count,
+    path,
+    print_json,
+    refuse_unused,
+)
 from dwell.files import read_json
 
-_STAGES = ("load", "render", "physics", "acoustics", "env")
+#: Stages, and the options that each reads.
+_STAGES = {
+    "load": {"repeats"},
+    "render": {
+        "views",
+        "resolution",
+        "batch",
+        "preset",
+        "backend",
+        "path",
+        "batches",
+        "threads",
+        "repeats",
+    },
+    "physics": {"boxes", "worlds", "threads", "repeats", "steps"},
+    "acoustics": {"threads", "repeats"},
+    "env": {"envs", "steps"},
+}
+#: Fields of ``--boxes``, and of each box.
+_BOXES = ("fixed", "dynamic", "density_kg_m3", "physics_rate_hz")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
     """Adds the options."""
-    parser.add_argument("stage", choices=_STAGES)
+    parser.add_argument("stage", choices=tuple(_STAGES))
     parser.add_argument("house", metavar="HOUSE", nargs="?", default="builtin:apartment")
     parser.add_argument(
         "--views", type=path, metavar="FILE", help="JSON list of position and forward"
@@ -60,6 +87,8 @@ def run(args: argparse.Namespace) -> int:
     """Measures and prints."""
     from dwell import _native
 
+    used = _STAGES[args.stage] | {"stage", "house", "json"}
+    refuse_unused(args, used, f"bench {args.stage}")
     options: dict[str, Any] = {
         key: getattr(args, key)
         for key in (
@@ -77,8 +106,6 @@ def run(args: argparse.Namespace) -> int:
     options["resolutions"] = args.resolution
     if len(args.resolution) > 1 and not args.batch:
         raise ValueError("--resolution takes several numbers only beside --batch")
-    if args.batch and args.stage != "render":
-        raise ValueError("--batch is an option of render")
     options["backend"] = back_end(args)
     if args.views:
         options["views"] = _views(args.views)
@@ -86,6 +113,10 @@ def run(args: argparse.Namespace) -> int:
         options["boxes"] = read_json(args.boxes)
         if not isinstance(options["boxes"], dict):
             raise ValueError(f"{args.boxes}: expected one JSON object of fixed and dynamic boxes")
+        if missing := [field for field in _BOXES if field not in options["boxes"]]:
+            raise ValueError(
+                f"{args.boxes}: {', '.join(missing)} missing; expected are {', '.join(_BOXES)}"
+            )
     told = _native.bench_json(args.stage, args.house, json.dumps(options), ProgressBar())
     figures = json.loads(told)
     if args.json:

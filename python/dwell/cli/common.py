@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import math
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -78,6 +79,33 @@ def refuse_other_suffix(out: Path | None, suffix: str) -> None:
         raise ValueError(f"--out is {os.fspath(out)!r}; expected the name of a {suffix} file")
 
 
+#: What the arguments of commands hold beside options.
+_NO_OPTIONS = {"command", "version", "run", "parser", "house", "stage", "file", "files"}
+
+
+def refuse_unused(args: argparse.Namespace, used: Collection[str], what: str) -> None:
+    """Refuses options that were given and that nothing would read.
+
+    Args:
+        args: As the command line gave them.
+        used: The names of those that are read.
+        what: What is done with them, as the sentence says it.
+
+    Raises:
+        ValueError: It names the first such option and those that are read.
+    """
+    for name, value in vars(args).items():
+        # What was given is an object of its own, also where it equals the default.
+        is_given = value is not args.parser.get_default(name)
+        if is_given and name not in used and name not in _NO_OPTIONS:
+            options = sorted(f"--{other.replace('_', '-')}" for other in {*used} - _NO_OPTIONS)
+            option = name.replace("_", "-")
+            raise ValueError(
+                f"--{option} is given, and {what} does not read it; options that it reads are "
+                f"{', '.join(options)}"
+            )
+
+
 def add_back_end(parser: argparse.ArgumentParser) -> None:
     """Adds ``--backend`` and ``--path``; see :func:`back_end`."""
     parser.add_argument(
@@ -127,14 +155,36 @@ def printable(text: str) -> str:
 class Printable:
     """A stream that passes on printable text alone: all that commands print goes through it."""
 
-    def __init__(self, stream: TextIO) -> None:
-        """Writes to ``stream``, which goes on taking anything itself."""
+    def __init__(self, stream: TextIO, name: str) -> None:
+        """Writes to ``stream``, which goes on taking anything itself; errors call it ``name``."""
         self.stream = stream
+        self._name = name
 
     def write(self, text: str) -> int:
         """Passes text on."""
-        self.stream.write(printable(text))
+        with self._named():
+            self.stream.write(printable(text))
         return len(text)
+
+    def flush(self) -> None:
+        """Writes what waits in a buffer."""
+        with self._named():
+            self.stream.flush()
+
+    def discard(self) -> None:
+        """Lets what waits in a buffer go nowhere: the interpreter would fail on it as it ends."""
+        with contextlib.suppress(OSError, ValueError):
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self.stream.fileno())
+            os.close(nowhere)
+
+    @contextlib.contextmanager
+    def _named(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            error.filename = error.filename or self._name
+            raise
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - whatever the stream has
         """All else is the stream's own."""
@@ -146,8 +196,9 @@ def sentence(error: BaseException) -> str:
     if isinstance(error, MemoryError):
         return "not enough memory"
     said = str(error)
-    if isinstance(error, OSError) and error.strerror is not None and error.filename is not None:
-        said = f"{os.fsdecode(error.filename)}: {error.strerror}"
+    if isinstance(error, OSError) and error.strerror is not None:
+        where = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
+        said = f"{where}{error.strerror}"
     return _LONG_WORD.sub(lambda word: f"{word[1]}...({len(word[0])} characters)", said)
 
 

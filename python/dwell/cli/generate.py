@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import itertools
 import os
 import re
@@ -76,7 +77,9 @@ def run(args: argparse.Namespace) -> int:
     manifest = args.out / f"{name}.jsonl"
     start, made = time.perf_counter(), 0
     if not manifest.exists():
-        made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
+        # Another process of this job may have ended it since.
+        with contextlib.suppress(FileExistsError):
+            made = _make(args, manifest, {**dataset, "shard": [shard, shards]})
     made += _make_again(args, manifest)
     seconds = time.perf_counter() - start
     rows, failed, told = 0, 0, []

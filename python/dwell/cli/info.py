@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
-from dwell.cli.common import path, print_json
+from dwell.cli.common import path, print_json, refuse_unused
 from dwell.files import atomic_write
 
 _MOST_WARNINGS = 20
@@ -31,6 +31,7 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house import House
 
     if args.house is None:
+        refuse_unused(args, {"json"}, "the list of built-in houses")
         names = House.builtins()
         print_json({"builtins": names}) if args.json else print("\n".join(names))
         return 0

@@ -7,8 +7,25 @@ import argparse
 import numpy as np
 
 from dwell.cli import ir_grid, ir_picture, measured_room
-from dwell.cli.common import count, number, path, point, print_json, refuse_other_suffix
+from dwell.cli.common import (
+    count,
+    number,
+    path,
+    point,
+    print_json,
+    refuse_other_suffix,
+    refuse_unused,
+)
 from dwell.cli.write_files import add_bits, save_sound
+
+#: Options of every way to compute responses, and those of each.
+_ALWAYS = {"house", "seed", "rays", "image_order", "laws", "threads", "out", "json"}
+_HEARD = _ALWAYS | {"source", "rate_hz", "ears", "head", "yaw_deg"}
+_PAIR = _HEARD | {"mic", "bits"}
+_GRID = _HEARD | {"grid", "format", "sources", "source_height", "height"}
+_MAP = _ALWAYS | {"map", "source", "rate_hz", "grid", "level", "height", "width"}
+_PLOT = _ALWAYS | {"plot", "source", "mic", "rate_hz", "width"}
+_MEASURED_ROOM = _ALWAYS | {"sources", "receivers"}
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -61,17 +78,19 @@ def run(args: argparse.Namespace) -> int:
     from dwell.acoustics import AcousticScene
     from dwell.heads import Head
 
+    if measured_room.is_measured_room(args.house):
+        refuse_unused(args, _MEASURED_ROOM, "a measured room")
+        return measured_room.run(args)
+    if args.map or args.plot:
+        refuse_unused(args, _MAP if args.map else _PLOT, "--map" if args.map else "--plot")
+        return ir_picture.run(args)
+    way, used = ("--grid", _GRID) if args.grid is not None else ("the response of a pair", _PAIR)
+    refuse_unused(args, used, way)
     if args.head is not None:
-        if args.map or args.plot or measured_room.is_measured_room(args.house):
-            raise ValueError("--head goes with --mic or --grid in a HOUSE")
         # Before anything is computed.
         args.head, args.ears = Head.from_sofa(args.head), True
-    if measured_room.is_measured_room(args.house):
-        return measured_room.run(args)
-    if args.grid is not None and args.map is None:
+    if args.grid is not None:
         return ir_grid.run(args)
-    if args.map or args.plot:
-        return ir_picture.run(args)
     if args.source is None or args.mic is None:
         raise ValueError("--source and --mic are needed: two points X,Y,Z in metres")
     refuse_other_suffix(args.out, ".wav")

@@ -108,6 +108,8 @@ def _alone(out: Path) -> Iterator[None]:
 def _job(args: argparse.Namespace) -> dict[str, Any]:
     """What the responses depend on, beside the house."""
     sources = args.sources or "1"
+    if args.source is not None and args.sources is not None:
+        raise ValueError("--source is one place and --sources how many are drawn; give one of them")
     if args.source is None and not re.fullmatch(r"[1-9][0-9]{0,3}|10000", sources):
         raise ValueError(f"--sources is {sources!r}; of a grid it is how many, 1 to 10000")
     head = {} if args.head is None else {"head": args.head.id}

@@ -66,6 +66,7 @@ class Journal:
 
         Raises:
             ValueError: There are rows of another job, which stay, or another process writes them.
+            FileExistsError: The result stands there, or another file by that name.
             OSError: The system refuses, or ``out`` is a folder.
         """
         if out.is_dir():
@@ -78,6 +79,11 @@ class Journal:
         self._file: IO[bytes] = open_alone(self._path)
         try:
             keep = self._read(job)
+            if not keep and os.path.lexists(out):
+                # Nothing was begun for it here: it is somebody else's, or whole.
+                os.unlink(self._path)
+                why = "is there already; name a new file, or remove it first"
+                raise FileExistsError(errno.EEXIST, why, os.fspath(out))
             self._file.seek(keep)
             self._file.truncate()
             if not keep:

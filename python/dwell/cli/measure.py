@@ -32,6 +32,8 @@ def run(args: argparse.Namespace) -> int:
     from dwell.measured_import import TEMPLATES, import_files
 
     if args.init:
+        if args.files or args.map or args.out:
+            raise ValueError("--init prints a template and reads nothing else; give it alone")
         sys.stdout.write(json.dumps(TEMPLATES[args.init], indent=2) + "\n")
         return 0
     if not args.files or args.map is None or args.out is None:

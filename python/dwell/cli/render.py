@@ -17,6 +17,7 @@ from dwell.cli.common import (
     path,
     point,
     print_json,
+    refuse_unused,
 )
 from dwell.cli.write_files import save_picture, write_image
 from dwell.engine_types import Channel
@@ -103,6 +104,7 @@ def run(args: argparse.Namespace) -> int:
         args.sensors = "rgb"
     channels = [] if args.sensors is None else [_sensor(name) for name in args.sensors.split(",")]
     houses = HouseList(args.house)
+    refuse_unused(args, _used(args, bool(channels), len(houses)), "this picture")
     files: list[str] = []
     if args.sheet and len(houses) > 1:
         if channels or args.map or args.dollhouse:
@@ -123,6 +125,29 @@ def run(args: argparse.Namespace) -> int:
     else:
         print("\n".join(files))
     return 1 if refused else 0
+
+
+def _used(args: argparse.Namespace, has_views: bool, houses: int) -> set[str]:
+    """The options that these pictures read."""
+    used = {"house", "out", "json", "map", "dollhouse", "sheet", "sensors"}
+    if houses > 1:
+        # What else there is with several houses is refused with a reason of its own.
+        return used | {"columns", "at"}
+    used |= {"backend", "path"}
+    if has_views:
+        used |= {"at", "yaw_deg", "pitch_deg", "width", "projection", "intrinsics"}
+        used |= {"preset", "classes"}
+        if args.projection in ("pinhole", "brown_conrady", "fisheye"):
+            used |= {"height", "fov_deg"}
+        elif args.projection == "orthographic":
+            used |= {"height", "width_m"}
+    if args.map:
+        used |= {"width"}
+    if args.dollhouse:
+        used |= {"width", "yaw_deg", "cut_m"}
+    if args.sheet:
+        used |= {"columns", "preset"}
+    return used
 
 
 def _sensor(name: str) -> Channel:
@@ -200,6 +225,8 @@ def _numbers(text: str) -> dict[str, float]:
         name, found, value = part.partition("=")
         if not found or not name.strip().isidentifier():
             raise argparse.ArgumentTypeError(f"expected NAME=NUMBER,..., found {text!r}")
+        if name.strip() in numbers:
+            raise argparse.ArgumentTypeError(f"{name.strip()} stands twice in {text!r}")
         numbers[name.strip()] = number(value)
     return numbers
 

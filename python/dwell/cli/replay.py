@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
 from dwell.camera import CLASSES, PRESETS, Camera
-from dwell.cli.common import ProgressBar, add_back_end, back_end, count, number, path, print_json
+from dwell.cli.common import (
+    ProgressBar,
+    add_back_end,
+    back_end,
+    count,
+    number,
+    path,
+    print_json,
+    refuse_unused,
+)
 from dwell.cli.write_files import add_bits, save_sound, write_image
 from dwell.engine_types import Channel
 
@@ -51,6 +60,8 @@ def run(args: argparse.Namespace) -> int:
         raise ValueError("--sensors and --out DIR are given together")
     if args.every < 1:
         raise ValueError("--every is 0; allowed are whole numbers from 1")
+    if args.sensors is None:
+        refuse_unused(args, {"file", "verify", "json"}, "a replay without --sensors")
     taker = None if args.sensors is None else _Taker(args)
     replay = Replay.read(args.file)
     told: dict[str, Any] = {

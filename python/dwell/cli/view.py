@@ -7,7 +7,7 @@ import os
 import sys
 from pathlib import Path
 
-from dwell.cli.common import count, path, print_json
+from dwell.cli.common import count, path, print_json, refuse_unused
 from dwell.files import atomic_write
 
 
@@ -34,6 +34,8 @@ def run(args: argparse.Namespace) -> int:
     from dwell.replays import Replay
     from dwell.world import World
 
+    if args.task is None:
+        refuse_unused(args, {"house", "out", "json"}, "a view without --task")
     sdk()
     if args.out is None and not _has_display():
         raise ValueError("no display for the viewer; --out FILE.rrd writes a recording for it")

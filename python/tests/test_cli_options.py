@@ -1,0 +1,91 @@
+"""Options that nothing would read, and streams that take nothing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from dwell import cli
+
+HOUSE = "builtin:studio"
+POINTS = "--source -2,1.5,1 --mic -1,1.5,1 --rays 5"
+ROOM = """{"shoebox": [4, 3, 2.5], "walls": {"x0": "a", "x1": "a", "y0": "a", "y1": "a",
+"z0": "a", "z1": "a"}, "materials": {"a": {"absorption": 0.1}}, "fs": 8000, "duration_s": 0.1,
+"sources": [{"id": "s", "pos": [1, 1, 1]}], "receivers": [{"id": "r", "pos": [2, 2, 1]}]}"""
+
+
+@pytest.mark.parametrize(
+    ("command", "option"),
+    [
+        (f"ir {HOUSE} {POINTS} --receivers q", "receivers"),
+        (f"ir {HOUSE} {POINTS} --format sofa", "format"),
+        (f"ir {HOUSE} {POINTS} --level 9", "level"),
+        (f"ir {HOUSE} --map edt --plot decay --source 1,1,1 --out x.png", "plot"),
+        (f"ir {HOUSE} --map edt --head x.sofa --source 1,1,1 --out x.png", "head"),
+        (f"ir {HOUSE} --grid 1 --mic 1,1,1 --out x", "mic"),
+        (f"ir {HOUSE} --grid 1 --source 1,1,1 --sources 2 --out x", "source"),
+        ("ir ROOM --source 1,1,1", "source"),
+        ("ir ROOM --mic 1,1,1", "mic"),
+        ("ir ROOM --rate-hz 8000", "rate-hz"),
+        ("ir ROOM --ears", "ears"),
+        ("ir ROOM --yaw-deg 30", "yaw-deg"),
+        ("ir ROOM --bits 16", "bits"),
+        ("ir ROOM --plot decay", "plot"),
+        (f"render {HOUSE} --projection orthographic --fov-deg 50 --out x", "fov-deg"),
+        (f"render {HOUSE} --width-m 3 --out x", "width-m"),
+        (f"render {HOUSE} --map --columns 2 --out x", "columns"),
+        (f"render {HOUSE} --dollhouse --pitch-deg 3 --out x", "pitch-deg"),
+        ("render seed:0..2 --sheet --backend cpu --out x", "backend"),
+        (f"bench load {HOUSE} --envs 3", "envs"),
+        (f"bench env {HOUSE} --batch 3", "batch"),
+        ("info --map x.json", "map"),
+        (f"view {HOUSE} --seed 3 --out x.rrd", "seed"),
+        ("replay x.replay --verify --width 40", "width"),
+        ("measure import a.csv --init", "init"),
+    ],
+)
+def test_options_that_nothing_would_read_are_refused(
+    command: str,
+    option: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "room.json").write_text(ROOM, "utf-8")
+    assert cli.main(command.replace("ROOM", "room.json").split()) == 1
+    assert f"--{option} " in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["room.json"]
+
+
+def test_a_number_that_stands_twice_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["render", HOUSE, "--intrinsics", "fx=1,fx=2", "--out", "x"]) == 2
+    assert "fx stands twice" in capsys.readouterr().err
+
+
+def in_shell(command: str) -> subprocess.CompletedProcess[str]:
+    whole = command.replace("dwell", f"{sys.executable} -m dwell.cli", 1)
+    return subprocess.run(
+        whole, shell=True, capture_output=True, text=True, timeout=300, check=False
+    )
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a shell of Unix")
+@pytest.mark.parametrize("command", ["--version", f"info {HOUSE}", f"describe {HOUSE}"])
+def test_streams_that_are_closed_take_what_is_printed(command: str) -> None:
+    for closed in (">&-", "2>&-", ">&- 2>&-"):
+        done = in_shell(f"dwell {command} {closed}")
+        assert done.returncode == 0, done.stderr
+        assert done.stderr == ""
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
+@pytest.mark.parametrize("command", ["--version", f"info {HOUSE} --json", f"describe {HOUSE}"])
+def test_a_full_disk_behind_standard_output_is_named(command: str) -> None:
+    done = in_shell(f"dwell {command} > /dev/full")
+    assert done.returncode == 1
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert "standard output: No space left on device" in done.stderr
