@@ -315,3 +315,22 @@ fn a_cube_on_its_edge_is_chance_and_a_flat_one_is_not() {
     .unwrap();
     assert_eq!(found, [true, false]);
 }
+
+#[test]
+fn a_table_of_scores_names_the_columns_that_it_wants() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("peer.csv");
+    let read = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        OtherSimulator::read(&path).map_err(|error| error.to_string())
+    };
+    let whole = read("episode,position_widths,rotation_deg,e_q\na,0.5,10,0.1\n").unwrap();
+    assert_eq!(
+        (whole.name.as_str(), whole.scores["a"].rotation_deg),
+        ("peer", 10.0)
+    );
+    let told = read("episode,rotation_deg,e_q\na,10,0.1\n").unwrap_err();
+    for word in ["peer.csv line 2", "position_widths", "columns are episode"] {
+        assert!(told.contains(word), "{told}");
+    }
+}

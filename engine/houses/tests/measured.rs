@@ -150,6 +150,25 @@ fn what_cannot_be_is_refused_by_its_field() {
         r#""band_hz""#,
         "nearly \"bands_hz\"",
     );
+    for slip in ["aire", "Air", "aiir"] {
+        let more = format!("\"{slip}\": 1, \"shoebox\"");
+        refused(slip, r#""shoebox""#, &more, "nearly \"air\"");
+    }
+    for (slip, field) in [
+        ("fss", "fs"),
+        ("Fs", "fs"),
+        ("f_s", "fs"),
+        ("sorces", "sources"),
+    ] {
+        let (from, to) = (format!("\"{field}\""), format!("\"{slip}\""));
+        refused(slip, &from, &to, &format!("nearly \"{field}\""));
+    }
+    refused(
+        "truth",
+        r#""absorption": 0.1"#,
+        r#""absorption": true"#,
+        "a number, or a list",
+    );
     refused(
         "side",
         r#""x0": "hard""#,

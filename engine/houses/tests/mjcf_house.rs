@@ -232,3 +232,83 @@ fn materials_show_their_images_on_meshes_with_texture_coordinates() {
         1
     );
 }
+
+/// The sentences of a report.
+fn sentences(report: &LoadReport) -> Vec<String> {
+    report.warnings().iter().map(ToString::to_string).collect()
+}
+
+/// [`HOUSE`] with more in its world.
+fn house_with(more: &str) -> String {
+    HOUSE.replacen("</worldbody>", &format!("{more}</worldbody>"), 1)
+}
+
+#[test]
+fn bodies_in_elements_that_are_not_read_are_reported() {
+    let body = r#"<body name="q"><geom type="box" size="1 1 1"/></body>"#;
+    for (more, said) in [
+        (
+            format!(
+                "<replicate count='3'><replicate count='9'>{body}</replicate>{body}</replicate>"
+            ),
+            "<replicate> is not read; with it 2 bodies",
+        ),
+        (
+            format!("<frame><bodyy>{body}</bodyy></frame>"),
+            "<bodyy> is not read; with it 1 bodies",
+        ),
+        (
+            "<body name='x'><geom size='1'/><composite type='cable' count='4 1 1'/></body>"
+                .to_owned(),
+            "<composite> is not read",
+        ),
+        (
+            "<flexcomp name='cloth' type='grid'/>".to_owned(),
+            "<flexcomp> is not read",
+        ),
+    ] {
+        let (_, report) = opened(&house_with(&more)).unwrap();
+        let found = sentences(&report)
+            .iter()
+            .filter(|line| line.contains(said))
+            .count();
+        assert_eq!(found, 1, "{more}");
+    }
+    let (_, report) = opened(HOUSE).unwrap();
+    assert!(
+        !sentences(&report)
+            .iter()
+            .any(|line| line.contains("is not read; with it"))
+    );
+}
+
+#[test]
+fn what_no_body_has_is_reported() {
+    let thing = |inertial: &str| {
+        house_with(&format!(
+            r#"<body name="ball" pos="1 1 1"><freejoint/><geom size="0.1"/>
+            <inertial pos="0 0 0" mass="1" {inertial}/></body>"#
+        ))
+    };
+    let about = |text: &str, said: &str| {
+        let (house, report) = opened(text).unwrap();
+        let found = sentences(&report)
+            .iter()
+            .filter(|line| line.contains(said))
+            .count();
+        let (_, ball) = object(&house, "ball");
+        let root = ball.parts().next().unwrap();
+        assert!(house.parts[root].world_from_part.rotation.is_finite());
+        found
+    };
+    let moments = "no body has the moments of inertia";
+    assert_eq!(about(&thing(r#"diaginertia="1e4 1 1""#), moments), 1);
+    assert_eq!(about(&thing(r#"fullinertia="1 1 3 0 0 0""#), moments), 1);
+    // As files round them.
+    assert_eq!(about(&thing(r#"diaginertia="2.001 1 1""#), moments), 0);
+    let turned = thing(r#"diaginertia="1 1 1" quat="0 0 0 0""#);
+    assert_eq!(about(&turned, "<inertial quat> of length 0"), 1);
+    let turned = thing(r#"diaginertia="1 1 1""#)
+        .replace(r#"pos="1 1 1""#, r#"pos="1 1 1" quat="0 0 0 0.0""#);
+    assert_eq!(about(&turned, "<body quat> of length 0"), 1);
+}

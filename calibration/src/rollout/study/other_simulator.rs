@@ -22,6 +22,9 @@ pub struct OtherSimulator {
     pub scores: BTreeMap<String, Score>,
 }
 
+/// The columns of a table of scores.
+const COLUMNS: [&str; 4] = ["episode", "position_widths", "rotation_deg", "e_q"];
+
 /// A row of a table of scores.
 #[derive(Deserialize)]
 struct PeerScoreRow {
@@ -46,7 +49,7 @@ impl OtherSimulator {
         {
             let row: PeerScoreRow = row.map_err(|error| CalibrationError::Syntax {
                 at: format!("{at} line {}", k + 2),
-                what: error.to_string(),
+                what: format!("{error}; columns are {}", COLUMNS.join(", ")),
             })?;
             let score = Score {
                 position_widths: row.position_widths,

@@ -62,7 +62,26 @@ impl Default for HousePlan {
 /// # Errors
 /// [`HousesError::Syntax`] with what was found and what is allowed there.
 pub fn edits_from_json(text: &str) -> Result<Vec<Edit>, HousesError> {
-    serde_json::from_str(text).map_err(json::syntax(&FileLocation::file("edits")))
+    let at = FileLocation::file("edits");
+    serde_json::from_str(text).map_err(|error| {
+        several_in_one(text.as_bytes(), &at).unwrap_or_else(|| json::syntax(&at)(error))
+    })
+}
+
+/// The fault of an edit that has several names, or none; `None` where all have one.
+fn several_in_one(text: &[u8], at: &FileLocation) -> Option<HousesError> {
+    let file: serde_json::Value = serde_json::from_slice(text).ok()?;
+    let edits = file.get("edits").unwrap_or(&file).as_array()?;
+    let names = |edit: &serde_json::Value| Some(edit.as_object()?.keys().cloned().collect());
+    let mut all = edits.iter().enumerate();
+    all.find_map(|(k, edit)| {
+        let names: Vec<String> = names(edit)?;
+        (names.len() != 1).then(|| HousesError::Field {
+            at: at.field(format_args!("edits[{k}]")),
+            expected: "one edit: an object with one name",
+            found: format!("{} names: {:.200}", names.len(), names.join(", ")),
+        })
+    })
 }
 
 impl HousePlan {
@@ -71,7 +90,8 @@ impl HousePlan {
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
     pub fn from_json(text: &[u8], at: &FileLocation) -> Result<Self, HousesError> {
-        let plan: Self = json::from_slice(text).map_err(json::syntax(at))?;
+        let plan: Self = json::from_slice(text)
+            .map_err(|error| several_in_one(text, at).unwrap_or_else(|| json::syntax(at)(error)))?;
         if plan.format != FORMAT {
             return Err(HousesError::Field {
                 at: at.field("format"),

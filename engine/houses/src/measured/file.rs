@@ -67,7 +67,10 @@ pub(super) struct MeasuredMaterial {
 
 /// One number for all bands, or one for each.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(untagged)]
+#[serde(
+    untagged,
+    expecting = "expected a number, or a list of one number for each band"
+)]
 pub(super) enum BandCoefficient {
     /// For all.
     One(f32),

@@ -23,6 +23,8 @@ const FIELDS: [&str; 11] = [
 const MATERIAL_FIELDS: [&str; 2] = ["absorption", "scattering"];
 /// Names with up to so many letters written otherwise are the same name, misspelt.
 const SLIP_LETTERS: usize = 2;
+/// Names of up to so many letters have too many words near them: only other case and one letter too many are slips.
+const SHORT: usize = 4;
 
 /// Refuses unknown names that are nearly a field's, whose value would silently be the default; other names in a material are
 /// warnings, and other fields of the file belong to the measurement.
@@ -56,7 +58,7 @@ pub(super) fn check(
 fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result<(), HousesError> {
     let meant = fields
         .iter()
-        .find(|field| within(name, field, SLIP_LETTERS));
+        .find(|field| within(name, field, SLIP_LETTERS) || is_short_slip(name, field));
     meant.map_or(Ok(()), |field| {
         Err(HousesError::Field {
             at: at.field(name),
@@ -64,4 +66,21 @@ fn refuse_slip(at: &FileLocation, name: &str, fields: &[&'static str]) -> Result
             found: format!("nearly {field:?}"),
         })
     })
+}
+
+/// Returns whether a name is a short one in other case, or with one letter too many.
+fn is_short_slip(name: &str, field: &str) -> bool {
+    let letters: Vec<char> = name
+        .chars()
+        .flat_map(char::to_lowercase)
+        .take(SHORT + 2)
+        .collect();
+    let without = |k: usize| {
+        let (head, tail) = letters.split_at(k);
+        head.iter()
+            .chain(&tail[1..])
+            .eq(field.chars().collect::<Vec<_>>().iter())
+    };
+    field.len() <= SHORT
+        && (letters.iter().copied().eq(field.chars()) || (0..letters.len()).any(without))
 }

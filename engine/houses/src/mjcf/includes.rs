@@ -5,22 +5,28 @@
 use dwell_scene::interrupt;
 use roxmltree::Node;
 
-use super::finite_check;
+use super::{finite_check, unread_elements};
 use crate::data_root::folder_of;
 use crate::error::HousesError;
 use crate::limits::{MAX_TEXT_BYTES, MAX_XML_ELEMENTS, MAX_XML_FILES};
-use crate::report::FileLocation;
+use crate::report::{FileLocation, LoadReport};
 use crate::robot::RobotFiles;
 use crate::xml;
 
-/// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite.
+/// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite. What of it the parser
+/// skips is reported.
 ///
 /// # Errors
 /// [`HousesError::PathLeavesRoot`], [`HousesError::Syntax`] for what is no XML or includes itself without end,
 /// [`HousesError::TooLarge`] for elements nested too deep, or too many, [`HousesError::Field`] for numbers that are not finite.
-pub(super) fn check(files: &RobotFiles, text: &str) -> Result<(), HousesError> {
+pub(super) fn check(
+    files: &RobotFiles,
+    text: &str,
+    report: &mut LoadReport,
+) -> Result<(), HousesError> {
     let mut walk = IncludeResolver {
         files,
+        report,
         seen: 0,
         open: Vec::new(),
     };
@@ -29,6 +35,7 @@ pub(super) fn check(files: &RobotFiles, text: &str) -> Result<(), HousesError> {
 
 struct IncludeResolver<'a> {
     files: &'a RobotFiles,
+    report: &'a mut LoadReport,
     /// Files looked at, those that are named again counted again.
     seen: usize,
     /// The file at hand and those that name it.
@@ -68,6 +75,7 @@ impl IncludeResolver<'_> {
                 interrupt::check();
             }
             finite_check::check(node, &at)?;
+            unread_elements::report(node, &at, self.report);
             match node.tag_name().name() {
                 "include" => elements = elements.saturating_add(self.named(node, name)?),
                 // Models of `<asset>` are copied by each `<attach>`.

@@ -9,6 +9,7 @@ mod geoms;
 mod house;
 mod includes;
 mod read;
+mod unread_elements;
 
 use std::io::Read as _;
 use std::path::Path;
@@ -44,11 +45,11 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// Those of [`open_robot`](crate::open_robot); of a house, what cannot be read is left out and reported.
 pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let mut report = LoadReport::new();
-    let source = read::MjcfSource::load(path)?;
+    let mut source = read::MjcfSource::load(path, &mut report)?;
     if house::is_house(&source) {
         let house = house::read(source, &mut report)?;
         return Ok((house, report));
     }
-    let robot = read(path, &mut report)?;
+    let robot = source.first_robot(&mut report)?;
     Ok((robot::alone(&robot)?, report))
 }

@@ -32,10 +32,10 @@ impl MjcfSource {
     ///
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot) for files that cannot be read or are not this format.
-    pub(super) fn load(path: &Path) -> Result<Self, HousesError> {
+    pub(super) fn load(path: &Path, report: &mut LoadReport) -> Result<Self, HousesError> {
         let files = RobotFiles::around(path)?;
         let text = files.text()?;
-        includes::check(&files, &text)?;
+        includes::check(&files, &text, report)?;
         let at = FileLocation::file(&files.file);
         let folder = files.root.folder().join(folder_of(&files.file));
         let model = Model::from_str(&text, folder).map_err(|error| HousesError::Syntax {
@@ -139,7 +139,7 @@ impl MjcfSource {
                 taken.map(|piece| piece.shape.clone()).collect()
             };
             links.push(RobotLink {
-                weight: weight(&self.model, &entry.body, &pieces, &at)?,
+                weight: weight(&self.model, &entry.body, &pieces, &at, report)?,
                 name,
                 visuals: of(|piece| piece.seen),
                 collisions: of(|piece| piece.touches),
@@ -174,6 +174,25 @@ impl MjcfSource {
             fixed_base: base != RootAttachment::Free,
         })
     }
+
+    /// The first body of the world and what hangs on it; what else stands there is reported.
+    ///
+    /// # Errors
+    /// Those of [`open_robot`](crate::open_robot).
+    pub(super) fn first_robot(&mut self, report: &mut LoadReport) -> Result<Robot, HousesError> {
+        let roots = self.roots();
+        let Some(root) = roots.first() else {
+            return refuse(self.at.clone(), "a <body> in <worldbody>", "none");
+        };
+        let left_out = roots.len() - 1 + self.model.bodies[0].body.geoms.len();
+        if left_out > 0 {
+            let what =
+                format!("{left_out} bodies or geoms of the world beside the robot are not read");
+            let at = self.at.field("worldbody");
+            report.warn(at, WarningKind::Simplified { what });
+        }
+        self.robot(*root, report)
+    }
 }
 
 /// Reads an MJCF file: the first body of the world and what hangs on it.
@@ -181,24 +200,7 @@ impl MjcfSource {
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
 pub(crate) fn read(path: &Path, report: &mut LoadReport) -> Result<Robot, HousesError> {
-    let mut source = MjcfSource::load(path)?;
-    let roots = source.roots();
-    let Some(root) = roots.first() else {
-        return Err(HousesError::Field {
-            at: source.at,
-            expected: "a <body> in <worldbody>",
-            found: "none".to_owned(),
-        });
-    };
-    let left_out = roots.len() - 1 + source.model.bodies[0].body.geoms.len();
-    if left_out > 0 {
-        let what = format!("{left_out} bodies or geoms of the world beside the robot are not read");
-        report.warn(
-            source.at.field("worldbody"),
-            WarningKind::Simplified { what },
-        );
-    }
-    source.robot(*root, report)
+    MjcfSource::load(path, report)?.first_robot(report)
 }
 
 /// The name of a body; those without one are numbered.
@@ -338,6 +340,7 @@ fn weight(
     body: &Body,
     pieces: &[BodyGeom],
     at: &FileLocation,
+    report: &mut LoadReport,
 ) -> Result<Option<LinkInertia>, HousesError> {
     use mjcf_rs::compiler::InertiaFromGeom;
     let from_geoms = model.compiler.inertia_from_geom;
@@ -348,6 +351,7 @@ fn weight(
                 let at = at.field("inertial.mass");
                 return refuse(at, "a mass of 1e-6 to 1e6 kg", weight.mass.to_string());
             }
+            weight.report_impossible(&at.field("inertial"), report);
             Ok(Some(weight))
         }
         _ => geoms::weight(pieces, at),

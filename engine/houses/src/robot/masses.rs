@@ -3,7 +3,13 @@
 use dwell_scene::{Inertial, Pose};
 use glam::{DMat3, DQuat, DVec3};
 
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
+
 use super::model::{LinkInertia, Robot, RobotJoint, RobotJointKind};
+
+/// By so much numbers of a few digits may break the inequality of moments.
+const ROUNDING: f64 = 1.01;
 
 /// Who is fixed to whom in a robot.
 pub(super) struct FixedLinks<'a> {
@@ -78,9 +84,23 @@ impl LinkInertia {
         })
     }
 
-    /// The principal axes and moments (Jacobi's rotations). Moments that no body can have, as rounded files hold, are
-    /// brought to the nearest that one can.
-    pub(super) fn inertial(&self) -> Inertial {
+    /// Adds to the report moments that no body has by more than rounding: the largest is above the sum of the others.
+    pub(crate) fn report_impossible(&self, at: &FileLocation, report: &mut LoadReport) {
+        let (moments, _) = self.principal();
+        let largest = moments.max_element();
+        let others = moments.element_sum() - largest;
+        if largest > ROUNDING * others {
+            let [x, y, z] = moments.to_array();
+            let what = format!(
+                "no body has the moments of inertia {x:.3e}, {y:.3e} and {z:.3e} kg m²: the largest is above the sum of the \
+                 others, which are raised"
+            );
+            report.warn(at.clone(), WarningKind::Simplified { what });
+        }
+    }
+
+    /// The principal moments, and their axes as columns (Jacobi's rotations).
+    fn principal(&self) -> (DVec3, DMat3) {
         let (mut m, mut axes) = (self.inertia, DMat3::IDENTITY);
         for _ in 0..24 {
             for (p, q) in [(0, 1), (0, 2), (1, 2)] {
@@ -99,7 +119,14 @@ impl LinkInertia {
                 axes *= turn;
             }
         }
-        let mut moments = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z).max(DVec3::splat(1e-12));
+        let moments = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
+        (moments.max(DVec3::splat(1e-12)), axes)
+    }
+
+    /// The principal axes and moments. Moments that no body can have, as rounded files hold, are brought to the nearest that
+    /// one can.
+    pub(super) fn inertial(&self) -> Inertial {
+        let (mut moments, axes) = self.principal();
         let largest = moments.max_element();
         let others = moments.element_sum() - largest;
         if largest > others {

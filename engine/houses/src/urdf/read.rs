@@ -207,7 +207,7 @@ impl UrdfReader<'_> {
         })
     }
 
-    fn weight(&self, node: Node<'_, '_>) -> Result<LinkInertia, HousesError> {
+    fn weight(&mut self, node: Node<'_, '_>) -> Result<LinkInertia, HousesError> {
         let Some(mass) = first(node, "mass") else {
             return self.fault(node, "mass", "a <mass>", "nothing");
         };
@@ -225,11 +225,13 @@ impl UrdfReader<'_> {
         let local = DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
         let origin = self.origin(node)?;
         let turn = DMat3::from_quat(origin.rotation.as_dquat().normalize());
-        Ok(LinkInertia {
+        let weight = LinkInertia {
             mass: value,
             center: origin.position.as_dvec3(),
             inertia: turn * local * turn.transpose(),
-        })
+        };
+        weight.report_impossible(&self.place(inertia), self.report);
+        Ok(weight)
     }
 
     fn shape(&mut self, node: Node<'_, '_>) -> Result<LinkShape, HousesError> {

@@ -1,7 +1,8 @@
 //! The user's own mesh files, and plans as files.
 
 use super::{edited, middle, studio};
-use dwell_houses::authoring::HousePlan;
+use dwell_houses::FileLocation;
+use dwell_houses::authoring::{HousePlan, edits_from_json};
 use dwell_houses::open;
 use dwell_scene::{Mobility, ShoeboxMaterials};
 use serde_json::json;
@@ -170,4 +171,23 @@ fn a_house_without_furniture_takes_edits() {
         with.objects.as_slice()[0].room,
         Some(dwell_scene::RoomId(0))
     );
+}
+
+#[test]
+fn an_edit_with_several_names_or_none_is_refused_by_its_place() {
+    let remove = r#"{"remove": {"name": "sofa_1"}}"#;
+    let both = r#"{"remove": {"name": "sofa_1"}, "move": {"name": "sofa_1"}}"#;
+    for (edit, said) in [(both, "2 names: move, remove"), ("{}", "0 names")] {
+        let list = format!("[{remove}, {edit}]");
+        let plan = format!(r#"{{"format": "dwell-plan", "version": 1, "edits": {list}}}"#);
+        let at = FileLocation::file("a.plan.json");
+        for told in [
+            edits_from_json(&list).unwrap_err().to_string(),
+            HousePlan::from_json(plan.as_bytes(), &at)
+                .unwrap_err()
+                .to_string(),
+        ] {
+            assert!(told.contains("edits[1]") && told.contains(said), "{told}");
+        }
+    }
 }
