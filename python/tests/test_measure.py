@@ -104,14 +104,17 @@ def test_faults_of_the_map_are_named(tmp_path: Path, change: Any, told: str) -> 
         import_files(files, path, tmp_path / "a.measured", quiet)
 
 
-def test_a_bad_cell_is_named_by_file_column_and_row(tmp_path: Path) -> None:
+# Python reads "1_0" as ten; no table means that.
+@pytest.mark.parametrize("cell", ["high", "1_0"])
+def test_a_bad_cell_is_named_by_file_column_and_row(tmp_path: Path, cell: str) -> None:
     files, mapping = tosses(tmp_path)
     text = files[0].read_text().splitlines()
     cells = text[17].split(",")
-    cells[4] = "high"
+    cells[4] = cell
     text[17] = ",".join(cells)
     files[0].write_text("\n".join(text) + "\n")
-    with pytest.raises(ValueError, match=r"poses\.csv row 17: column 'pz' is 'high'"):
+    told = rf"poses\.csv row 17: column 'pz' is '{cell}'"
+    with pytest.raises(ValueError, match=told):
         import_files(files, mapping, tmp_path / "a.measured", quiet)
 
 

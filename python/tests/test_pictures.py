@@ -86,6 +86,7 @@ def test_pictures_of_houses_hold_every_storey() -> None:
 
 def test_ways_are_drawn_where_they_lead(shoebox: dwell.House) -> None:
     world = dwell.World(shoebox, agents=0)
+    plans.floor_plan(world, longest_edge=16)  # room names of less than a pixel
     plain = np.asarray(plans.floor_plan(world, longest_edge=300)).astype(int)
     way = [(1.0, 0.0, 4.0), (5.0, 0.0, 4.0)]
     drawn = np.asarray(plans.floor_plan(world, longest_edge=300, ways=[("#ff0000", way)]))

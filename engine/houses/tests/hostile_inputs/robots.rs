@@ -89,6 +89,11 @@ pub(crate) const URDF_CASES: &[Case] = &[
         |d| urdf(d, "mass value=\"1\"", "mass value=\"1e39\""),
         &["r.urdf:2", "link[a]", "mass", "1e-6 to 1e6 kg"],
     ),
+    warns(
+        "moments of inertia that no body has",
+        |d| urdf(d, "ixx=\"1\"", "ixx=\"1e4\""),
+        &["r.urdf", "no body has the moments of inertia"],
+    ),
     fails(
         "a link twice",
         |d| urdf(d, "link name=\"b\"", "link name=\"a\""),
