@@ -9,7 +9,7 @@ use dwell_scene::{Aabb, HouseData, MaterialId, Mesh, MeshId, TextureId};
 use super::dataset::ResolvedTemplate;
 use crate::data_root::{DataRoot, folder_of};
 use crate::gltf;
-use crate::import::{ImportedScene, UniqueNames, merge_meshes};
+use crate::import::{ImportedScene, MeshPieces, UniqueNames, merge_meshes};
 use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
@@ -26,7 +26,6 @@ pub(super) struct AssetMesh {
 #[derive(Debug, Clone)]
 pub(super) struct MergedAsset {
     pub(super) mesh: MeshId,
-    pub(super) shape: Arc<Mesh>,
     pub(super) bounds: Aabb,
     pub(super) materials: Vec<MaterialId>,
 }
@@ -36,7 +35,8 @@ pub(super) struct MergedAsset {
 pub(super) struct Assets {
     pieces: BTreeMap<String, Option<Arc<Vec<AssetMesh>>>>,
     wholes: BTreeMap<String, Option<MergedAsset>>,
-    shapes: BTreeMap<String, Option<Arc<Mesh>>>,
+    shapes: BTreeMap<String, Option<Arc<MeshPieces>>>,
+    whole_shapes: BTreeMap<String, Arc<MeshPieces>>,
     material_names: UniqueNames,
 }
 
@@ -124,15 +124,27 @@ impl Assets {
         Some(pieces)
     }
 
-    /// The asset at `path` as one mesh that the house does not hold: a shape to collide with. `None`, reported once, when it
-    /// cannot be read.
+    /// The pieces of `whole`, the asset at `path`: its shape to collide with.
+    pub(super) fn whole_shape(
+        &mut self,
+        path: &str,
+        whole: &MergedAsset,
+        data: &HouseData,
+    ) -> Arc<MeshPieces> {
+        let shape = || Arc::new(MeshPieces::of(&data.meshes[whole.mesh]));
+        let known = self.whole_shapes.entry(path.to_owned());
+        known.or_insert_with(shape).clone()
+    }
+
+    /// The pieces of the asset at `path`, which the house does not hold: a shape to collide with. `None`, reported once, when
+    /// it cannot be read.
     pub(super) fn shape(
         &mut self,
         root: &DataRoot,
         path: &str,
         threads: Threads,
         report: &mut LoadReport,
-    ) -> Option<Arc<Mesh>> {
+    ) -> Option<Arc<MeshPieces>> {
         if let Some(known) = self.shapes.get(path) {
             return known.clone();
         }
@@ -142,7 +154,7 @@ impl Assets {
                 for thing in scene.things {
                     shape.append(&thing.mesh.transformed(&thing.world_from_mesh), 0);
                 }
-                Some(Arc::new(shape))
+                Some(Arc::new(MeshPieces::of(&shape)))
             }
             Err(reason) => {
                 let path = path.to_owned();
@@ -175,11 +187,9 @@ impl Assets {
                 .iter()
                 .map(|piece| (piece.mesh.clone(), piece.materials.clone()));
             let (shape, materials) = merge_meshes(&pieces.collect::<Vec<_>>());
-            let shape = Arc::new(shape);
             MergedAsset {
-                mesh: data.meshes.push(shape.clone()),
                 bounds: shape.bounds(),
-                shape,
+                mesh: data.meshes.push(Arc::new(shape)),
                 materials,
             }
         });

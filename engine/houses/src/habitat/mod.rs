@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use dwell_scene::parallel::Threads;
-use dwell_scene::{House, HouseData};
+use dwell_scene::{House, HouseData, interrupt};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -77,12 +77,14 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     reader.stage(scene.stage_instance, &regions, &at);
     stage::rooms(&mut reader.data, &regions, &semantic_at, reader.report);
     for (k, value) in scene.object_instances.into_iter().enumerate() {
+        interrupt::check();
         let at = at.field(format_args!("object_instances[{k}]"));
         if let Some(instance) = reader.instance(value, &at) {
             reader.object(&instance, &at);
         }
     }
     for (k, value) in scene.articulated_object_instances.into_iter().enumerate() {
+        interrupt::check();
         let at = at.field(format_args!("articulated_object_instances[{k}]"));
         if let Some(instance) = reader.instance(value, &at) {
             reader.articulated(&instance, &at);

@@ -11,7 +11,7 @@ use super::assets::Assets;
 use super::dataset::{ResolvedTemplate, TemplateKind};
 use super::file::{SceneInstance, Template};
 use super::place;
-use crate::import::{CategoryRow, category, category_of, convex_pieces};
+use crate::import::{CategoryRow, MeshPieces, category, category_of};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
@@ -75,7 +75,8 @@ impl HabitatReader<'_> {
             .is_some_and(|kind| kind.eq_ignore_ascii_case("DYNAMIC"));
         let colliders = if moves {
             let shape = self.collision_shape(&found, &template, &path);
-            convex_pieces(shape.as_deref().unwrap_or(&asset.shape), &part_from_mesh)
+            let shape = shape.unwrap_or_else(|| self.assets.whole_shape(&path, &asset, &self.data));
+            shape.hulls(&part_from_mesh)
         } else {
             vec![Collider::ExactMesh]
         };
@@ -89,6 +90,13 @@ impl HabitatReader<'_> {
             1.0
         };
         let stated = template.mass.filter(|mass| *mass > 0.0 && mass.is_finite());
+        if let (Some(mass), None) = (template.mass, stated) {
+            let damage = WarningKind::BadField {
+                found: mass.to_string(),
+                expected: "a mass above 0 kg".to_owned(),
+            };
+            self.report.warn(found.at.field("mass"), damage);
+        }
         let mass_kg = stated.map_or(own_box.volume() * density_kg_m3, |mass| mass * grown);
         let (room, level) = home(&self.data, &bounds);
         let first_part = PartId(self.data.parts.len() as u32);
@@ -135,7 +143,7 @@ impl HabitatReader<'_> {
         found: &ResolvedTemplate,
         template: &Template,
         render: &str,
-    ) -> Option<std::sync::Arc<dwell_scene::Mesh>> {
+    ) -> Option<std::sync::Arc<MeshPieces>> {
         if template.collision_asset.is_empty() {
             return None;
         }

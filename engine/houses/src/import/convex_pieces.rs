@@ -3,18 +3,71 @@
 use dwell_scene::{Aabb, Collider, Mesh};
 use glam::{Affine3A, Vec3};
 
-use super::components;
+use super::components::{Component, components};
 
 /// Most convex pieces of one body.
 const MAX_PIECES: usize = 24;
 /// Half of the least thickness of a piece, m: contact solvers lose thinner ones.
 const MIN_HALF_M: f32 = 0.0025;
 
-/// Convex pieces that cover `mesh`: one hull for each connected piece of it, at most 24; the smallest pieces share the
-/// hull of the piece whose box grows least.
-///
-/// Models of furniture are built from boards and legs that do not touch, so this keeps the room under a table free.
+/// The vertices of a mesh's connected pieces, of which each gets a convex hull.
+#[derive(Debug)]
+pub(crate) struct MeshPieces {
+    /// Of each piece, mesh space; the largest first.
+    points: Vec<Vec<Vec3>>,
+}
+
+/// Convex pieces that cover `mesh`: one hull for each of its [`MeshPieces`].
 pub(crate) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Collider> {
+    MeshPieces::of(mesh).hulls(part_from_mesh)
+}
+
+impl MeshPieces {
+    /// The connected pieces of `mesh`, at most 24; the smallest ones are joined to the piece whose box grows least.
+    ///
+    /// Models of furniture are built from boards and legs that do not touch, so this keeps the room under a table free.
+    pub(crate) fn of(mesh: &Mesh) -> Self {
+        let points = largest_components(mesh).into_iter().map(|piece| {
+            let triangles = piece.triangles.iter();
+            let mut vertices: Vec<u32> = triangles
+                .flat_map(|&k| mesh.triangles[k as usize])
+                .collect();
+            vertices.sort_unstable();
+            vertices.dedup();
+            let place = |vertex: u32| mesh.positions[vertex as usize];
+            vertices.into_iter().map(place).collect()
+        });
+        Self {
+            points: points.collect(),
+        }
+    }
+
+    /// A hull around each piece that no box already covers.
+    pub(crate) fn hulls(&self, part_from_mesh: &Affine3A) -> Vec<Collider> {
+        let mut colliders: Vec<Collider> = Vec::new();
+        for piece in &self.points {
+            let moved = piece
+                .iter()
+                .map(|point| part_from_mesh.transform_point3(*point));
+            let points: Vec<Vec3> = moved.collect();
+            let bounds = Aabb::from_points(points.iter().copied());
+            // A piece inside another one adds nothing.
+            let inside = |c: &Collider| {
+                c.bounds().is_some_and(|b| {
+                    matches!(c, Collider::Cuboid { .. })
+                        && b.contains(bounds.min)
+                        && b.contains(bounds.max)
+                })
+            };
+            if !bounds.is_empty() && !colliders.iter().any(inside) {
+                colliders.push(hull(&points, &bounds));
+            }
+        }
+        colliders
+    }
+}
+
+fn largest_components(mesh: &Mesh) -> Vec<Component> {
     let mut pieces = components(mesh);
     pieces.sort_by(|a, b| diagonal(&b.bounds).total_cmp(&diagonal(&a.bounds)));
     let small = pieces.split_off(pieces.len().min(MAX_PIECES));
@@ -28,32 +81,7 @@ pub(crate) fn convex_pieces(mesh: &Mesh, part_from_mesh: &Affine3A) -> Vec<Colli
             seed.triangles.extend(piece.triangles);
         }
     }
-    let mut colliders: Vec<Collider> = Vec::new();
-    for piece in &pieces {
-        let mut vertices: Vec<u32> = piece
-            .triangles
-            .iter()
-            .flat_map(|&k| mesh.triangles[k as usize])
-            .collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let in_part =
-            |vertex: u32| part_from_mesh.transform_point3(mesh.positions[vertex as usize]);
-        let points: Vec<Vec3> = vertices.into_iter().map(in_part).collect();
-        let bounds = Aabb::from_points(points.iter().copied());
-        // A piece inside another one adds nothing.
-        let inside = |c: &Collider| {
-            c.bounds().is_some_and(|b| {
-                matches!(c, Collider::Cuboid { .. })
-                    && b.contains(bounds.min)
-                    && b.contains(bounds.max)
-            })
-        };
-        if !bounds.is_empty() && !colliders.iter().any(inside) {
-            colliders.push(hull(&points, &bounds));
-        }
-    }
-    colliders
+    pieces
 }
 
 fn diagonal(bounds: &Aabb) -> f32 {

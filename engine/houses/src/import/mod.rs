@@ -12,7 +12,7 @@ mod textures;
 
 pub(crate) use annotated::{AnnotatedLight, AnnotatedObject, AnnotatedPart};
 pub(crate) use components::{Component, components, submesh};
-pub(crate) use convex_pieces::convex_pieces;
+pub(crate) use convex_pieces::{MeshPieces, convex_pieces};
 pub(crate) use dwell_furniture::shapes::triangulate;
 pub(crate) use dwell_furniture::tables::{CategoryRow, category, room_kind, substance_of};
 pub(crate) use lamps::ImportedLamp;

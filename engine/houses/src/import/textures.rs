@@ -6,12 +6,15 @@ use std::sync::Arc;
 
 use dwell_scene::Texture;
 use dwell_scene::parallel::Threads;
-use image::{DynamicImage, ImageDecoder, ImageReader};
+use image::{ColorType, ImageDecoder, ImageReader};
 
 use crate::data_root::DataRoot;
 use crate::limits::{MAX_ALL_PIXELS, MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE_SIDE};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
+
+/// What JPEG files begin with.
+const JPEG_START: [u8; 2] = [0xff, 0xd8];
 
 /// The name of a texture: its path's last part without the ending.
 pub(crate) fn texture_name(path: &str) -> String {
@@ -49,6 +52,14 @@ fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
             "{width} by {height} pixels; allowed are 1 to {MAX_IMAGE_PIXELS} in all"
         ));
     }
+    // Each block of 8 by 8 pixels takes one bit or more of a JPEG's first scan (ITU-T T.81, F.1.2 and G.1.2).
+    let blocks = u64::from(width.div_ceil(8)) * u64::from(height.div_ceil(8));
+    if bytes.starts_with(&JPEG_START) && (bytes.len() as u64) * 8 < blocks {
+        return Err(format!(
+            "{width} by {height} pixels in {} bytes, which cannot hold them",
+            bytes.len()
+        ));
+    }
     Ok((decoder, pixels))
 }
 
@@ -57,26 +68,59 @@ fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
 /// # Errors
 /// A sentence when the bytes are no such image or the image is too large.
 pub(crate) fn decode(name: &str, bytes: &[u8]) -> Result<Texture, String> {
-    let (decoder, _) = header(bytes)?;
-    let image = DynamicImage::from_decoder(decoder)
-        .map_err(|error| error.to_string())?
-        .into_rgba8();
-    let (width, height) = image.dimensions();
-    Ok(Texture::new(
-        name.to_owned(),
-        width,
-        height,
-        image.into_raw(),
-    ))
+    let (decoder, pixels) = header(bytes)?;
+    let (width, height) = decoder.dimensions();
+    let color = decoder.color_type();
+    let mut raw = empty_vec(decoder.total_bytes())?;
+    raw.resize(decoder.total_bytes() as usize, 0);
+    decoder
+        .read_image(&mut raw)
+        .map_err(|error| error.to_string())?;
+    let rgba = rgba(raw, color, pixels)?;
+    Ok(Texture::new(name.to_owned(), width, height, rgba))
+}
+
+/// An empty vector with room for so many bytes. `image` itself panics, or ends the process, where memory does not suffice.
+fn empty_vec(count: u64) -> Result<Vec<u8>, String> {
+    let mut bytes = Vec::new();
+    let reserved = bytes.try_reserve_exact(usize::try_from(count).unwrap_or(usize::MAX));
+    reserved.map_err(|_| format!("the {count} bytes that it takes are not free"))?;
+    Ok(bytes)
+}
+
+/// Pixels of any colour as RGBA of 8 bits.
+fn rgba(mut raw: Vec<u8>, color: ColorType, pixels: u64) -> Result<Vec<u8>, String> {
+    let channels = usize::from(color.channel_count());
+    if usize::from(color.bytes_per_pixel()) == 2 * channels {
+        // 65535 is 257 times 255.
+        raw = raw
+            .as_chunks()
+            .0
+            .iter()
+            .map(|two| ((u32::from(u16::from_ne_bytes(*two)) + 128) / 257) as u8)
+            .collect();
+    }
+    if channels == 4 {
+        return Ok(raw);
+    }
+    let mut rgba = empty_vec(pixels * 4)?;
+    for pixel in raw.chunks_exact(channels) {
+        rgba.extend(match *pixel {
+            [grey] => [grey, grey, grey, u8::MAX],
+            [grey, alpha] => [grey, grey, grey, alpha],
+            [r, g, b] => [r, g, b, u8::MAX],
+            _ => return Err(format!("{color:?} is not read")),
+        });
+    }
+    Ok(rgba)
 }
 
 /// Returns whether a JPEG image ends before its end marker: the decoder makes grey of what is missing.
 pub(crate) fn is_cut(bytes: &[u8]) -> bool {
-    const START: [u8; 2] = [0xff, 0xd8];
-    if !bytes.starts_with(&START) {
+    if !bytes.starts_with(&JPEG_START) {
         return false;
     }
-    let mut at = START.len();
+    let mut at = JPEG_START.len();
     loop {
         // In a scan, 0 behind 0xff stands for 0xff itself, and eight markers do not end it.
         let Some(found) = bytes
@@ -220,6 +264,43 @@ pub(crate) fn encode_png(texture: &Texture) -> Result<Vec<u8>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use image::DynamicImage;
+
+    #[test]
+    fn every_colour_type_is_decoded_as_image_does() {
+        let noise = image::ImageBuffer::from_fn(37, 23, |x, y| {
+            let value = |k: u32| (x * 2311 + y * 17033 + k * 29027) as u16;
+            image::Rgba([value(1), value(2), value(3), value(4)])
+        });
+        let noise = DynamicImage::ImageRgba16(noise);
+        let all = [
+            DynamicImage::from(noise.to_luma8()),
+            noise.to_luma_alpha8().into(),
+            noise.to_rgb8().into(),
+            noise.to_rgba8().into(),
+            noise.to_luma16().into(),
+            noise.to_luma_alpha16().into(),
+            noise.to_rgb16().into(),
+            noise,
+        ];
+        for image in all {
+            let mut png = Vec::new();
+            let form = image::ImageFormat::Png;
+            image.write_to(&mut Cursor::new(&mut png), form).unwrap();
+            let texture = decode("a", &png).unwrap();
+            assert_eq!(
+                texture.rgba(),
+                image.to_rgba8().as_raw(),
+                "{:?}",
+                image.color()
+            );
+        }
+    }
+
+    #[test]
+    fn memory_that_is_not_there_is_an_error() {
+        assert!(empty_vec(1 << 62).unwrap_err().contains("are not free"));
+    }
 
     #[test]
     fn an_image_is_cut_unless_its_end_marker_is_there() {
@@ -235,6 +316,20 @@ mod tests {
         for length in 2..bytes.len() {
             assert!(is_cut(&bytes[..length]), "{length} of {}", bytes.len());
         }
+        // A header that states more than the scan can hold is refused before it is decoded.
+        let frame = bytes
+            .windows(2)
+            .position(|two| two == [0xff, 0xc0])
+            .unwrap();
+        let mut huge = bytes.clone();
+        huge[frame + 5..frame + 9].copy_from_slice(&[0x1f, 0x40, 0x1f, 0x40]);
+        assert_eq!(
+            pixels(&huge),
+            Err(format!(
+                "8000 by 8000 pixels in {} bytes, which cannot hold them",
+                huge.len()
+            ))
+        );
         // Other forms say themselves where they end.
         assert!(!is_cut(b"\x89PNG"));
     }

@@ -2,9 +2,12 @@
 //!
 //! `mjcf-rs` opens them itself, as large and as often as files say, so all of them are looked at beforehand.
 
+use std::mem;
+
 use dwell_scene::interrupt;
 use roxmltree::Node;
 
+use super::default_classes::DefaultClasses;
 use super::{finite_check, unread_elements};
 use crate::data_root::folder_of;
 use crate::error::HousesError;
@@ -29,8 +32,11 @@ pub(super) fn check(
         report,
         seen: 0,
         open: Vec::new(),
+        classes: DefaultClasses::default(),
     };
-    walk.file(&files.file, text).map(|_| ())
+    walk.file(&files.file, text)?;
+    walk.classes.finish(walk.report);
+    Ok(())
 }
 
 struct IncludeResolver<'a> {
@@ -40,6 +46,8 @@ struct IncludeResolver<'a> {
     seen: usize,
     /// The file at hand and those that name it.
     open: Vec<String>,
+    /// Those of the model at hand.
+    classes: DefaultClasses,
 }
 
 impl IncludeResolver<'_> {
@@ -76,11 +84,15 @@ impl IncludeResolver<'_> {
             }
             finite_check::check(node, &at)?;
             unread_elements::report(node, &at, self.report);
+            self.classes.note(node, &at, self.report);
             match node.tag_name().name() {
                 "include" => elements = elements.saturating_add(self.named(node, name)?),
                 // Models of `<asset>` are copied by each `<attach>`.
                 "model" if node.has_attribute("file") => {
+                    // It has classes of its own.
+                    let outer = mem::take(&mut self.classes);
                     largest = largest.max(self.named(node, name)?);
+                    mem::replace(&mut self.classes, outer).finish(self.report);
                 }
                 _ => {}
             }

@@ -4,6 +4,7 @@
 //! include are checked first, so that none lies out of the data root.
 
 mod actuators;
+mod default_classes;
 mod finite_check;
 mod geoms;
 mod house;

@@ -101,8 +101,7 @@ pub(super) struct ObjectFile {
     #[serde(deserialize_with = "nullable")]
     pub(super) asset_id: String,
     /// The middle of its box.
-    #[serde(deserialize_with = "nullable")]
-    pub(super) position: Vector3,
+    pub(super) position: Option<Vector3>,
     #[serde(deserialize_with = "nullable")]
     pub(super) rotation: Vector3,
     /// Whether it stays where it is.

@@ -8,6 +8,7 @@ mod objects;
 mod shell;
 mod sizes;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use dwell_scene::{Aabb, House, Room, RoomId};
@@ -80,6 +81,7 @@ fn convert(
         report: &mut report,
         sizes,
         rooms: Vec::new(),
+        ids: BTreeSet::new(),
         floor_y: 0.0,
     };
     reader.assembly.storey();
@@ -116,6 +118,8 @@ struct ProcThorReader<'a> {
     report: &'a mut LoadReport,
     sizes: &'a AssetSizes,
     rooms: Vec<ConvertedRoom>,
+    /// Ids of objects, doors and windows.
+    ids: BTreeSet<String>,
     /// Height of the floors, m.
     floor_y: f32,
 }

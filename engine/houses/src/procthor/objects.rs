@@ -89,7 +89,12 @@ impl ProcThorReader<'_> {
         let size = known.map(|(_, size)| size);
         let named = object.id.split('|').next().unwrap_or_default();
         let type_name = known.map_or(named, |(kind, _)| kind).to_owned();
-        let (middle, turned) = (point(object.position), rotation(object.rotation));
+        let Some(position) = object.position else {
+            let consequence = "the object is left out".to_owned();
+            let damage = WarningKind::MissingField { consequence };
+            return self.warn(&format!("{at}.position"), damage);
+        };
+        let (middle, turned) = (point(position), rotation(object.rotation));
         if !is_place(middle) || !turned.is_finite() {
             let reason = "it is no place in a house".to_owned();
             return self.warn(at, WarningKind::BadTransform { reason });
@@ -123,7 +128,7 @@ impl ProcThorReader<'_> {
         let facing = turned * turn(Vec3::Y, HALF_TURN);
         let pose = Pose::new(middle, facing) * Pose::from_position(-center);
         self.assembly.place(kind, pose, room, 0.0);
-        self.name_last(&object.id, &object.asset_id);
+        self.name_last(&object.id, &object.asset_id, at);
     }
 
     /// The model of an asset; `None` when nothing is known of it.

@@ -28,6 +28,8 @@ const BESIDE_M: f32 = 0.05;
 const LEAST_M: f32 = 0.3;
 /// The widest casement, m.
 const CASEMENT_M: f32 = 0.8;
+/// How far a hole may reach beyond its wall, m: coordinates of the file are rounded.
+const BEYOND_M: f32 = 0.05;
 /// How far window sills stand into the room, m.
 const SILL_M: f32 = 0.02;
 
@@ -49,7 +51,36 @@ struct FaceHole {
     up: [f32; 2],
 }
 
+/// A wall that was read.
+struct ConvertedWall {
+    /// Which of the file's.
+    k: usize,
+    face: WallFace,
+    holes: Vec<FaceHole>,
+}
+
 impl WallFace {
+    /// The part of a hole that is on the face, give or take what rounding takes.
+    ///
+    /// # Errors
+    /// A sentence when the hole reaches beyond the face.
+    fn clip(&self, hole: FaceHole) -> Result<FaceHole, String> {
+        for (word, [low, high], size) in [
+            ("along", hole.along, self.width_m),
+            ("up", hole.up, self.height_m),
+        ] {
+            if low < -BEYOND_M || high > size + BEYOND_M {
+                return Err(format!(
+                    "its hole reaches from {low} to {high} m {word} its wall of {size} m"
+                ));
+            }
+        }
+        Ok(FaceHole {
+            along: hole.along.map(|a| a.clamp(0.0, self.width_m)),
+            up: hole.up.map(|u| u.clamp(0.0, self.height_m)),
+        })
+    }
+
     fn at(&self, along: f32, up: f32) -> Vec3 {
         self.foot + self.along * along + Vec3::Y * up
     }
@@ -111,13 +142,18 @@ impl ProcThorReader<'_> {
         for (k, room) in file.rooms.iter().enumerate() {
             self.room(k, room, file, &mut names);
         }
-        let mut holes: BTreeMap<&str, Vec<FaceHole>> = BTreeMap::new();
-        let mut faces: BTreeMap<&str, WallFace> = BTreeMap::new();
+        let mut walls: BTreeMap<&str, ConvertedWall> = BTreeMap::new();
         for (k, wall) in file.walls.iter().enumerate() {
             let at = format!("walls[{k}]");
+            if walls.contains_key(wall.id.as_str()) {
+                let reason = format!("the id {:?} is that of another wall", wall.id);
+                self.warn(&at, WarningKind::BadFace { reason });
+                continue;
+            }
             match self.face(wall) {
                 Ok(Some(face)) => {
-                    faces.insert(&wall.id, face);
+                    let holes = Vec::new();
+                    walls.insert(&wall.id, ConvertedWall { k, face, holes });
                 }
                 Ok(None) => {}
                 Err(reason) => self.warn(&at, WarningKind::BadFace { reason }),
@@ -132,34 +168,41 @@ impl ProcThorReader<'_> {
                     self.warn(&at, WarningKind::BadFace { reason });
                     continue;
                 };
-                let Some(face) = faces.get(row.wall0.as_str()) else {
+                let Some(wall) = walls.get_mut(row.wall0.as_str()) else {
                     let reason = format!("there is no wall {:?}", row.wall0);
                     self.warn(&at, WarningKind::BadFace { reason });
                     continue;
                 };
-                self.filling(row, face, hole, field == "windows");
-                holes.entry(&row.wall0).or_default().push(hole);
-                if let Some(other) = faces.get(row.wall1.as_str()) {
+                let hole = match wall.face.clip(hole) {
+                    Ok(clipped) => clipped,
+                    Err(reason) => {
+                        self.warn(&at, WarningKind::BadFace { reason });
+                        continue;
+                    }
+                };
+                wall.holes.push(hole);
+                self.filling(row, &wall.face, hole, &at, field == "windows");
+                if let Some(other) = walls.get_mut(row.wall1.as_str()) {
                     // The wall behind runs the other way.
-                    let [from, to] = hole.along.map(|a| other.width_m - a);
+                    let [from, to] = hole.along.map(|a| other.face.width_m - a);
                     let along = [to, from];
-                    holes
-                        .entry(&row.wall1)
-                        .or_default()
-                        .push(FaceHole { along, ..hole });
+                    other.holes.push(FaceHole { along, ..hole });
                 }
             }
         }
         let mut wall_names = UniqueNames::default();
         for (k, wall) in file.walls.iter().enumerate() {
-            let Some(face) = faces.get(wall.id.as_str()).filter(|_| !wall.empty) else {
+            let converted = walls.get(wall.id.as_str());
+            let Some(ConvertedWall { face, holes, .. }) =
+                converted.filter(|converted| converted.k == k && !wall.empty)
+            else {
                 continue;
             };
             let finish = self.finish(&wall.material, &format!("walls[{k}].material"));
             let room = self.rooms.iter().find(|room| room.file_id == wall.room_id);
             let name = wall_names.unique(&format!("wall_{}", wall.id));
             let room = room.map(|room| room.id);
-            let mesh = face.mesh(holes.get(wall.id.as_str()).map_or(&[], Vec::as_slice));
+            let mesh = face.mesh(holes);
             if !mesh.triangles.is_empty() {
                 self.assembly
                     .structure(&name, StructureKind::Wall, room, mesh, &[finish]);
@@ -333,7 +376,14 @@ impl ProcThorReader<'_> {
     }
 
     /// A door or window of the hole's size; a frame without a leaf stays a hole.
-    fn filling(&mut self, row: &HoleFile, face: &WallFace, hole: FaceHole, is_window: bool) {
+    fn filling(
+        &mut self,
+        row: &HoleFile,
+        face: &WallFace,
+        hole: FaceHole,
+        at: &str,
+        is_window: bool,
+    ) {
         let [width_m, height_m] = [hole.along, hole.up].map(|[low, high]| high - low);
         if width_m < LEAST_M || height_m < LEAST_M {
             return;
@@ -347,8 +397,8 @@ impl ProcThorReader<'_> {
         } else {
             hole.up[0]
         };
-        let at = face.at(middle, up);
-        let Some(room) = self.room_at(at + face.normal * 0.1).map(|room| room.id) else {
+        let place = face.at(middle, up);
+        let Some(room) = self.room_at(place + face.normal * 0.1).map(|room| room.id) else {
             return;
         };
         let model = if is_window {
@@ -381,15 +431,22 @@ impl ProcThorReader<'_> {
             row.openness.clamp(0.0, 1.0)
         };
         self.assembly
-            .place(&kind, Pose::new(at, turn), room, openness);
-        self.name_last(&row.id, &row.asset_id);
+            .place(&kind, Pose::new(place, turn), room, openness);
+        self.name_last(&row.id, &row.asset_id, at);
     }
 
-    /// Calls the newest object what the file calls it.
-    pub(super) fn name_last(&mut self, id: &str, asset: &str) {
-        if let Some(object) = self.assembly.data.objects.as_mut_slice().last_mut() {
-            id.clone_into(&mut object.source_id);
-            asset.clone_into(&mut object.model);
+    /// Calls the newest object what the file calls it; `at` is the place of its row.
+    pub(super) fn name_last(&mut self, id: &str, asset: &str, at: &str) {
+        let Some(object) = self.assembly.data.objects.as_mut_slice().last_mut() else {
+            return;
+        };
+        id.clone_into(&mut object.source_id);
+        asset.clone_into(&mut object.model);
+        let renamed = object.name.clone();
+        if !id.is_empty() && !self.ids.insert(id.to_owned()) {
+            let id = id.to_owned();
+            let damage = WarningKind::DuplicateId { id, renamed };
+            self.warn(&format!("{at}.id"), damage);
         }
     }
 }

@@ -327,6 +327,25 @@ pub(crate) const MJCF_CASES: &[Case] = &[
         |d| mjcf(d, "size=\"4 4 1\"", "size=\"4 4 1\" rgba=\"nan 1 1 1\""),
         &["m.xml:4", "geom.rgba", "finite numbers"],
     ),
+    warns(
+        "a class of defaults that nothing defines",
+        |d| {
+            mjcf(
+                d,
+                "<body name=\"b\">",
+                "<body name=\"b\" childclass=\"nope\">",
+            )
+        },
+        &["m.xml:6", "body.childclass", "\"nope\" is not defined"],
+    ),
+    warns(
+        "a class of defaults that is defined twice",
+        |d| {
+            let two = "<default><default class=\"a\"/><default class=\"a\"/></default>";
+            mjcf(d, "<worldbody>", &format!("{two}<worldbody>"))
+        },
+        &["m.xml", "default.class", "\"a\" is defined twice"],
+    ),
     fails(
         "300,000 attributes",
         |d| {

@@ -116,6 +116,11 @@ pub(crate) const HABITAT: &[Case] = &[
         &["room.scene_instance.json", "object_instances[0]"],
     ),
     warns(
+        "a mass below 0",
+        |d| habitat(d, BLOCK, "{", "{\"mass\": -3, "),
+        &[BLOCK, "mass", "found -3, expected a mass above 0 kg"],
+    ),
+    warns(
         "an asset out of the data set",
         |d| habitat(d, BLOCK, "block.gltf", "../../../../etc/passwd.glb"),
         &[
@@ -279,6 +284,42 @@ pub(crate) const PROCTHOR: &[Case] = &[
             )
         },
         &["home.json", "doors[0]", "no rectangle"],
+    ),
+    warns(
+        "a hole beyond its wall",
+        |d| procthor(d, "/windows/0/holePolygon/1/x", json!(400)),
+        &[
+            "home.json",
+            "windows[0]",
+            "reaches from 1 to 400 m along its wall of 3 m",
+        ],
+    ),
+    warns(
+        "two walls of one id",
+        |d| procthor(d, "/walls/1/id", json!("room|10")),
+        &[
+            "home.json",
+            "walls[1]",
+            "the id \"room|10\" is that of another wall",
+        ],
+    ),
+    warns(
+        "an object without a position",
+        |d| procthor(d, "/objects/0/position", json!(null)),
+        &[
+            "home.json",
+            "objects[0].position",
+            "missing; the object is left out",
+        ],
+    ),
+    warns(
+        "an id used again",
+        |d| procthor(d, "/objects/1/id", json!("Mug|surface|1")),
+        &[
+            "home.json",
+            "objects[1].id",
+            "\"Mug|surface|1\" is used again",
+        ],
     ),
     warns(
         "a table of assets that is cut",

@@ -1,0 +1,58 @@
+//! Classes of defaults that a model names and does not define, or defines twice: the parser takes no notice, MuJoCo refuses them.
+
+use std::collections::BTreeSet;
+
+use roxmltree::Node;
+
+use crate::report::{FileLocation, LoadReport};
+use crate::warning_kind::WarningKind;
+
+/// The class at the top of all defaults.
+const TOP: &str = "main";
+/// Characters of a class's name that a report shows.
+const SHOWN: usize = 60;
+
+/// The classes of one model, with all files that it includes.
+#[derive(Debug, Default)]
+pub(super) struct DefaultClasses {
+    defined: BTreeSet<String>,
+    named: Vec<(FileLocation, String)>,
+}
+
+impl DefaultClasses {
+    /// Notes what `node` of the file `at` defines or names.
+    pub(super) fn note(&mut self, node: Node<'_, '_>, at: &FileLocation, report: &mut LoadReport) {
+        let tag = node.tag_name().name();
+        let at = |field: &str| {
+            at.line(node.document().text_pos_at(node.range().start).row)
+                .field(format_args!("{tag}.{field}"))
+        };
+        for field in ["class", "childclass"] {
+            let Some(name) = node.attribute(field) else {
+                continue;
+            };
+            if tag != "default" {
+                self.named.push((at(field), name.to_owned()));
+            } else if !self.defined.insert(name.to_owned()) {
+                let name = shortened(name);
+                let what = format!("the class {name:?} is defined twice; MuJoCo refuses that");
+                report.warn(at(field), WarningKind::Simplified { what });
+            }
+        }
+    }
+
+    /// Reports the names that nothing defines.
+    pub(super) fn finish(self, report: &mut LoadReport) {
+        for (at, name) in self.named {
+            if name != TOP && !self.defined.contains(&name) {
+                let name = shortened(&name);
+                let what = format!("the class {name:?} is not defined; nothing is taken from it");
+                report.warn(at, WarningKind::Simplified { what });
+            }
+        }
+    }
+}
+
+fn shortened(name: &str) -> String {
+    name.chars().take(SHOWN).collect()
+}
