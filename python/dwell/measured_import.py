@@ -473,8 +473,20 @@ def flight_bundle(
             continue
         body = text(row[names[1]])
         mass, diameter = (listed.number(where, row, name) for name in names[2:])
-        bodies[body] = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
-        body_of[text(row[names[0]])] = body
+        found = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
+        known = bodies.setdefault(body, found)
+        if known != found:
+            raise ValueError(
+                f"{where}: {body!r} has {mass} kg and {diameter} m across, and in a row above "
+                f"{known['mass_kg']} kg and {2.0 * known['radius_m']} m; give each body a name "
+                "of its own, or correct the row"
+            )
+        name = text(row[names[0]])
+        if body_of.setdefault(name, body) != body:
+            raise ValueError(
+                f"{where}: episode {name!r} has the body {body!r}, and in a row above "
+                f"{body_of[name]!r}; an episode has one body"
+            )
     if not bodies:
         raise ValueError(
             f"{listed.path}: no row has both {names[2]!r} (kg) and {names[3]!r} (m); flights of "
@@ -542,7 +554,11 @@ def drive_bundle(
     ]
     listed = MeasuredTable(listing, tables, f"{at}: episodes")
     listed.has(names)
-    rows_of = {text(row[names[0]]): row for _, row in listed}
+    rows_of: dict[str, CsvRow] = {}
+    for where, row in listed:
+        name = text(row[names[0]])
+        if rows_of.setdefault(name, row) != row:
+            raise ValueError(f"{where}: episode {name!r} is listed twice, with other values")
     table = MeasuredTable(part, tables, here)
     place = columns_of(part, "position", 2, here)
     heading, clock = require_columns(part, "heading_rad", here), require_columns(part, "t_s", here)

@@ -287,6 +287,17 @@ def test_rows_of_another_job_are_not_discarded(
     assert not out.exists()
 
 
+def test_a_result_may_have_the_longest_name_that_there_is(tmp_path: Path) -> None:
+    from dwell.cli.job_journal import Journal
+
+    for name in ("n" * 255, "é" * 127):
+        journal = Journal(tmp_path / name, {"command": "x"})
+        journal.add("1", [{"a": 1}])
+        journal.finish()
+        assert (tmp_path / name).read_text() == '{"a": 1}\n'
+    assert len(list(tmp_path.iterdir())) == 2
+
+
 def test_two_processes_do_not_write_one_journal(tmp_path: Path) -> None:
     from dwell.cli.job_journal import Journal
 

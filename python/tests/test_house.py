@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import logging
 import re
+import subprocess
+import sys
 from pathlib import Path
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -92,6 +95,32 @@ def test_a_source_outside_of_a_measured_room_is_told(
     assert not silence.any()
     told = [record.getMessage().split(" stands")[0] for record in caplog.records]
     assert told == ["a source", "a microphone"]
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ({"air": {"temperature_c": -400}}, "room.json: air: temperature_c is -400"),
+        ({"duration_s": 1e9}, "room.json: acoustics: max_duration_s is 1000000000"),
+        ({"receivers": None, "recievers": []}, "room.json: receivers: expected a list"),
+    ],
+)
+def test_what_a_measured_room_cannot_be_names_its_file(
+    tmp_path: Path, changes: dict[str, Any], told: str
+) -> None:
+    walls = dict.fromkeys(("x0", "x1", "y0", "y1", "z0", "z1"), "hard")
+    room = {"shoebox": [6, 5, 3], "walls": walls, "materials": {"hard": {}}}
+    places = {
+        "sources": [{"id": "s", "pos": [1, 1, 1]}],
+        "receivers": [{"id": "r", "pos": [3, 2, 1]}],
+    }
+    values = {**room, **places, **changes}
+    file = tmp_path / "room.json"
+    file.write_text(json.dumps({key: value for key, value in values.items() if value is not None}))
+    command = [sys.executable, "-m", "dwell.cli", "ir", str(file)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert told in done.stderr
 
 
 def test_things_outside_stand_in_the_report() -> None:

@@ -154,10 +154,39 @@ def test_ticks_become_turns_of_wheels(tmp_path: Path) -> None:
     with (out / "episodes.csv").open() as file:
         first = next(csv.DictReader(file))
     assert (first["split_group"], first["conditions"]) == ("daya", "straight")
+    index.write_text("\n".join(["episode,path,set", *lines, "a,curved,daya"]) + "\n")
+    with pytest.raises(ValueError, match=r"index.csv row 5: episode 'a' is listed twice"):
+        import_files([table, index], path, tmp_path / "b.measured", quiet)
     mapping["base"]["ticks_per_turn"] = 0
     path.write_text(json.dumps(mapping))
     with pytest.raises(ValueError, match="ticks_per_turn is 0"):
         import_files([table, index], path, tmp_path / "b.measured", quiet)
+
+
+def test_a_ball_with_two_masses_is_refused(tmp_path: Path) -> None:
+    mapping: dict[str, Any] = json.loads((MAPS / "ball_drops.json").read_text())
+    about, part = mapping["bodies"], mapping["table"]
+    about["file"], part["file"] = "index.csv", "data.csv"
+    head = [about[key] for key in ("episode", "name", "mass_kg", "diameter_m")]
+    flights = [part["episode"], part["t_s"], *part["channels"].values()]
+    if part.get("split_group"):
+        flights.append(part["split_group"])
+    table, index, path = (tmp_path / name for name in ("data.csv", "index.csv", "map.json"))
+    path.write_text(json.dumps(mapping))
+    values = [[episode, 0.1 * k] for episode in "abcd" for k in range(9)]
+    rows = [",".join(map(str, [*row, *[row[1]] * (len(flights) - 2)])) for row in values]
+    table.write_text("\n".join([",".join(flights), *rows]) + "\n")
+    lines = [",".join(head), *(f"{episode},ball,0.1,0.07" for episode in "abcd")]
+    for row, told in (
+        (
+            "a,ball,0.9,0.07",
+            "row 5: 'ball' has 0.9 kg and 0.07 m across, and in a row above",
+        ),
+        ("a,other,0.9,0.07", "row 5: episode 'a' has the body 'other', and in a row above 'ball'"),
+    ):
+        index.write_text("\n".join([*lines, row]) + "\n")
+        with pytest.raises(ValueError, match=told):
+            import_files([table, index], path, tmp_path / "b.measured", quiet)
 
 
 def test_a_parquet_table_is_closed_where_its_rows_end(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -13,6 +14,8 @@ from typing import IO, Any
 from dwell.files import atomic_write, is_draft, lines, open_alone, open_file, parse_json, read_json
 
 _JOB, _DONE = "job", "done"
+#: Of a result's name, in that of its journal; file systems have names of up to 255 bytes.
+_NAME_BYTES = 230
 #: What is the same for a whole folder; it stands there from the beginning.
 _DATASET = "dataset.json"
 
@@ -54,6 +57,14 @@ def refuse_other(out: Path, dataset: dict[str, Any]) -> None:
         raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
 
 
+def _hidden_name(name: str) -> str:
+    """The name of the journal beside the result ``name``, which may be as long as names can be."""
+    whole = os.fsencode(name)
+    if len(whole) <= _NAME_BYTES:
+        return f".{name}.part"
+    return f".{whole[:_NAME_BYTES].decode(errors='ignore')}-{zlib.crc32(whole):08x}.part"
+
+
 class Journal:
     """A file beside the result: rows of each item, then a mark that they are whole."""
 
@@ -72,7 +83,7 @@ class Journal:
         if out.is_dir():
             raise IsADirectoryError(errno.EISDIR, "is a folder, not a file", os.fspath(out))
         self._out = out
-        self._path = out.with_name(f".{out.name}.part")
+        self._path = out.with_name(_hidden_name(out.name))
         out.parent.mkdir(parents=True, exist_ok=True)
         #: Items whose rows are there, in the order they came.
         self.done: dict[str, None] = {}

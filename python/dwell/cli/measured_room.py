@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from dwell import ConfigError
 from dwell.arguments import finite, whole
 from dwell.cli.common import ProgressBar, print_json, refuse_other_suffix
 from dwell.files import MOST_TEXT_BYTES, atomic_write, read, read_json
@@ -79,7 +80,10 @@ def is_measured_room(house: str) -> bool:
     if path.stat().st_size > MOST_TEXT_BYTES:
         return False
     text = read(path)
-    return b'"receivers"' in text and b'"materials"' in text
+    # One of the two lists may have its name misspelt, which the reader then says.
+    has_places = b'"receivers"' in text or b'"sources"' in text
+    has_walls = b'"mesh"' in text or b'"shoebox"' in text
+    return b'"materials"' in text and has_places and has_walls
 
 
 def run(args: argparse.Namespace) -> int:
@@ -91,13 +95,17 @@ def run(args: argparse.Namespace) -> int:
     sources = _picked("--sources", room.sources, args.sources)
     receivers = _picked("--receivers", room.receivers, args.receivers)
     started = time.perf_counter()
-    scene = AcousticScene(
-        args.house,
-        laws=args.laws,
-        rays=args.rays,
-        image_order=args.image_order,
-        **room.config(),
-    )
+    try:
+        scene = AcousticScene(
+            args.house,
+            laws=args.laws,
+            rays=args.rays,
+            image_order=args.image_order,
+            **room.config(),
+        )
+    except ConfigError as error:
+        # Rate, duration and air are the file's.
+        raise ConfigError(f"{room.path}: {error}") from None
     built = time.perf_counter()
     length = round(room.duration_s * room.rate_hz)
     responses = np.zeros((len(sources), len(receivers), length), np.float32)

@@ -116,7 +116,9 @@ impl AgentBody {
                 allowed: "a value within its range",
             })
         };
-        for (field, parameter) in self.parameters() {
+        // A number out of its own range would make those of the others senseless.
+        let own = parameters(BODY, self);
+        for (field, parameter) in own.into_iter().chain(self.parameters()) {
             if !parameter.admits(parameter.value) {
                 let Parameter {
                     value,
@@ -160,5 +162,9 @@ mod tests {
             let message = other.check().unwrap_err().to_string();
             assert!(message.contains("agent body"), "{field}: {message}");
         }
+        let mut flat = body;
+        flat.set("height_m", 0.0);
+        let message = flat.check().unwrap_err().to_string();
+        assert!(message.contains("height_m"), "{message}");
     }
 }
