@@ -116,18 +116,19 @@ impl AgentBody {
                 allowed: "a value within its range",
             })
         };
-        // A number out of its own range would make those of the others senseless.
-        let own = parameters(BODY, self);
-        for (field, parameter) in own.into_iter().chain(self.parameters()) {
-            if !parameter.admits(parameter.value) {
-                let Parameter {
-                    value,
-                    low,
-                    high,
-                    unit,
-                } = parameter;
-                return refuse(field, format!("{value} (range {low} to {high} {unit})"));
-            }
+        let refused = |(_, parameter): &(_, Parameter)| !parameter.admits(parameter.value);
+        let all = self.parameters();
+        // A number out of its own range makes those of the others senseless, so it is named first.
+        let own = parameters(BODY, self).iter().position(refused);
+        if let Some(k) = own.or_else(|| all.iter().position(refused)) {
+            let (field, parameter) = all[k];
+            let Parameter {
+                value,
+                low,
+                high,
+                unit,
+            } = parameter;
+            return refuse(field, format!("{value} (range {low} to {high} {unit})"));
         }
         let [low, high] = Self::FOV_DEG;
         if !(low..=high).contains(&f64::from(self.camera_fov_deg)) {
