@@ -218,8 +218,16 @@ def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
         assert done.returncode == 1
         assert str(path) in done.stderr
         assert done.stderr.count("\n") == 1
+    path.write_text('[{"position": [0, 0, 0], "forward": [0, 0.0, 0]}]', "utf-8")
+    done = dwell("bench", "render", HOUSE, "--views", path)
+    assert done.returncode == 1
+    assert f"{path}: view 0: forward is 0" in done.stderr
     path.write_text("[]", "utf-8")
     assert "JSON object" in dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    none = {"fixed": [], "dynamic": [], "density_kg_m3": 400, "physics_rate_hz": 0}
+    path.write_text(json.dumps(none), "utf-8")
+    told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr
+    assert "boxes.physics_rate_hz is 0; allowed is 6 to " in told
     done = dwell("describe", HOUSE, "--level", "instructions", "--seed", "-1")
     assert done.returncode == 2
     assert "whole number" in done.stderr

@@ -89,3 +89,19 @@ def test_a_full_disk_behind_standard_output_is_named(command: str) -> None:
     assert done.returncode == 1
     assert done.stderr.count("\n") == 1, done.stderr
     assert "standard output: No space left on device" in done.stderr
+
+
+@pytest.mark.skipif(not Path("/proc/self/limits").exists(), reason="the limits of Linux")
+def test_a_picture_that_memory_cannot_hold_is_refused(tmp_path: Path) -> None:
+    done = subprocess.run(
+        f"ulimit -v 1500000; exec {sys.executable} -m dwell.cli render {HOUSE} --width 16000 "
+        f"--height 16000 --sensors rgb,albedo --at 0,1.5,0 --out {tmp_path / 'out'}",
+        shell=True,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 1
+    assert "camera is 16000 by 16000 pixels" in done.stderr
+    assert "take a smaller image" in done.stderr

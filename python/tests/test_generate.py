@@ -188,6 +188,11 @@ def test_houses_that_were_deleted_are_made_again(tmp_path: Path) -> None:
     shutil.rmtree(out / "house")
     assert json.loads(generate(*two).stdout)["made_now"] == 2
     assert content(out) == before
+    # So is one that was cut.
+    geometry = first / "house.glb"
+    geometry.write_bytes(geometry.read_bytes()[:-1])
+    assert json.loads(generate(*two).stdout)["made_now"] == 1
+    assert content(out) == before
     # What this version does not make is not passed off as what the manifest names.
     manifest = out / "manifest.jsonl"
     other = [{**row, "hash": "0"} for row in rows(manifest)]

@@ -67,10 +67,10 @@ impl DataRoot {
         Ok(parts.join("/"))
     }
 
-    /// Returns whether something other than a folder exists at `path`, inside the root. What is no regular file is refused when it
-    /// is read, by a sentence that says so.
-    pub fn has_file(&self, path: &str) -> bool {
-        std::fs::metadata(self.folder.join(path)).is_ok_and(|meta| !meta.is_dir())
+    /// Returns whether something exists at `path`, inside the root. What is no regular file is refused when it is read, by a
+    /// sentence that says so.
+    pub fn exists(&self, path: &str) -> bool {
+        self.folder.join(path).exists()
     }
 
     /// The names of what lies in the folder at `path`, in order; the first 100,000 that the system gives.

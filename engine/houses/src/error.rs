@@ -167,6 +167,14 @@ impl HousesError {
         self
     }
 
+    /// The same of the user's file `name`: an [`HousesError::Spec`] names it, as all others do.
+    pub(crate) fn in_file(mut self, name: &str) -> Self {
+        if let Self::Spec { field, .. } = &mut self {
+            *field = format!("{name}: {field}");
+        }
+        self
+    }
+
     /// An [`HousesError::Empty`] at `at`, with what was reported on the way.
     pub(crate) fn empty(at: &FileLocation, report: &LoadReport) -> Self {
         const TOLD: usize = 3;

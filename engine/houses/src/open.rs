@@ -96,9 +96,11 @@ fn open_mapped(house: &str, map: &str, threads: Threads) -> Opened {
             possible: "one".to_owned(),
         });
     }
-    let map = NameMapping::read(Path::new(map))?;
+    let mapping = NameMapping::read(Path::new(map))?;
     let (house, mut report) = open_with(house, threads)?;
-    let house = map.apply(&house, &mut report)?;
+    let house = mapping
+        .apply(&house, &mut report)
+        .map_err(|error| error.in_file(map))?;
     Ok((house, report))
 }
 

@@ -149,6 +149,21 @@ fn a_pipe_that_a_mesh_names_is_told_as_one() {
 }
 
 #[test]
+fn a_folder_in_place_of_a_mesh_is_told_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let house = r#"{"levels": [{"nodes": [{"id": "0_0", "type": "Object", "modelId": "9",
+        "transform": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}]}]}"#;
+    let path = folder.path().join("house.json");
+    std::fs::write(&path, house).unwrap();
+    std::fs::create_dir_all(folder.path().join("object/9/9.obj")).unwrap();
+    let told = open(&path.to_string_lossy()).unwrap_err().to_string();
+    assert!(
+        told.contains("\"object/9/9.obj\" could not be read (is a folder"),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_robot_without_a_link_has_no_loop() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.urdf");

@@ -130,7 +130,10 @@ fn what_cannot_be_is_refused_by_its_field() {
     refused("unknown", r#""z1": "hard""#, r#""z1": "soft""#, "walls.z1");
     refused("negative", "[6.0, 5.0, 3.0]", "[6.0, -5.0, 3.0]", "shoebox");
     refused("loud", "[0.05, 0.4]", "[0.05, 1.4]", "absorption");
-    refused("bands", "[125, 1000]", "[1000, 125]", "absorption");
+    let rising = "bands_hz: expected rising frequencies above 0 Hz, at least one, found [";
+    for bands in ["[1000, 125]", "[125, 125]", "[0, 125]", "[]"] {
+        refused("bands", "[125, 1000]", bands, rising);
+    }
     refused("neither", "shoebox", "mesh_of", "neither");
     refused(
         "slip",

@@ -1,8 +1,8 @@
-//! Whether the machine can hold the environments that are asked for, found out before their memory is taken.
+//! Whether the machine can hold the environments or the picture that are asked for, found out before their memory is taken.
 
 use crate::env::Env;
 use crate::error::WorldError;
-use crate::sensors::Dtype;
+use crate::sensors::{Dtype, SensorSpec};
 use crate::world::World;
 use dwell_render::{Camera, ImageChannels};
 use std::fs::read_to_string;
@@ -16,6 +16,8 @@ const BODY_BYTES: u64 = 9 << 10;
 const PIECE_BYTES: u64 = 768;
 /// What a sample of an agent's window of sound takes, with the echoes and filters on their way to it, bytes.
 const SAMPLE_BYTES: u64 = 256;
+/// From here on the system is asked whether a picture fits, bytes.
+const PICTURE_BYTES_ASKED_ABOUT: u64 = 64 << 20;
 
 /// What one environment takes beside what it shares with others over its house, bytes: rather more than it comes to need where
 /// most lies still.
@@ -33,17 +35,11 @@ impl MemoryEstimate {
         let pictures = views.map(|view| picture_bytes(&view.eye.camera, view.channels));
         let ears = requests.ears.iter();
         let heard: u64 = ears.map(|(_, samples)| *samples as u64).sum();
-        let observations = env.specs().into_iter().map(|spec| {
-            let bytes = match spec.dtype {
-                Dtype::Uint8 => 1,
-                Dtype::Float32 | Dtype::Int32 | Dtype::Text => 4,
-            };
-            spec.len() as u64 * bytes
-        });
+        let specs = env.specs();
         Self {
             world: world_bytes(env.world()) + heard * SAMPLE_BYTES,
             pictures: pictures.sum(),
-            observations: 2 * observations.sum::<u64>(),
+            observations: 2 * specs.iter().map(observation_bytes).sum::<u64>(),
         }
     }
 
@@ -81,6 +77,52 @@ fn picture_bytes(camera: &Camera, channels: ImageChannels) -> u64 {
     camera.pixels() as u64 * pixel
 }
 
+fn observation_bytes(spec: &SensorSpec) -> u64 {
+    let bytes = match spec.dtype {
+        Dtype::Uint8 => 1,
+        Dtype::Float32 | Dtype::Int32 | Dtype::Text => 4,
+    };
+    spec.len() as u64 * bytes
+}
+
+/// Refuses a picture with its observations where the memory that is free cannot hold them. Nothing is refused where nobody says
+/// how much is free.
+///
+/// # Errors
+/// [`WorldError::Config`] with what it takes and what is free.
+pub(crate) fn check_picture(
+    camera: &Camera,
+    channels: ImageChannels,
+    specs: &[SensorSpec],
+) -> Result<(), WorldError> {
+    let observations = specs.iter().map(observation_bytes);
+    let need = picture_bytes(camera, channels) + observations.sum::<u64>();
+    // Small ones are made without asking the system.
+    if need < PICTURE_BYTES_ASKED_ABOUT {
+        return Ok(());
+    }
+    free_bytes().map_or(Ok(()), |free| check_picture_against(camera, need, free))
+}
+
+fn check_picture_against(camera: &Camera, need: u64, free: u64) -> Result<(), WorldError> {
+    if need <= free {
+        return Ok(());
+    }
+    Err(WorldError::Config {
+        field: "camera",
+        found: format!("{} by {} pixels", camera.width(), camera.height()),
+        allowed: format!(
+            "what the memory of this machine holds: they take {}, and {} are free; take a smaller image or fewer channels",
+            mib(need),
+            mib(free)
+        ),
+    })
+}
+
+fn mib(bytes: u64) -> String {
+    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
+}
+
 /// Refuses `count` environments like `env` where the memory that is free cannot hold them. Nothing is refused where nobody
 /// says how much is free.
 ///
@@ -97,7 +139,6 @@ fn check_against(need: &MemoryEstimate, count: usize, free: u64) -> Result<(), W
     if count as u64 <= fitting {
         return Ok(());
     }
-    let mib = |bytes: u64| format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20));
     let one = format!(
         "an environment takes {}, of which pictures {} and observations {}, and {} are free",
         mib(need.bytes()),
@@ -213,6 +254,24 @@ mod tests {
                 "sensors is too large for this machine; allowed is what its memory holds: {one}, and 9.0 MiB are free; take \
                  smaller images"
             )
+        );
+    }
+
+    #[test]
+    fn a_picture_that_cannot_be_held_is_refused_with_what_it_takes() {
+        let camera = Camera::from_fov(8000, 4000, 90.0).unwrap();
+        let channels = ImageChannels {
+            rgb: true,
+            ..ImageChannels::NONE
+        };
+        let need = picture_bytes(&camera, channels);
+        assert_eq!(need, 3 * 8000 * 4000);
+        let refused = |free| check_picture_against(&camera, need, free).map_err(|e| e.to_string());
+        assert_eq!(refused(need), Ok(()));
+        assert_eq!(
+            refused(50 << 20).unwrap_err(),
+            "camera is 8000 by 4000 pixels; allowed is what the memory of this machine holds: they take 91.6 MiB, and 50.0 MiB \
+             are free; take a smaller image or fewer channels"
         );
     }
 

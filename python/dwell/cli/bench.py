@@ -147,8 +147,11 @@ def _views(path: Path) -> list[dict[str, Any]]:
     for k, row in enumerate(rows):
         if not isinstance(row, dict) or not all(_is_point(row.get(key)) for key in keys):
             raise ValueError(
-                f"{path}: view {k}: expected position and forward, three finite numbers each"
+                f"{path}: view {k}: expected position and forward, three finite numbers each, "
+                f"found {row!r:.200}"
             )
+        if not any(row["forward"]):
+            raise ValueError(f"{path}: view {k}: forward is 0; a direction has a length")
     return [{key: row[key] for key in keys} for row in rows]
 
 

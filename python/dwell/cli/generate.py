@@ -146,7 +146,7 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
 
 
 def _make_again(args: argparse.Namespace, manifest: Path) -> int:
-    """Makes the houses of the manifest that are not there any more; returns how many.
+    """Makes the houses of the manifest that are not there as they were written; returns how many.
 
     Raises:
         ValueError: One is another house now than the manifest says.
@@ -158,9 +158,10 @@ def _make_again(args: argparse.Namespace, manifest: Path) -> int:
     with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:
         while some := list(itertools.islice(missing, 64)):
             for row, new in zip(some, pool.map(lambda row: _again(args, row), some), strict=True):
-                if new != row:
+                # Older manifests have fewer fields.
+                if {key: new[key] for key in new if key in row} != row:
                     raise ValueError(
-                        f"{manifest}: {row.get('path')} was missing, and seed {row.get('seed')} "
+                        f"{manifest}: {row.get('path')} was missing or changed, and seed {row.get('seed')} "
                         "gives another house now than the manifest says; remove "
                         f"{args.out} and make all anew, or use the version that made it"
                     )
@@ -175,7 +176,17 @@ def _again(args: argparse.Namespace, row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _is_there(args: argparse.Namespace, row: dict[str, Any]) -> bool:
-    return Path(args.out, str(row.get("path"))).exists()
+    """Whether the house stands where the row says, with as many bytes."""
+    path = Path(args.out, str(row.get("path")))
+    return path.exists() and row.get("bytes", _bytes(path)) == _bytes(path)
+
+
+def _bytes(path: Path) -> int:
+    """Bytes of the files that are the house's own, beside what it shares with others."""
+    # A SUNCG house is named by a file of its folder.
+    own = path.parent if path.name == "house.json" else path
+    files = own.rglob("*") if own.is_dir() else (own,)
+    return sum(file.stat().st_size for file in files if file.is_file())
 
 
 def _rows(manifest: Path) -> Iterator[dict[str, Any]]:
@@ -213,6 +224,7 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
         "split": split,
         "house": name,
         "path": Path(path).relative_to(args.out).as_posix(),
+        "bytes": _bytes(path),
         **_statistics(house.info()),
     }
 

@@ -202,7 +202,7 @@ impl NameMapping {
         let at = FileLocation::file(&name);
         let text = std::str::from_utf8(&bytes).map_err(|error| HousesError::Syntax {
             at: at.clone(),
-            message: error.to_string(),
+            message: format!("expected a map of names, TOML: {error}"),
         })?;
         Self::parse(text, &at)
     }

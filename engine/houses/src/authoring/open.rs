@@ -176,5 +176,5 @@ pub(crate) fn open(path: &Path, threads: Threads) -> Opened {
     if plan.name.is_empty() && plan.building.is_some() {
         name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
     }
-    build_with(&plan, &FileAccess::Below(root), threads)
+    build_with(&plan, &FileAccess::Below(root), threads).map_err(|error| error.in_file(&name))
 }

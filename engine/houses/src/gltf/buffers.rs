@@ -108,7 +108,7 @@ pub(super) fn read_uri(uri: &str, root: &DataRoot, max_bytes: u64) -> Result<Vec
     let path = percent_decode(uri);
     let inside = DataRoot::resolve("", &path)
         .map_err(|_| WarningKind::PathRefused { path: path.clone() })?;
-    if !root.has_file(&inside) {
+    if !root.exists(&inside) {
         return Err(WarningKind::MissingMesh { path: inside });
     }
     root.read(&inside, max_bytes)

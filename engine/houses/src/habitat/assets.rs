@@ -82,7 +82,7 @@ impl Assets {
     ) -> Option<Vec<AssetMesh>> {
         let at = FileLocation::file(path);
         let path_owned = || path.to_owned();
-        if !root.has_file(path) {
+        if !root.exists(path) {
             report.warn(at, WarningKind::MissingMesh { path: path_owned() });
             return None;
         }

@@ -224,7 +224,7 @@ impl Dataset {
 
     fn path_of(&self, kind: TemplateKind, name: &str) -> Option<String> {
         let direct = DataRoot::resolve("", &format!("{name}{}", kind.ending())).ok()?;
-        if self.root.has_file(&direct) {
+        if self.root.exists(&direct) {
             return Some(direct);
         }
         let stem = name.rsplit('/').next().unwrap_or(name);

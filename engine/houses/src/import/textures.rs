@@ -186,7 +186,7 @@ pub(crate) fn read_images(
             path: path.clone(),
             reason,
         };
-        if !root.has_file(path) {
+        if !root.exists(path) {
             return Err(WarningKind::MissingTexture { path: path.clone() });
         }
         let bytes = root

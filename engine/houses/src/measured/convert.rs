@@ -54,6 +54,11 @@ fn is_side(name: &str) -> bool {
     SIDES.iter().any(|(side, ..)| *side == name)
 }
 
+fn is_band_list(centres_hz: &[f32]) -> bool {
+    let in_range = |centre: &f32| *centre > 0.0 && centre.is_finite();
+    !centres_hz.is_empty() && centres_hz.iter().all(in_range) && centres_hz.is_sorted_by(|a, b| a < b)
+}
+
 /// From the file's axes to the house's.
 fn upright(p: Vec3) -> Vec3 {
     Vec3::new(p.x, p.z, -p.y)
@@ -74,6 +79,13 @@ pub(super) fn convert(
     report: &mut LoadReport,
 ) -> Result<HouseData, HousesError> {
     unknown_names::check(file, at, report)?;
+    if !is_band_list(&file.bands_hz) {
+        return Err(HousesError::Field {
+            at: at.field("bands_hz"),
+            expected: "rising frequencies above 0 Hz, at least one",
+            found: format!("{:.200}", format!("{:?}", file.bands_hz)),
+        });
+    }
     let mut room = MeasuredRoomBuilder {
         file,
         at,

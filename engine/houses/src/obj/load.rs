@@ -56,7 +56,7 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) ->
             Ok(bytes) => bytes,
             Err(error) => {
                 let reason = error.reason();
-                let damage = if root.has_file(&mtl_path) {
+                let damage = if root.exists(&mtl_path) {
                     WarningKind::UnreadableMaterialFile {
                         path: mtl_path,
                         reason,

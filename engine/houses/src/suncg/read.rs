@@ -194,7 +194,7 @@ fn read_meshes(
         .collect();
     let wanted: Vec<String> = wanted
         .into_iter()
-        .filter(|path| root.has_file(path))
+        .filter(|path| root.exists(path))
         .collect();
     let read = threads.map(wanted.len(), |k| {
         let mut report = LoadReport::new();
@@ -219,7 +219,7 @@ fn read_arch(
     report: &mut LoadReport,
 ) -> Option<(String, ArchFile)> {
     let path = format!("wall/{scene_id}/{scene_id}.arch.json");
-    if meshes.keys().any(|path| path.starts_with("room/")) || !root.has_file(&path) {
+    if meshes.keys().any(|path| path.starts_with("room/")) || !root.exists(&path) {
         return None;
     }
     let read = root.read(&path, MAX_TEXT_BYTES);
@@ -265,7 +265,7 @@ fn read_textures(
             );
             continue;
         };
-        match candidates.iter().find(|path| root.has_file(path)) {
+        match candidates.iter().find(|path| root.exists(path)) {
             Some(path) => {
                 wanted.insert(path.clone());
             }

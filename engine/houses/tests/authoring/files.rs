@@ -124,6 +124,10 @@ fn a_plan_file_opens_as_a_house_and_reads_only_below_its_folder() {
     let told = plan("stool.obj", "a.plan.json").unwrap_err().to_string();
     assert!(told.contains("a HOUSE that is no plan"), "{told}");
     for (text, said) in [
+        (
+            r#"{"house": "builtin:studio", "edits": [{"move": {"what": "throne", "place": {"at": [0, 0, 0]}}}]}"#,
+            "b.plan.json: edits[0]",
+        ),
         ("{}", "one of them"),
         ("{\"format\": \"other\"}", "format: expected \"dwell-plan\""),
         ("{\"version\": 2}", "version \"2\" is not read"),

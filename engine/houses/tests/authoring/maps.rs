@@ -103,12 +103,24 @@ fn a_map_that_cannot_be_is_refused_with_its_place() {
     };
     let said = told("[materials]\n\"Slot*\" = \"parkett\"\n");
     assert!(
-        said.contains("materials.\"Slot*\".substance: found \"parkett\"")
+        said.contains("m.toml: materials.\"Slot*\".substance: found \"parkett\"")
             && said.contains("parquet"),
         "{said}"
     );
     let said = told("[nodes]\n\"Cube*\" = { category = \"stool\", mass_kg = -1.0 }\n");
-    assert!(said.contains("nodes.\"Cube*\".mass_kg: found -1"), "{said}");
+    assert!(
+        said.contains("m.toml: nodes.\"Cube*\".mass_kg: found -1"),
+        "{said}"
+    );
+    let picture = folder.path().join("m.glb");
+    fs::write(&picture, b"glTF\xff\xfe").unwrap();
+    let said = open(&format!("{path}?map={}", picture.display()))
+        .unwrap_err()
+        .to_string();
+    assert!(
+        said.contains("m.glb: expected a map of names, TOML"),
+        "{said}"
+    );
     let said = told("[materials\n");
     assert!(said.contains("m.toml"), "{said}");
     assert!(

@@ -151,6 +151,14 @@ pub(super) fn run(
         // As the scripts, which put a box on others until it is free, without a ceiling over it.
         config.max_start_shift_m = 1.0;
     }
+    let most_hz = 1000.0 * STEPS_PER_CONTROL as f32;
+    if !(STEPS_PER_CONTROL as f32..=most_hz).contains(&config.physics_rate_hz) {
+        return Err(WorldError::Config {
+            field: "boxes.physics_rate_hz",
+            found: config.physics_rate_hz.to_string(),
+            allowed: format!("{STEPS_PER_CONTROL} to {most_hz} Hz"),
+        });
+    }
     config.control_rate_hz = config.physics_rate_hz / STEPS_PER_CONTROL as f32;
     let house = Arc::new(opened);
     let model = Arc::new(PhysicsModel::new(house.clone()));

@@ -5,6 +5,7 @@ use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, Sensor
 use crate::camera_capture::PictureRequest;
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
+use crate::memory_estimate;
 use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
@@ -246,6 +247,9 @@ impl World {
         let kinds: Vec<&ImageSensorKind> = names.iter().map(find).collect::<Result<_, _>>()?;
         let wanted = kinds.iter().map(|kind| kind.channels);
         let channels = wanted.fold(ImageChannels::NONE, ImageChannels::and);
+        let specs = kinds.iter();
+        let specs = specs.map(|kind| kind.spec(kind.name, &request.camera, max_objects));
+        memory_estimate::check_picture(&request.camera, channels, &specs.collect::<Vec<_>>())?;
         let (camera, frame) = self.picture(request, channels, threads)?;
         let key = self.key.child("picture").child(self.state().step);
         let observe = |kind: &&ImageSensorKind| {

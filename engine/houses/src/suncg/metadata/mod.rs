@@ -25,7 +25,7 @@ pub(crate) fn read_table<'a>(
     consequence: &str,
     report: &mut LoadReport,
 ) -> Option<(&'a str, Vec<u8>)> {
-    let Some(path) = paths.iter().find(|path| root.has_file(path)) else {
+    let Some(path) = paths.iter().find(|path| root.exists(path)) else {
         let damage = WarningKind::MissingTable {
             path: paths[0].to_owned(),
             consequence: consequence.to_owned(),

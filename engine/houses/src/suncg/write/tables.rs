@@ -60,7 +60,7 @@ pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
     let rows = names
         .iter()
         .map(|name| format!("object/{name}/{ROW}"))
-        .filter(|path| root.has_file(path));
+        .filter(|path| root.exists(path));
     rows.map(|path| {
         let text = root.read(&path, MAX_TEXT_BYTES)?;
         crate::json::from_slice(&text).map_err(|error| HousesError::Syntax {
