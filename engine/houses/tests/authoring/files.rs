@@ -125,7 +125,7 @@ fn a_plan_file_opens_as_a_house_and_reads_only_below_its_folder() {
     assert!(told.contains("a HOUSE that is no plan"), "{told}");
     for (text, said) in [
         (
-            r#"{"house": "builtin:studio", "edits": [{"move": {"what": "throne", "place": {"at": [0, 0, 0]}}}]}"#,
+            r#"{"house": "builtin:studio", "edits": [{"move": {"object": "throne", "place": {"at": [0, 0, 0]}}}]}"#,
             "b.plan.json: edits[0]",
         ),
         ("{}", "one of them"),
