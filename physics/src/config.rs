@@ -106,13 +106,6 @@ impl PhysicsConfig {
             1000.0,
             "1 to 1000",
         )?;
-        range(
-            "physics_rate_hz",
-            self.physics_rate_hz,
-            1.0,
-            1_000_000.0,
-            "1 to 1000000",
-        )?;
         let ratio = self.physics_rate_hz / self.control_rate_hz;
         let whole = if ratio.fract() == 0.0 { ratio } else { 0.0 };
         range(

@@ -227,7 +227,7 @@ def test_bad_files_and_numbers_get_a_sentence(tmp_path: Path) -> None:
     none = {"fixed": [], "dynamic": [], "density_kg_m3": 400, "physics_rate_hz": 0}
     path.write_text(json.dumps(none), "utf-8")
     told = dwell("bench", "physics", HOUSE, "--boxes", path).stderr
-    assert "boxes.physics_rate_hz is 0; allowed is 6 to " in told
+    assert "boxes.physics_rate_hz is 0; allowed is 5 to 5000 Hz" in told
     done = dwell("describe", HOUSE, "--level", "instructions", "--seed", "-1")
     assert done.returncode == 2
     assert "whole number" in done.stderr
