@@ -20,10 +20,10 @@ pub type BandValues = [f32; BAND_COUNT];
 pub const NOMINAL_CENTRES_HZ: BandValues =
     [62.5, 125.0, 250.0, 500.0, 1000.0, 2000.0, 4000.0, 8000.0];
 
-/// What filters ring beyond this to either side is left out of account, s.
+/// Ringing of filters beyond this to either side is neglected, s.
 const LONGEST_RING_S: f64 = 0.05;
-/// What rings beyond this comes in again at the other end, s: where bands cross over half an octave or more, less than -77 dB of what
-/// [`FilterBank::blend`] and [`FilterBank::sift`] make of one, less than -55 dB of what [`FilterBank::split`] does.
+/// Ringing beyond this wraps around to the other end, s: where bands cross over half an octave or more, less than -77 dB of
+/// the output of [`FilterBank::blend`] and [`FilterBank::sift`], less than -55 dB of that of [`FilterBank::split`].
 const WRAP_S: f64 = 0.2;
 /// A band ends below this part of half the rate at which it is kept: the energy of its samples over some milliseconds is then that of
 /// all that were left out.
@@ -316,8 +316,8 @@ mod tests {
         }
     }
 
-    /// What is kept of a band has the energy of all of it, over every 20 ms of noise too, and that of a blended pulse is known
-    /// before.
+    /// The decimated samples of a band have the energy of all of it, over every 20 ms of noise too, and that of a blended
+    /// pulse is known before.
     #[test]
     fn few_samples_have_the_energy_of_all() {
         for rate_hz in [8_000.0, 16_000.0, 44_100.0, 48_000.0] {

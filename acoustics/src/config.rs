@@ -1,4 +1,4 @@
-//! How finely sound is computed.
+//! Settings of the accuracy and extent of sound propagation.
 
 use crate::air::Air;
 use crate::error::{AcousticsError, range};
@@ -23,12 +23,12 @@ pub struct AcousticConfig {
     pub bin_s: f64,
     /// Highest order of the image sources; 0 (direct sound only) to 4. Specular paths of higher orders belong to the tail.
     pub image_order: usize,
-    /// How many of the largest planes are combined exhaustively, as long as that makes at most 20,000 sequences an order; 0 to 200.
+    /// Number of the largest planes that are combined exhaustively, as long as that makes at most 20,000 sequences an order; 0 to 200.
     pub image_planes: usize,
     /// Rays from the receiver that discover further sequences of planes; 0 to 100,000.
     pub discovery_rays: usize,
-    /// How far the rays' energy may fall below the start before they become fewer, dB; 10 to 120. Above it, the faint ones end and
-    /// the strong ones split, so that there are always as many; below, the fewer the fainter they are. Bands count alike.
+    /// Decay of the rays' energy down to which their number is kept, dB; 10 to 120. Above it, faint rays end and strong
+    /// ones split, so that there are always as many; below, their number falls with their energy. Bands count alike.
     pub roulette_db: f64,
     /// Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2. It is this large for paths up
     /// to 8 m and grows with their length, up to 0.35 of the cube root of the volume in sight.
@@ -37,19 +37,19 @@ pub struct AcousticConfig {
     pub max_error: f64,
     /// Random arrivals that make up a second of the tail's pressure; 500 to 100,000. Denser ones cannot be told apart.
     pub arrivals_per_s: f64,
-    /// Whether panels below 4 m² mirror only short waves and scatter long ones, but for those that hang at a wall or lean out
+    /// Makes panels below 4 m² mirror only short waves and scatter long ones, except panels that hang at a wall or lean out
     /// of one.
     pub panel_size: bool,
-    /// Whether surfaces absorb more of what grazes them and less of what meets them head on; their tables' coefficients are
-    /// for sound from all sides. Without it they hold for every angle.
+    /// Makes surfaces absorb more at grazing and less at normal incidence; their tables' coefficients are for a diffuse
+    /// field. Without it they hold for every angle.
     pub absorption_by_angle: bool,
     /// Temperature, humidity, pressure.
     pub air: Air,
-    /// Whether air absorbs.
+    /// Enables absorption by air.
     pub air_absorption: bool,
-    /// Whether sound passes through walls and doors by their materials' transmission loss.
+    /// Lets sound pass through walls and doors by their materials' transmission loss.
     pub transmission: bool,
-    /// Whether sound bends around edges: ways around what hides the source, and what edges beside the straight line take.
+    /// Enables diffraction: paths around what hides the source, and the shadowing by edges beside the straight line.
     pub diffraction: bool,
     /// Radius of the spherical head, m; 0.03 to 0.2.
     pub head_radius_m: f64,

@@ -1,4 +1,4 @@
-//! How loud a source is, or how sensitive a microphone, towards each side.
+//! Directivity of sources and microphones.
 
 use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::error::{AcousticsError, range};

@@ -13,19 +13,19 @@ pub const NEAREST_M: f64 = 0.1;
 pub struct PropagationPath {
     /// The planes it is reflected by, from the source on. Shape (order,).
     pub planes: Vec<u32>,
-    /// Where it bends around edges, from the source on, m; a path that bends is not reflected. Shape (0 to 2,).
+    /// Points at which it bends around edges, from the source on, m; a diffracted path is not reflected. Shape (0 to 2,).
     pub bends: Vec<Vec3>,
     /// Its length, m.
     pub length_m: f64,
     /// Energy at the receiver re 1/d² of a free path, air included. Shape (band,).
     pub energy: BandValues,
-    /// Where it comes from at the receiver, unit length, world.
+    /// Direction of arrival: from the receiver towards the incoming sound, unit length, world.
     pub arrival: Vec3,
-    /// Where it leaves the source to, unit length, world.
+    /// Direction of departure from the source, unit length, world.
     pub departure: Vec3,
-    /// How many walls it passes through.
+    /// Number of walls that it passes through.
     pub walls: u32,
-    /// Whether its pressure is upside down: it left the source from a lobe of negative gain.
+    /// True for inverted pressure: it left the source from a lobe of negative gain.
     pub inverted: bool,
 }
 
@@ -80,14 +80,14 @@ impl EnergyHistogram {
 /// Spans of time in [`RayStatistics::error_over_time`].
 pub const SPAN_COUNT: usize = 7;
 
-/// How the rays fared.
+/// Statistics of the traced rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RayStatistics {
     /// Rays that started.
     pub rays: u64,
     /// Straight pieces that ended on a surface.
     pub segments: u64,
-    /// How often a ray left the house; what rays split into counts, too.
+    /// Number of rays that left the house, those that rays split into included.
     pub escaped: u64,
     /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls that absorb alike.
     pub mean_free_path_m: f64,
@@ -110,9 +110,9 @@ pub struct Echogram {
     pub paths: Vec<PropagationPath>,
     /// Everything else.
     pub tail: EnergyHistogram,
-    /// How the rays fared.
+    /// Statistics of the traced rays.
     pub trace: RayStatistics,
-    /// Where the source is, m.
+    /// Position of the source, m.
     pub source: Vec3,
     /// The straight distance from source to receiver, m, whatever stands between: nothing is heard before that.
     pub direct_length_m: f64,

@@ -1,4 +1,4 @@
-//! What can go wrong.
+//! Errors of the acoustics engine.
 
 /// Why an acoustic call was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -7,13 +7,13 @@ pub enum AcousticsError {
     /// A number of a configuration is out of range.
     #[error("{at}: {field} is {found}; allowed are {allowed}")]
     Range {
-        /// Where the number stands.
+        /// Name of the number.
         at: &'static str,
         /// The field.
         field: &'static str,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A source or receiver is nowhere.
@@ -43,9 +43,9 @@ pub enum AcousticsError {
     /// A signal that does not exist.
     #[error("no signal {name:?}; there are {known:?}")]
     UnknownSignal {
-        /// What was asked for.
+        /// The name given.
         name: String,
-        /// What there is.
+        /// The names that exist.
         known: Vec<&'static str>,
     },
     /// A sound file that cannot be a source.
@@ -53,11 +53,11 @@ pub enum AcousticsError {
     SoundFile {
         /// The file.
         name: String,
-        /// What is wrong.
+        /// The fault.
         what: String,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// A measurement that is no head.

@@ -1,9 +1,9 @@
-//! What a microphone hears: rays, band materials, impulse responses.
+//! Sound at microphones and ears: ray tracing, band materials, impulse responses.
 //!
-//! An [`AcousticScene`] is a house as sound sees it. Between a [`SoundSourcePose`] and a [`Receiver`] it finds an [`Echogram`] (exact
-//! early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A [`Stream`] convolves
-//! sources with them, block by block, in step with a world. [`signals`], [`recordings`] and [`contact`] are what things sound like, and
-//! [`metrics`] what rooms sound like.
+//! An [`AcousticScene`] is the acoustic model of a house. Between a [`SoundSourcePose`] and a [`Receiver`] it finds an
+//! [`Echogram`] (exact early paths and a traced energy tail, per octave band), and from that an [`ImpulseResponse`]. A
+//! [`Stream`] convolves sources with them, block by block, in step with a world. [`signals`], [`recordings`] and
+//! [`contact`] are the sounds of things, and [`metrics`] the acoustic parameters of rooms.
 //!
 //! Units: pressure in Pa, energy e = 1/d² for a free path of d metres (amplitude 1/d re 1 m), sample 0 of a response is the
 //! moment of the impulse. Channels: left, right.

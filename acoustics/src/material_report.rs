@@ -1,4 +1,4 @@
-//! What sound meets in a house, for people: areas, absorption, and what is only a guess.
+//! Report of a house's acoustic materials: areas, absorption, and the share of default materials.
 
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::propagation_data::PropagationData;
@@ -22,13 +22,13 @@ pub struct MaterialAcoustics {
     pub absorption: BandValues,
     /// Scattering in force. Shape (band,).
     pub scattering: BandValues,
-    /// Whether nobody said what it is made of, so that the library's default stands in.
+    /// True if the material names no substance, so that the library's default is used.
     pub is_default: bool,
-    /// Whether a parameter of the state overrides it.
+    /// True if a parameter of the state overrides it.
     pub is_overridden: bool,
 }
 
-/// What sound meets in a house.
+/// The acoustic materials of a house.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AcousticReport {
     /// Materials that have area, the largest first.

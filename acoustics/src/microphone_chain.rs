@@ -29,7 +29,7 @@ struct ChainStage {
     stage: Box<dyn MicrophoneStage>,
 }
 
-/// What must be remembered of microphones so that they go on bit for bit.
+/// The state of microphone laws that a snapshot holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ChainMemory {
     channels: u64,

@@ -7,7 +7,7 @@ use realfft::num_complex::Complex;
 /// Energies below this fraction of a path's strongest band are raised to it: -120 dB.
 const FLOOR: f32 = 1e-12;
 
-/// How early the filters of ears begin before the delay, s: room for their ringing.
+/// Time by which the filters of ears begin before the delay, s: room for their ringing.
 pub(crate) const EAR_LEAD_S: f64 = 0.001;
 
 /// Time that the transforms of paths span, s.
@@ -27,9 +27,9 @@ pub(crate) struct PathFilters {
     rate_hz: f64,
     /// Logarithmic spectrum of a band whose gain is e, others 1. Shape (band, bin).
     basis: Vec<Vec<Complex<f32>>>,
-    /// What makes a response [`lead`] samples late. Shape (bin,).
+    /// Spectrum of a delay by [`lead`] samples. Shape (bin,).
     late: Vec<Complex<f32>>,
-    /// How responses end. Shape (tap,).
+    /// Fade-out of responses. Shape (tap,).
     fade: Vec<f32>,
 }
 

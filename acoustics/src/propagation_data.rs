@@ -1,4 +1,4 @@
-//! What sound meets on its way through a house: all that rays, images and edges read, and nothing that they change.
+//! The acoustic model that rays, images and edges read and never change.
 
 use crate::bands::{BAND_COUNT, BandValues, NOMINAL_CENTRES_HZ};
 use crate::config::AcousticConfig;
@@ -11,13 +11,13 @@ use dwell_scene::{Address, House, Id, MaterialId, Pose, State};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How far sound goes from a panel to what it meets next, m: the mean free path of a living room.
+/// Distance from a panel to the next surface on a path, m: the mean free path of a living room.
 const NEXT_WAY_M: f64 = 3.0;
 
-/// Planes, edges, materials and air of a house as they are in one world.
+/// Planes, edges, materials and air of a house in the state of one world.
 ///
-/// What belongs to the house (its planes) is shared by clones; what belongs to the world (overridden materials, moved
-/// planes) is not, and is small.
+/// Data of the house (its planes) is shared by clones; data of the world (overridden materials, moved planes) is not, and
+/// is small.
 #[derive(Clone, Debug)]
 pub(crate) struct PropagationData {
     house: Arc<House>,
@@ -25,11 +25,11 @@ pub(crate) struct PropagationData {
     config: AcousticConfig,
     effects: PathEffects,
     table: Arc<PlaneTable>,
-    /// Where all planes are now.
+    /// Present positions of all planes.
     planes: Vec<Plane>,
-    /// Where the edges of moving parts are now.
+    /// Present positions of the edges of moving parts.
     moving_edges: Vec<DiffractionEdge>,
-    /// Where the moving parts are now. Shape (moving part,).
+    /// Present poses of the moving parts. Shape (moving part,).
     poses: Vec<Pose>,
     /// Shape (material,).
     surfaces: Vec<AcousticSurface>,

@@ -1,4 +1,4 @@
-//! How rays leave surfaces.
+//! Offset of ray origins from surfaces.
 
 use glam::Vec3;
 

@@ -1,4 +1,4 @@
-//! Where sound starts and where it is heard.
+//! Sources and receivers of sound.
 
 use crate::directivity::Directivity;
 use crate::error::{AcousticsError, finite, range};
@@ -12,12 +12,12 @@ pub const MOST_MICROPHONES: usize = 128;
 /// Highest order of ambisonics.
 const HIGHEST_ORDER: u8 = 3;
 
-/// What radiates sound.
+/// The pose and directivity of a sound source.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SoundSourcePose {
-    /// Where it is, and its axes (forward -Z), m.
+    /// Its pose (forward -Z), m.
     pub pose: Pose,
-    /// How loud it is towards each side; its level is that on its axis.
+    /// Its directivity; its level is that on its axis.
     pub directivity: Directivity,
 }
 
@@ -59,9 +59,9 @@ impl SoundSourcePose {
 /// One microphone of an array.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Microphone {
-    /// Where it is in the array, and its axes (forward -Z), m.
+    /// Its pose in the array (forward -Z), m.
     pub array_from_microphone: Pose,
-    /// How sensitive it is towards each side.
+    /// Its directivity.
     pub directivity: Directivity,
 }
 
@@ -78,7 +78,7 @@ impl Microphone {
     }
 }
 
-/// How a receiver listens.
+/// The kind of a receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReceiverKind {
@@ -99,12 +99,12 @@ pub enum ReceiverKind {
     },
 }
 
-/// What listens.
+/// A microphone, an array or a head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Receiver {
     /// Its centre and its axes (forward -Z), m.
     pub pose: Pose,
-    /// How it listens.
+    /// Its kind.
     pub kind: ReceiverKind,
 }
 

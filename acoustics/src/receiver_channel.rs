@@ -1,4 +1,4 @@
-//! What a channel of a receiver makes of a wave from far away.
+//! Far-field response of a receiver's channel.
 
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::directivity::TabulatedPattern;
@@ -7,7 +7,7 @@ use crate::receiver::{Receiver, ReceiverKind};
 use glam::{Quat, Vec3};
 use realfft::num_complex::Complex;
 
-/// How a channel hears a wave.
+/// The response of a channel to a plane wave.
 pub(crate) struct ChannelResponse {
     /// Gain of amplitude; negative where pressure is upside down. Shape (band,).
     pub(crate) gain: BandValues,

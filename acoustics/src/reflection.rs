@@ -1,4 +1,4 @@
-//! What a surface keeps of a wave, by the angle at which it meets it.
+//! Reflection factor of a surface by angle of incidence.
 
 use crate::bands::BandValues;
 
@@ -24,7 +24,7 @@ const GRAZING: f32 = 1e-4;
 pub(crate) struct Reflection {
     /// Of air over the surface's impedance; 0 for what does not depend on the angle. Shape (band,).
     admittance: BandValues,
-    /// What is kept where the admittance keeps all. Shape (band,).
+    /// Reflected energy at the admittance of full reflection. Shape (band,).
     most: BandValues,
 }
 

@@ -1,4 +1,4 @@
-//! What a receiver hears of an impulse.
+//! Impulse responses at a receiver.
 
 use crate::echogram::Echogram;
 use crate::synthesis::CachedGains;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// impulse: there is no hidden delay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImpulseResponse {
-    /// How many channels there are: 1 for a microphone, 2 (left, right) for a head.
+    /// Number of channels: 1 for a microphone, 2 (left, right) for a head.
     pub channels: usize,
     /// Samples a second.
     pub rate_hz: u32,
@@ -18,7 +18,7 @@ pub struct ImpulseResponse {
     pub samples: Vec<f32>,
     /// The energies it was made from.
     pub echogram: Echogram,
-    /// How its noise was corrected: the same whichever way the receiver turns.
+    /// Gains that correct the level of its noise: the same for every orientation of the receiver.
     #[serde(skip)]
     pub(crate) levels: CachedGains,
 }

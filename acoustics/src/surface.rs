@@ -1,11 +1,11 @@
-//! What materials do to sound.
+//! Acoustic surface properties from materials.
 
 use crate::bands::{self, BAND_COUNT, BandValues};
 use crate::config::AcousticConfig;
 use crate::reflection::Reflection;
 use dwell_scene::{House, Material, MaterialId, State};
 
-/// What a material does to sound energy.
+/// The acoustic properties of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AcousticSurface {
     /// Energy that sound from all sides loses in a reflection.
@@ -17,7 +17,7 @@ pub(crate) struct AcousticSurface {
     pub(crate) passed: BandValues,
 }
 
-/// What a reflection makes of a wave's energy. Shapes (band,).
+/// The scattered and the mirrored energy of a reflection. Shapes (band,).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ReflectedEnergy {
     pub(crate) scattered: BandValues,
@@ -72,9 +72,9 @@ impl AcousticSurface {
         }
     }
 
-    /// Returns what is left of a wave that meets it with a cosine of incidence where so much is scattered.
+    /// Returns the reflected energy of a wave at a cosine of incidence, with `scattering` per band.
     ///
-    /// What is scattered forgets the angle that it came at, so that ways there and back lose alike.
+    /// Scattered energy does not depend on the angle of incidence, so that a path and its reverse have equal losses.
     pub(crate) fn parts(&self, cosine: f32, scattering: &BandValues) -> ReflectedEnergy {
         let kept = self.reflection.kept(cosine);
         ReflectedEnergy {

@@ -19,7 +19,7 @@ const THICKEST_WALL_M: f32 = 0.5;
 struct TransmittingWall {
     owner: SurfaceOwner,
     normal: Vec3,
-    /// Where the first of its faces is, m from the source.
+    /// Distance of its first face from the source, m.
     first_m: f32,
     /// The least energy that one of its materials lets pass.
     passed: BandValues,
@@ -62,7 +62,7 @@ pub(crate) fn transmitted(
 
 /// The far side of a wall that a ray meets.
 pub(crate) struct WallExit {
-    /// Where the ray goes on.
+    /// Origin of the ray behind the wall.
     pub(crate) start: Vec3,
     /// Energy that gets there. Shape (band,).
     pub(crate) passed: BandValues,

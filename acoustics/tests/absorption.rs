@@ -1,4 +1,4 @@
-//! What absorption and scattering do to a room as a whole, and what must be equal both ways.
+//! Absorption and scattering of whole rooms, and reciprocity.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 

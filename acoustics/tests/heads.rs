@@ -175,8 +175,8 @@ fn a_measured_sphere_is_heard_as_the_sphere() {
     }
 }
 
-/// What was measured comes out as it was, bright spots and all: 0.1 dB and 5 us from 200 Hz on (0.2 dB and 10 us below, where the
-/// bass is not the measurement's).
+/// Measured responses are reproduced, notches and peaks included: 0.1 dB and 5 us from 200 Hz on (0.2 dB and 10 us below,
+/// where the bass is not the measurement's).
 #[test]
 fn measured_directions_are_heard_as_measured() {
     let sphere = Head::sphere(RADIUS_M).unwrap();

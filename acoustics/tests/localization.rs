@@ -1,5 +1,5 @@
-//! Where an array hears a source from (V20), by a method of its own: SRP-PHAT, the steered response power with phase transform of
-//! J. H. `DiBiase` (thesis, Brown University, 2000), equation 8.2.
+//! Source localization with an array (V20), by an independent method: SRP-PHAT, the steered response power with phase
+//! transform of J. H. `DiBiase` (thesis, Brown University, 2000), equation 8.2.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 

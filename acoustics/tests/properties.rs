@@ -1,4 +1,4 @@
-//! What must hold in any room.
+//! Properties that hold in any room.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 

@@ -160,7 +160,7 @@ fn the_reverberant_level_is_that_of_a_diffuse_field() {
     assert!(error_db.abs() < 0.5, "{error_db}");
 }
 
-/// Where the border between images and tail lies changes nothing: each path is counted once.
+/// The order up to which image sources are used does not change the energy: each path is counted once.
 #[test]
 fn the_order_of_the_images_does_not_change_the_energy() {
     let totals = [0, 1, 2, 3].map(|image_order| {

@@ -48,7 +48,7 @@ fn two_rooms() -> House {
     pieces(items)
 }
 
-/// Who walks from `from` to `to` at 1 m/s, and whether the radio is carried along or stays where the way begins.
+/// A walk from `from` to `to` at 1 m/s, with the radio carried along or left at its start.
 #[derive(Clone, Copy)]
 struct Walk {
     from_m: f32,

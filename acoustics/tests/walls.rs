@@ -1,4 +1,4 @@
-//! What stands between source and receiver.
+//! Transmission through what stands between source and receiver.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 

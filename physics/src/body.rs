@@ -13,7 +13,7 @@ pub(crate) struct BodyHandle {
     pub(crate) handle: RigidBodyHandle,
 }
 
-/// What a body may do at present.
+/// The current kind of motion of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum BodyStatus {
     /// It moves.

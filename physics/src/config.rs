@@ -1,9 +1,9 @@
-//! How a physics world runs.
+//! Settings of a physics world.
 
 use crate::error::PhysicsError;
 use serde::{Deserialize, Serialize};
 
-/// How friction of two faces that touch in several points is solved.
+/// Friction model for two faces that touch in several points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactFriction {
@@ -24,15 +24,15 @@ pub struct PhysicsConfig {
     pub physics_rate_hz: f32,
     /// Substeps of the contact and joint solver in a physics step; 1 to 64, default 4.
     pub solver_substeps: u32,
-    /// How friction is solved where faces touch; default `patch`.
+    /// Friction model where faces touch; default `patch`.
     pub contact_friction: ContactFriction,
-    /// Whether things at rest sleep until something touches them; default true.
+    /// Lets bodies at rest sleep until something touches them; default true.
     pub sleeping: bool,
     /// Depth up to which two things may overlap at the start without being moved, m; 0 to 0.05, default 0.002. The
     /// solver pushes such overlaps apart gently.
     pub overlap_tolerance_m: f32,
-    /// How far a thing may be moved at the start to free it from what it overlaps, m; 0 to 1, default 0.1. What needs
-    /// more is frozen where it stands.
+    /// Largest displacement of an object at the start to free it from an overlap, m; 0 to 1, default 0.1. An object that
+    /// needs more is frozen where it is.
     pub max_start_shift_m: f32,
     /// Distance up to which two things count as touching, m; 0 to 0.02, default 0.002.
     pub touch_distance_m: f32,
@@ -45,7 +45,7 @@ pub struct PhysicsConfig {
     /// The most events of a control step; 1 to 100,000, default 128. Impacts come before scrapes and rolling, the strongest
     /// first; the others are counted and summed.
     pub max_events_per_step: usize,
-    /// Whether doors and drawers of the building stay shut at their closed position until they are opened; default true.
+    /// Keeps doors and drawers of the building shut at their closed position until they are opened; default true.
     pub latches: bool,
 }
 

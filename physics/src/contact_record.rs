@@ -9,17 +9,17 @@ use crate::dynamics::Dynamics;
 use crate::joints::JointCoordinate;
 use rapier3d::dynamics::RigidBodyHandle;
 
-/// What is remembered of contacts from step to step.
+/// Contact data kept from step to step.
 #[derive(Clone, Default)]
 pub(crate) struct ContactRecord {
     pub(crate) tracker: ContactTracker,
-    /// What the last control step did not tell one by one.
+    /// The events of the last control step that were merged instead of reported one by one.
     pub(crate) merged: MergedEvents,
-    /// How bodies moved before the physics step.
+    /// The motion of each body before the physics step.
     motion: Vec<BodyMotion>,
 }
 
-/// What contacts did in a physics step.
+/// The effects of contacts in a physics step.
 pub(crate) struct SolvedContacts {
     /// Bodies that flew freely and hit something.
     landed: Vec<RigidBodyHandle>,

@@ -1,4 +1,4 @@
-//! What can go wrong in physics.
+//! Errors of the physics engine.
 
 /// A fault of physics, with its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -7,23 +7,23 @@ pub enum PhysicsError {
     /// A number outside its range.
     #[error("{at}: {field} is {found}; allowed is {allowed}")]
     Range {
-        /// Where it stands.
+        /// Path of the value.
         at: String,
         /// The field's name.
         field: &'static str,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A state that belongs to another house, or was changed from outside.
     #[error("the state has {found} {what}, but this physics world has {expected}")]
     ForeignState {
-        /// What was counted.
+        /// The kind of item that was counted.
         what: &'static str,
-        /// How many the state has.
+        /// Their number in the state.
         found: usize,
-        /// How many physics has.
+        /// Their number in the physics world.
         expected: usize,
     },
     /// An agent that does not exist.
@@ -31,7 +31,7 @@ pub enum PhysicsError {
     UnknownAgent {
         /// Its number.
         index: usize,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
     /// A law that acts on something that does not exist.
@@ -39,7 +39,7 @@ pub enum PhysicsError {
     LawTarget {
         /// The law's id.
         law: &'static str,
-        /// What kind of thing it acts on.
+        /// The kind of target that the law acts on.
         kind: &'static str,
         /// The name that was asked for.
         name: String,
@@ -51,7 +51,7 @@ pub enum PhysicsError {
     LawUnfit {
         /// The law's id.
         law: &'static str,
-        /// What it was told to act on.
+        /// The target as given.
         what: String,
         /// Why it cannot, and what it could.
         why: String,
@@ -59,7 +59,7 @@ pub enum PhysicsError {
     /// Something that cannot be put anywhere.
     #[error("{what} cannot be set: {why}")]
     Unmovable {
-        /// What was to be put somewhere.
+        /// The body or joint to be placed.
         what: String,
         /// Why it cannot be.
         why: String,
@@ -67,13 +67,13 @@ pub enum PhysicsError {
     /// More than a physics world can hold.
     #[error("{what}: {found}; physics holds at most {most}. {change}")]
     TooMany {
-        /// Where it is, and what was counted.
+        /// The items that were counted, and their place.
         what: String,
-        /// How many there are, as far as they were counted.
+        /// Their number, as far as they were counted.
         found: String,
-        /// How many are allowed.
+        /// The largest number allowed.
         most: usize,
-        /// What to change.
+        /// The remedy.
         change: &'static str,
     },
     /// Bytes that are no snapshot of this world.

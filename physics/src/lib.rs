@@ -1,4 +1,4 @@
-//! What moves and touches; rapier stays behind this wall.
+//! Rigid bodies, joints and contacts; rapier stays behind this wall.
 //!
 //! ```
 //! use dwell_physics::{AgentControl, PhysicsConfig, PhysicsWorld};

@@ -1,4 +1,4 @@
-//! What a world can hold. It is asked before room is taken for what would be too much; houses of people stay far below.
+//! Limits on the size of a world, checked before memory is allocated; houses that people live in stay far below them.
 
 use crate::convert::to_rapier;
 use crate::error::PhysicsError;
@@ -25,12 +25,12 @@ pub(crate) const MOST_BOXES_THAT_MEET: usize = 10_000_000;
 /// Most pairs of a body on a joint and a piece that pass through each other: of one object, and where they overlap.
 pub(crate) const MOST_PASSING_PAIRS: usize = 300_000;
 
-/// How far boxes reach beyond their pieces for rapier, m: half of its prediction distance.
+/// Margin of pieces' boxes in rapier, m: half of its prediction distance.
 const REACH_M: f32 = 0.01;
 /// Pairs from which on making a world is looked at for whether it is to stop between them.
 const MANY_PAIRS: usize = 10_000;
 
-/// Whether pairs of a world's pieces are so many that a flush takes long.
+/// The number of pairs of pieces in a world; with many of them a flush takes long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Crowding {
     Few,
@@ -123,7 +123,7 @@ pub(crate) fn check_passing(
 
 /// Returns how many pairs of pieces rapier will keep as a world begins.
 fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
-    /// What stands belongs to one body.
+    /// The owner of all static pieces.
     const STANDS: u32 = u32::MAX;
     let mut boxes: Vec<Aabb> = Vec::new();
     let mut owners: Vec<u32> = Vec::new();

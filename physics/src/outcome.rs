@@ -1,4 +1,4 @@
-//! What comes of actions, at once or later.
+//! Outcomes of actions, immediate and delayed.
 
 use dwell_scene::{AgentId, EntityId, ObjectId};
 use glam::Vec3;
@@ -122,21 +122,21 @@ impl OutcomeCode {
     ];
 }
 
-/// What an agent points at.
+/// The thing that an agent points at.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointedTarget {
     /// The sensors' id.
     pub entity: EntityId,
-    /// Where, m.
+    /// The point, m.
     pub point: Vec3,
     /// From the eye, m.
     pub distance_m: f32,
 }
 
-/// What came of an action.
+/// The outcome of an action.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActionOutcome {
-    /// Whether it worked, or began to.
+    /// True if it succeeded, or began an operation that goes on.
     pub success: bool,
     /// Why.
     pub code: OutcomeCode,
@@ -144,7 +144,7 @@ pub struct ActionOutcome {
     pub sentence: String,
     /// The object it was about.
     pub object: Option<ObjectId>,
-    /// What was pointed at, after [`crate::actions::Point`].
+    /// The result of [`crate::actions::Point`].
     pub pointed: Option<PointedTarget>,
 }
 
@@ -173,12 +173,12 @@ impl ActionOutcome {
     }
 }
 
-/// What came later of something that an agent began.
+/// The outcome of an operation that an agent began in an earlier step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DelayedOutcome {
     /// Whose action it was; `None` when the state asked for it.
     pub agent: Option<AgentId>,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: ActionOutcome,
 }
 

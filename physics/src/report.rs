@@ -1,4 +1,4 @@
-//! What was found and done when a world started.
+//! The repairs made when a world started.
 
 use dwell_scene::{AgentId, JointId, ObjectId};
 use serde::Serialize;
@@ -10,7 +10,7 @@ pub struct MovedObject {
     pub object: ObjectId,
     /// The deepest overlap that was found, m.
     pub overlap_m: f32,
-    /// How far it was moved, m.
+    /// Distance it was moved, m.
     pub distance_m: f32,
 }
 
@@ -39,11 +39,11 @@ pub struct PassingJoint {
 pub struct MovedAgent {
     /// The agent.
     pub agent: AgentId,
-    /// How far it was moved, m.
+    /// Distance it was moved, m.
     pub distance_m: f32,
 }
 
-/// What was found and done when a world started.
+/// The overlaps found and the repairs made when a world started.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StartReport {
     /// Rigid bodies that can move.

@@ -1,4 +1,4 @@
-//! What a hinge sounds like that sticks and slips.
+//! Sound of a hinge that sticks and slips.
 
 use super::impact_force::add_half_sine;
 use super::radiation::Radiator;
@@ -23,15 +23,15 @@ const SMOOTH_M_S: f64 = 0.012;
 /// and a hinge that stands is silent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreakSound {
-    /// Where, m.
+    /// Position, m.
     pub position: Vec3,
     /// The angles at the beginning and at the end of the stretch, rad.
     pub angle_rad: [f32; 2],
-    /// How long the stretch is, s; 0.001 to 2.
+    /// Duration, s; 0.001 to 2.
     pub length_s: f32,
     /// The hinge's friction, N·m.
     pub friction_n_m: f32,
-    /// What hangs on it, and what it hangs on.
+    /// The part that turns on the hinge, and the one that carries it.
     pub partners: [ContactPartner; 2],
     /// The hinge.
     pub place: RandomKey,

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// How a substance bends, yields and rings. Units, ranges and sources stand in `assets/ringing.toml`.
+/// Elastic properties of a substance: stiffness, yield and damping. Units, ranges and sources stand in `assets/ringing.toml`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticProperties {
     /// Young's modulus for bending, Pa.

@@ -1,4 +1,4 @@
-//! What a step sounds like.
+//! Sound of a footstep.
 
 use super::friction_noise::{FrictionSound, FrictionSoundKind};
 use super::impact_force::{add_half_sine, hertz_s, modulus_pa};
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 /// Foot and shank, over the mass of the body (D. A. Winter, *Biomechanics and Motor Control of Human Movement*, 2009, table 4.1).
 const LEG: f64 = 0.061;
-/// How fast a heel comes down, over the speed of walking: 0.3 m/s at 1.3 m/s (D. A. Winter, Hum. Mov. Sci. 11, 1992, some
-/// 0.4 m/s along the ground and less across it).
+/// Speed of the heel at impact, over walking speed: 0.3 m/s at 1.3 m/s (D. A. Winter, Hum. Mov. Sci. 11, 1992, some 0.4 m/s
+/// along the ground and less across it).
 const HEEL: f64 = 0.23;
 /// Radius of the heel, m.
 const HEEL_M: f64 = 0.03;
@@ -22,7 +22,7 @@ const EDGE_M: f64 = 0.003;
 /// When the forefoot follows, over the time between steps, and how hard, over the heel.
 const TOE_AFTER: f64 = 0.2;
 const TOE: f64 = 0.35;
-/// How long the sole rubs, s, and how fast, over the speed of walking.
+/// Duration of the sole's rubbing, s, and its speed over walking speed.
 const RUB_S: f32 = 0.08;
 const RUB_SPEED: f32 = 0.15;
 const SOLE: &str = "rubber";
@@ -31,15 +31,15 @@ const EDGE_OF: &str = "plastic";
 /// A step of somebody who walks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FootstepSound {
-    /// Where the foot comes down, m.
+    /// Position of the foot, m.
     pub position: Vec3,
     /// Of the whole body, kg; 1 to 1,000.
     pub mass_kg: f32,
-    /// How fast it walks, m/s; at least 0.
+    /// Walking speed, m/s; at least 0.
     pub speed_m_s: f32,
     /// The time between two steps, s.
     pub period_s: f32,
-    /// What is trodden on.
+    /// The floor underfoot.
     pub floor: ContactPartner,
     /// Tells steps apart.
     pub key: RandomKey,

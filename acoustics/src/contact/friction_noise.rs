@@ -1,4 +1,4 @@
-//! What scraping and rolling sound like.
+//! Sound of sliding and rolling.
 
 use super::impact_force::modulus_pa;
 use super::radiation::Radiator;
@@ -8,7 +8,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
-/// How one thing moves over the other.
+/// The kind of relative motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrictionSoundKind {
     /// It slides.
@@ -39,21 +39,21 @@ const PATCH_M: f64 = 1.5e-3;
 /// A stretch of scraping or rolling; stretches that follow each other at half their length are one sound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionSound {
-    /// Where, m.
+    /// Position, m.
     pub position: Vec3,
-    /// Whether it slides or rolls.
+    /// Sliding or rolling.
     pub kind: FrictionSoundKind,
     /// The normal force between the two, N.
     pub force_n: f32,
-    /// How fast one passes the other, m/s.
+    /// Relative speed, m/s.
     pub speed_m_s: f32,
-    /// How long the stretch is, s: it swells over its first half and fades over its second; 0.001 to 2.
+    /// Duration, s: it swells over its first half and fades over its second; 0.001 to 2.
     pub length_s: f32,
     /// The two.
     pub partners: [ContactPartner; 2],
-    /// What is random in the noise.
+    /// Random key of the noise.
     pub key: RandomKey,
-    /// Where on the two they touch: the same as long as the touch lasts.
+    /// Random key of the contact position on the two: the same as long as the contact lasts.
     pub place: RandomKey,
 }
 

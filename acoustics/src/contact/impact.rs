@@ -1,4 +1,4 @@
-//! What two things sound like that hit each other.
+//! Sound of an impact.
 
 use super::impact_force::{add_half_sine, lasts_s};
 use super::radiation::Radiator;
@@ -17,11 +17,11 @@ const RINGS: f64 = 0.02;
 /// panel or shell that they are taken for, damped as their substance is; walls and floors give the force itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImpactSound {
-    /// Where it happens, m.
+    /// Position, m.
     pub position: Vec3,
-    /// How hard, N·s.
+    /// Impulse, N·s.
     pub impulse_n_s: f32,
-    /// How fast they met, m/s.
+    /// Approach speed, m/s.
     pub speed_m_s: f32,
     /// The two.
     pub partners: [ContactPartner; 2],
@@ -113,7 +113,7 @@ mod tests {
         );
     }
 
-    /// What falls from a hand: 70 to 115 dB peak at 1 m, for things and floors of every kind that is not soft.
+    /// Objects dropped from a hand: 70 to 115 dB peak at 1 m, for objects and floors of every kind that is not soft.
     #[test]
     fn blows_of_everyday_are_as_loud_as_everyday() {
         for substance in ["porcelain", "steel", "plastic", "oak", "glass", "aluminium"] {

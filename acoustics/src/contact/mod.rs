@@ -1,11 +1,11 @@
-//! What touching things sound like: blows, scrapes, rolling, creaking hinges, steps.
+//! Contact sounds: impacts, sliding, rolling, creaking hinges, footsteps.
 //!
-//! Every sound here is a force and two things that it acts on. The force comes from how they touch (`impact_force`, `friction_noise`, `creak`,
-//! `footstep`); what each makes of it from its modes (`modes`, `elastic_properties`) and from how it radiates (`radiation`). Figures
-//! of substances stand in `assets/ringing.toml`, with sources.
+//! Every sound here is a force on two bodies. The force comes from the kind of contact (`impact_force`, `friction_noise`,
+//! `creak`, `footstep`); the response of each body from its modes (`modes`, `elastic_properties`) and its radiation
+//! (`radiation`). Values of substances stand in `assets/ringing.toml`, with sources.
 //!
-//! It is a model of plain bars, panels and walls, not of a violin: things are taken for the simplest body that has their
-//! size, mass and substance.
+//! It is a model of plain bars, panels and walls, not of a violin: a body is replaced by the simplest one of its size, mass
+//! and substance.
 
 mod creak;
 mod elastic_properties;
@@ -37,13 +37,13 @@ pub struct ContactBody {
 /// One of two things that touch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPartner {
-    /// What it is made of there: a name of the materials' library; unknown ones count as its default.
+    /// Its substance at the contact: a name of the materials' library; unknown ones count as its default.
     pub substance: String,
-    /// What it is.
+    /// Its kind.
     pub kind: PartnerKind,
 }
 
-/// What a thing that is touched is.
+/// The kind of a body in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PartnerKind {
     /// A thing with modes of its own.

@@ -14,11 +14,11 @@ const BAR_ROOTS: [f64; 4] = [
 const MOST_MODES: usize = 40;
 /// The most nodal lines across one direction.
 const MOST_LINES: u32 = 12;
-/// What is narrower than this share of its length bends as a bar.
+/// Width over length below which a body bends as a bar.
 const BAR_WIDTH: f64 = 0.25;
-/// What fills less of its box is hollow.
+/// Share of its box below which a body counts as hollow.
 const SOLID_FILL: f64 = 0.4;
-/// What is audible, Hz.
+/// The audible range, Hz.
 const AUDIBLE_HZ: (f64, f64) = (20.0, 20_000.0);
 
 /// Frequency of the `n`-th bending mode (from 1 on) of a free bar, Hz.
@@ -75,13 +75,13 @@ fn warburton(m: u32) -> (f64, f64, f64) {
 pub struct BendingPanel {
     /// Its two longer edges, m, the longest first.
     pub sides_m: [f64; 2],
-    /// What bends: the whole when it is solid, one wall of it when it is hollow, m.
+    /// Thickness of the bending plate or bar, m: the whole when solid, one wall when hollow.
     pub thickness_m: f64,
     /// kg.
     pub mass_kg: f64,
-    /// What radiates, m².
+    /// Radiating area, m².
     pub area_m2: f64,
-    /// Whether it bends along its length alone.
+    /// True if it bends along its length alone.
     pub bar: bool,
 }
 

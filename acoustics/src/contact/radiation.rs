@@ -24,7 +24,7 @@ struct DecayingMode {
     energy_j: f64,
 }
 
-/// What one force makes two things radiate.
+/// The radiation of two bodies under one force.
 #[derive(Clone, Debug)]
 pub(super) struct Radiator {
     modes: Vec<DecayingMode>,
@@ -204,7 +204,7 @@ mod tests {
         );
     }
 
-    /// What W = ρ c S σ <v²> radiates arrives as p² = W ρ c / 4π, and the mode takes J φ / M.
+    /// Power radiated as W = ρ c S σ <v²> arrives as p² = W ρ c / 4π, and the mode takes J φ / M.
     #[test]
     fn a_wall_gives_the_force_and_a_body_its_mean_square_velocity() {
         let radiator = Radiator::new(

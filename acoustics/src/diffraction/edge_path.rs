@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3, Vec3};
 /// Two edges whose directions differ by less bend sound like parallel ones: the cosine of 11 degrees.
 const PARALLEL: f64 = 0.98;
 
-/// What still counts as lying in a face, as a difference of cosines.
+/// Tolerance for a point in a face, as a difference of cosines.
 const AT_FACE: f64 = 0.01;
 
 /// An edge with axes of its own.
@@ -34,15 +34,15 @@ struct EdgeCoordinates {
 
 /// The shortest way from one point to another over the line of an edge.
 pub(super) struct EdgePath {
-    /// Where it touches the edge, m.
+    /// Its point on the edge, m.
     pub(super) at: DVec3,
-    /// How much longer it is than the straight line, m.
+    /// Its length beyond that of the straight line, m.
     pub(super) detour_m: f64,
-    /// Whether the straight line passes behind the edge, through what it belongs to.
+    /// True if the straight line passes behind the edge, through the solid.
     pub(super) hidden: bool,
-    /// How much the edge stands in the way of a line in sight: 1 where the way around it goes straight on, 0 where it turns back.
+    /// Weight of the edge for a line in sight: 1 where the path around it goes straight on, 0 where it turns back.
     pub(super) facing: f64,
-    /// Whether the points are in the air around the edge: the first and the second.
+    /// True for a point in the air around the edge: the first and the second.
     pub(super) open: [bool; 2],
     /// Detours over the edge's ends against that over `at`, m; negative for an end that the way does not reach.
     pub(super) ends_m: [f64; 2],

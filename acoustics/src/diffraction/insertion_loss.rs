@@ -1,9 +1,9 @@
-//! What is left of sound that bends around an edge.
+//! Insertion loss of sound that is diffracted at an edge.
 
 use crate::bands::{BAND_COUNT, NOMINAL_CENTRES_HZ};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// What passes at the border of the shadow: -5 dB.
+/// Transmitted energy at the shadow boundary: -5 dB.
 const AT_BORDER: f64 = 0.316_227_766_016_837_94;
 /// Fresnel number of half of the full effect of a bend, for a thick obstacle's second edge.
 const SLIGHT: f64 = 0.1;

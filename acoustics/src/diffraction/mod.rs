@@ -1,8 +1,9 @@
-//! Sound that bends around edges: door frames, the ends of walls, tables, doors ajar.
+//! Diffraction around edges: door frames, the ends of walls, tables, doors ajar.
 //!
-//! Where the source is out of sight, a path leads around each edge that hides it, or around two in turn. Edges that do not hide it but
-//! are close to the straight line take some of the sound, in sight or not, so that nothing jumps at the border of the shadow. Waves that go around two sides of
-//! an obstacle and come within a quarter of their length are one wave.
+//! Where the source is out of sight, a path leads around each edge that hides it, or around two in turn. Edges that do not
+//! hide it but are close to the straight line attenuate the sound, in sight or not, so that nothing jumps at the shadow
+//! boundary. Waves that go around two sides of an obstacle and whose lengths differ by less than a quarter of their
+//! wavelength are one wave.
 
 mod edge_path;
 mod insertion_loss;
@@ -41,7 +42,7 @@ struct DiffractionPath {
     amplitude: [f64; BAND_COUNT],
 }
 
-/// Where a way touches an edge.
+/// The point at which a path touches an edge.
 #[derive(Clone, Copy)]
 struct EdgePoint {
     at: DVec3,

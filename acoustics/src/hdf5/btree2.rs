@@ -2,7 +2,7 @@
 
 use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 
-/// How a tree's nodes are laid out.
+/// The layout of a tree's nodes.
 struct BTreeLayout {
     kind: u8,
     node_size: u64,

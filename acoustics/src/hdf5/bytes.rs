@@ -7,7 +7,7 @@ use std::cell::Cell;
 /// their nodes end here.
 const MOST_STRUCTURE_BYTES: u64 = 32 << 20;
 
-/// What is wrong with a file, as a sentence.
+/// A fault of a file, as a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hdf5Fault(pub(super) String);
 
@@ -18,7 +18,7 @@ pub(super) fn refuse<T>(message: impl Into<String>) -> Hdf5Result<T> {
     Err(Hdf5Fault(message.into()))
 }
 
-/// How many bytes an address and a length take in a file.
+/// Sizes of an address and of a length in a file, bytes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FieldWidths {
     pub(super) address: usize,
@@ -79,7 +79,7 @@ impl<'a> FileBytes<'a> {
 #[derive(Debug, Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
-    /// Where `bytes` begin in the file.
+    /// Offset of `bytes` in the file.
     start: u64,
     at: usize,
     pub(super) widths: FieldWidths,

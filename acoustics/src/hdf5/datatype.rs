@@ -2,7 +2,7 @@
 
 use super::bytes::{Cursor, Hdf5Result, refuse};
 
-/// What is read: numbers and text.
+/// The supported datatypes: numbers and text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Datatype {
     Integer {

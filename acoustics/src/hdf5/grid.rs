@@ -23,7 +23,7 @@ pub(super) struct StoredChunk {
     pub(super) skipped: u32,
 }
 
-/// How chunks cover a variable.
+/// The grid of chunks of a variable.
 #[derive(Debug)]
 pub(super) struct ChunkGrid {
     /// Values of a chunk along each axis.

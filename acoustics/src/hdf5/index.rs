@@ -1,4 +1,4 @@
-//! Where the chunks of a variable are: six kinds of index.
+//! Chunk indices of a variable: six kinds.
 
 use super::arrays::{self, ArrayEntry};
 use super::btree1;

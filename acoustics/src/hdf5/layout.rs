@@ -1,4 +1,4 @@
-//! Where a variable's values are.
+//! Data layouts of variables.
 
 use super::bytes::{Cursor, Hdf5Result, refuse};
 
@@ -23,7 +23,7 @@ pub(super) struct ChunkedStorage {
     pub(super) address: Option<u64>,
 }
 
-/// How chunks are found.
+/// The kind of chunk index.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum ChunkIndex {
     /// A B-tree of version 1.

@@ -1,4 +1,4 @@
-//! What a group holds, by name.
+//! Links of a group, by name.
 
 use super::btree1;
 use super::btree2;
@@ -6,7 +6,7 @@ use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 use super::fractal_heap::FractalHeap;
 use super::header::{ObjectHeader, as_size, kind};
 
-/// What a name stands for.
+/// The target of a link.
 enum LinkTarget {
     /// An object of this file, by its header's address.
     Object(u64),

@@ -1,11 +1,11 @@
-//! HDF5 files, read: as much of the format as files of measured heads (SOFA, which is netCDF-4) are written in.
+//! HDF5 reader: the subset of the format that files of measured heads (SOFA, which is netCDF-4) use.
 //!
-//! A file is hostile until it is read. Only its own bytes are: links, values in other files and virtual datasets are refused.
-//! Whatever it states is checked against what it has before memory is taken; trees that loop end at a budget.
+//! Files are untrusted. Only the file's own bytes are read: links, values in other files and virtual datasets are refused.
+//! Stated sizes are checked against the file before memory is allocated; trees that loop end at a budget.
 //!
-//! What is read: superblocks 0 to 3; the variables of the root group, by any kind of index; integers and IEEE floats of either byte
-//! order; values in the header, in one piece and in chunks, behind deflate, shuffle and Fletcher-32; attributes of one text each.
-//! Names follow the HDF5 File Format Specification 3.0.
+//! Supported: superblocks 0 to 3; the variables of the root group, by any kind of index; integers and IEEE floats of either
+//! byte order; values in the header, contiguous and in chunks, behind deflate, shuffle and Fletcher-32; attributes of one
+//! text each. Names follow the HDF5 File Format Specification 3.0.
 
 mod arrays;
 mod attribute;

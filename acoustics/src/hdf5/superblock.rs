@@ -1,4 +1,4 @@
-//! Where a file begins: its widths and its root.
+//! The superblock: field widths and the root group of a file.
 
 use super::bytes::{Cursor, FieldWidths, FileBytes, Hdf5Result, refuse};
 
@@ -6,10 +6,10 @@ const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
 /// Before the superblock there may be a block of the user's: 512 bytes, or a power of two above.
 const LONGEST_USER_BLOCK: usize = 1 << 16;
 
-/// What the superblock says.
+/// The contents of the superblock.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Superblock {
-    /// Where it begins; all addresses count from here.
+    /// Its offset; all addresses count from here.
     pub(super) start: usize,
     pub(super) widths: FieldWidths,
     /// The address of the root group's header.

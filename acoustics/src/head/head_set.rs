@@ -83,7 +83,7 @@ impl HeadSet {
 #[derive(Clone, Debug)]
 pub(crate) struct PlacedEar {
     ear: Ear,
-    /// Where it points, world.
+    /// The ear's axis, world.
     axis: Vec3,
     head_from_world: Quat,
     head: HeadTables,

@@ -61,13 +61,13 @@ enum HeadModel {
     Measured(Arc<MeasuredTables>),
 }
 
-/// What was measured, and its tables by sample rate (Hz) and number of bins.
+/// A measurement, and its tables by sample rate (Hz) and number of bins.
 struct MeasuredTables {
     responses: HeadResponses,
     tables: Mutex<BTreeMap<(u64, usize), Arc<MeasuredHead>>>,
 }
 
-/// What a head does to sound, for one sample rate and one speed of sound.
+/// The filters of a head for one sample rate and one speed of sound.
 #[derive(Clone, Debug)]
 enum HeadTables {
     Sphere(Arc<SphericalHead>),

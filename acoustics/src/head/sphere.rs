@@ -23,7 +23,7 @@ pub fn woodworth_delay_s(cos_incidence: f64, radius_m: f64, speed_m_s: f64) -> f
     way * radius_m / speed_m_s
 }
 
-/// What a spherical head does to sound, tabulated over the angle of incidence.
+/// The filters of a spherical head, tabulated over the angle of incidence.
 ///
 /// The exact response is split into the delay of [`woodworth_delay_s`], which paths carry with sub-sample precision, and a
 /// smooth rest: head shadow, the doubling on the near side, and the longer delay of long waves.

@@ -1,4 +1,4 @@
-//! Where early sound goes: the corners of its paths.
+//! Corners of early paths.
 
 use super::sequences::mirror;
 use crate::echogram::PropagationPath;

@@ -1,4 +1,4 @@
-//! Whether a mirror image can be heard: the path back through its mirrors, in double precision and against the BVH.
+//! Visibility of image sources: the path back through the mirrors, in double precision and against the BVH.
 
 use crate::echogram::PropagationPath;
 use crate::propagation_data::PropagationData;
@@ -7,7 +7,7 @@ use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
 
-/// How far a reflection may lie from where a ray finds its surface, m.
+/// Largest distance between a reflection point and the surface that a ray finds, m.
 const TOLERANCE_M: f32 = 2e-3;
 
 pub(super) struct ImageValidator<'a> {

@@ -75,7 +75,7 @@ struct AutomaticGain {
     strength: f64,
     /// Pa².
     target: f64,
-    /// How much of the way to its aim the smoothed square goes in one sample: up, down.
+    /// Smoothing factors of the squared signal per sample: attack, release.
     pace: [f64; 2],
     most_db: f64,
     /// The smoothed square, Pa².

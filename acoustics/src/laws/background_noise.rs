@@ -75,7 +75,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
 const HOP_S: f64 = 0.064;
 /// Directions that a frame's noise comes from.
 const DIRECTIONS: usize = 8;
-/// Where noise begins, Hz.
+/// Lower limit of the noise, Hz.
 const LOWEST_HZ: f64 = 20.0;
 
 /// The field at one receiver, made of frames that overlap by half. Each is a sum of plane waves from directions and with phases

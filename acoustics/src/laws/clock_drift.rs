@@ -47,13 +47,13 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
 const HALF: usize = 32;
 /// Places between two samples for which there are weights.
 const PHASES: usize = 256;
-/// How far the recording falls back where it would overtake the world, s.
+/// Lag after a skip back where the recording would overtake the world, s.
 const BACK_S: f64 = 0.01;
-/// How far behind the offset it may be, s.
+/// Largest lag beyond the offset, s.
 const MOST_S: f64 = 1.0;
-/// How much of that it makes good at once, s.
+/// Part of that lag that one skip ahead removes, s.
 const AHEAD_S: f64 = 0.5;
-/// How long a skip is crossfaded, s.
+/// Crossfade of a skip, s.
 const FADE_S: f64 = 0.005;
 
 /// Weights of the 64 samples around places between two samples. Shape (phase, tap).
@@ -88,13 +88,13 @@ struct DriftingClock {
     most: f64,
     ahead: f64,
     fade: usize,
-    /// How far the recording is behind the world.
+    /// Lag of the recording behind the world.
     lag: f64,
-    /// How far it was before it skipped.
+    /// Lag before it skipped.
     old_lag: f64,
     /// For how long it is still crossfaded.
     fading: usize,
-    /// What was heard last, the newest at the end. Shape (channel, any).
+    /// The last samples heard, newest at the end. Shape (channel, any).
     history: Vec<Vec<f32>>,
 }
 

@@ -7,7 +7,7 @@ use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, rise};
 pub(super) struct FirFilter {
     delay: usize,
     taps: Vec<f32>,
-    /// What was heard last, the newest at the end. Shape (channel, delay + taps - 1).
+    /// The last samples heard, newest at the end. Shape (channel, delay + taps - 1).
     history: Vec<Vec<f32>>,
 }
 

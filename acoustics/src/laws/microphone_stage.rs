@@ -1,4 +1,4 @@
-//! What a law of microphones does to pressure, block by block.
+//! Stages of microphone laws, which process pressure block by block.
 
 use crate::head::HeadSet;
 use crate::receiver::Receiver;
@@ -6,17 +6,17 @@ use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Who listens, and where.
+/// The receiver of a stage, and its surroundings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StageContext<'a> {
     pub(crate) receiver: &'a Receiver,
-    /// What heads do to sound, if the receiver is one.
+    /// Head filters, if the receiver is a head.
     pub(crate) heads: &'a HeadSet,
     /// Of sound, m/s.
     pub(crate) speed_m_s: f64,
-    /// What is random in the place, for all who listen there.
+    /// Random key of the place, the same for all receivers in it.
     pub(crate) room: RandomKey,
-    /// What is random in the microphones themselves.
+    /// Random key of the microphones themselves.
     pub(crate) own: RandomKey,
 }
 
@@ -26,11 +26,11 @@ pub(crate) struct SampleBlock<'a> {
     pub(crate) listener: &'a StageContext<'a>,
     /// The pressure, Pa. Shape (channel, sample), one channel after the other.
     pub(crate) samples: &'a mut [f32],
-    /// How many channels there are, at least 1.
+    /// Number of channels, at least 1.
     pub(crate) channels: usize,
-    /// What is random in this block for this law.
+    /// Random key of this block for this law.
     pub(crate) key: RandomKey,
-    /// Whether this is all there is: nothing comes after it but silence. Else what comes is not known yet.
+    /// True if the block is the whole signal, with only silence after it. Else later samples are not known yet.
     pub(crate) whole: bool,
 }
 
@@ -47,7 +47,7 @@ impl SampleBlock<'_> {
     }
 }
 
-/// What a stage must remember to go on bit for bit.
+/// The state of a stage that a snapshot holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StageMemory {
     /// Few numbers, by the stage's own order.

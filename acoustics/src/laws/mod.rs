@@ -39,7 +39,7 @@ struct AcousticLaw {
     acts: SignalStage,
 }
 
-/// Where a law acts.
+/// The stage at which a law acts.
 enum SignalStage {
     /// On air, on sources, and on where receivers are.
     Propagation(fn(LawNumbers<'_>, &mut PathEffects)),
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// Whether blocks of any size give what one piece gives.
+    /// Checks that blocks of any size give the output of a single block.
     #[test]
     fn the_size_of_blocks_does_not_matter() {
         let mut stream = dwell_scene::random::RandomKey::root(3).stream();

@@ -1,4 +1,4 @@
-//! What laws change of the way from a source to a microphone.
+//! Effects of laws on the path from a source to a microphone.
 
 use crate::air::Air;
 use crate::bands::{self, BAND_COUNT, BandValues};
@@ -13,21 +13,21 @@ use serde::{Deserialize, Serialize};
 /// All that laws do to air and sources; the default changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PathEffects {
-    /// How much warmer the air is than it is said to be, K.
+    /// Difference of the true from the stated air temperature, K.
     pub(super) warmer_k: f64,
     /// The share of the air's absorption that there is, 0 to 1.
     pub(super) air_absorption: f64,
     /// Level of all sources above what it is said to be, dB. Shape (band,).
     pub(super) source_db: BandValues,
-    /// How sources are turned against what is said, degrees: yaw (to the left), pitch (up), in their own axes.
+    /// Rotation of sources against their stated orientation, degrees: yaw (to the left), pitch (up), in their own axes.
     pub(super) source_turn_deg: [f32; 2],
     /// Exponent of their patterns above 1.
     pub(super) source_sharpness: f32,
-    /// How much fainter they are behind than in front at 1 kHz, beside their patterns, dB.
+    /// Attenuation behind sources at 1 kHz, besides their patterns, dB.
     pub(super) source_beam_db: f32,
-    /// Where receivers are against what is said, m, in their own axes.
+    /// Offset of receivers from their stated position, m, in their own axes.
     pub(super) receiver_offset_m: [f32; 3],
-    /// How they are turned, degrees: yaw (to the left), pitch (up), roll (to the left), in their own axes.
+    /// Rotation of receivers, degrees: yaw (to the left), pitch (up), roll (to the left), in their own axes.
     pub(super) receiver_turn_deg: [f32; 3],
 }
 

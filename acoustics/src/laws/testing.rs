@@ -1,4 +1,4 @@
-//! What tests of laws share.
+//! Shared helpers of the laws' tests.
 
 use super::microphone_stage::StageContext;
 use crate::head::HeadSet;

@@ -1,4 +1,4 @@
-//! How differently two ears hear: correlation, times and levels.
+//! Binaural measures: cross-correlation, time and level differences.
 
 use super::filters::{BandWidth, ZeroPhaseFilters};
 use super::response::{DIRECT_S, energy, start};
@@ -16,18 +16,18 @@ const FINER: usize = 8;
 /// Samples to either side that tell a value between two samples.
 const SINC: usize = 16;
 
-/// What two ears hear of one impulse. Left is positive: a source to the left is earlier and louder there.
+/// The binaural measures of an impulse response. Left is positive: a source to the left is earlier and louder there.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct BinauralMetrics {
-    /// How much earlier the direct sound up to 1.5 kHz is at the left ear, s.
+    /// Interaural time difference of the direct sound up to 1.5 kHz, s.
     pub itd_s: Option<f64>,
-    /// How much louder the direct sound is at the left ear, dB.
+    /// Interaural level difference of the direct sound, dB.
     pub ild_db: Option<f64>,
     /// By octave or third octave. Shape (band,).
     pub bands: Vec<BinauralBandMetrics>,
 }
 
-/// What two ears hear in one band. `None` where nothing is heard.
+/// The binaural measures in one band. `None` where nothing is heard.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BinauralBandMetrics {
     /// Interaural cross-correlation coefficient of the first 80 ms, 0 to 1.
@@ -36,10 +36,10 @@ pub struct BinauralBandMetrics {
     pub iacc_late: Option<f64>,
     /// That of everything.
     pub iacc: Option<f64>,
-    /// How much earlier the direct sound is at the left ear, s. Above 1.5 kHz periods are shorter than the way around a head, and
-    /// it may be off by some of them.
+    /// Interaural time difference of the direct sound, s. Above 1.5 kHz periods are shorter than the path around a head,
+    /// and it may be off by several of them.
     pub itd_s: Option<f64>,
-    /// How much louder the direct sound is at the left ear, dB. In bands below 400 Hz it is blurred by its own shortness.
+    /// Interaural level difference of the direct sound, dB. In bands below 400 Hz it is blurred by its own shortness.
     pub ild_db: Option<f64>,
 }
 

@@ -5,12 +5,12 @@ use realfft::num_complex::Complex;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// How far the slopes of two neighbours overlap, as a fraction of a band.
+/// Overlap of the slopes of two neighbours, as a fraction of a band.
 const OVERLAP: f64 = 0.5;
 /// Silence after a signal in which the narrowest filter rings out before it wraps around, s.
 const RING_S: f64 = 1.0;
 
-/// How wide the bands of a measure are.
+/// The bandwidth of a measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BandWidth {
@@ -126,9 +126,9 @@ impl ZeroPhaseFilters {
         bin as f64 * self.rate_hz / self.fft.len() as f64
     }
 
-    /// Returns what a band holds of a spectrum, scaled so that a pulse keeps its energy; nothing above half the rate.
+    /// Returns a band of a spectrum as a signal, scaled so that a pulse keeps its energy; nothing above half the rate.
     ///
-    /// What rings before the signal stands at the end. Shape (sample,), longer than the signal.
+    /// Ringing before the signal wraps around to the end. Shape (sample,), longer than the signal.
     pub(super) fn band(&mut self, band: usize, spectrum: &[Complex<f32>]) -> Option<Vec<f32>> {
         let powers: Vec<f64> = (0..spectrum.len())
             .map(|bin| self.width.power(band, self.frequency_hz(bin)))

@@ -1,4 +1,4 @@
-//! How much of the early sound comes from the sides.
+//! Lateral energy fraction of early sound.
 
 use crate::bands::BAND_COUNT;
 use crate::directions::{CELL_COUNT, within};

@@ -14,7 +14,7 @@ const WELD_M: f32 = 1e-4;
 const SHORTEST_M: f32 = 0.2;
 /// Edges whose faces are folded by less count as smooth, rad: 30 degrees.
 const LEAST_FOLD_RAD: f32 = PI / 6.0;
-/// How far beside an edge its plane is looked for, m.
+/// Distance beside an edge at which its plane is looked for, m.
 const BESIDE_M: f32 = 5e-3;
 /// Pieces of an edge that turn less than this go on straight: the cosine of 1 degree.
 const STRAIGHT: f32 = 0.999_85;
@@ -23,7 +23,7 @@ const STRAIGHT: f32 = 0.999_85;
 const ON_LINE_M: f32 = 2e-3;
 /// Rims are sorted into cells of this size by points half a cell apart, m.
 const CELL_M: f32 = 0.5;
-/// How far around each of these points its rim is to be found, m: so that none of its points is missed.
+/// Search radius around each of these points for its rim, m: so that none of its points is missed.
 const PADDING_M: f32 = 0.25 * CELL_M + ON_LINE_M;
 
 /// Sides that are sorted in one go.

@@ -27,8 +27,8 @@ pub(crate) const WALL_M2: f32 = 4.0;
 pub(crate) struct ReflectorPanel {
     /// 0 for triangles without a plane.
     pub(crate) area_m2: f32,
-    /// How far it stands out of a wall behind or around it, rms over both, m; infinite for what has no wall near, for walls and
-    /// for what can move.
+    /// Relief over a wall behind or around it, rms over both, m; infinite for panels with no wall near, for walls and for
+    /// parts that can move.
     pub(crate) relief_m: f32,
 }
 

@@ -1,4 +1,4 @@
-//! How large the pieces of a plane are: triangles that touch make one panel.
+//! Panels of a plane: connected triangles, with their sizes.
 
 use super::disjoint_sets::DisjointSets;
 use super::{NO_PLANE, TRIANGLES_PER_CHECK};

@@ -1,4 +1,4 @@
-//! How far small panels stand out of the walls behind and around them.
+//! Relief of small panels over the walls behind and around them.
 
 use super::panels::{self, PanelTable};
 use super::{NO_PLANE, Plane, TRIANGLES_PER_CHECK, WALL_M2};
@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 const FURTHEST_M: f32 = 1.0;
 /// Cosine of the largest angle between a panel and its wall, 60 degrees: what stands out more steeply is no part of a rough wall.
 const LEAST_COS: f64 = 0.5;
-/// How far a panel may reach beyond its wall, m.
+/// Largest overhang of a panel beyond its wall, m.
 const BEYOND_M: f32 = 0.01;
 
 /// A wall, and the box around all its triangles.

@@ -33,7 +33,7 @@ pub struct Recording {
     samples: Vec<f32>,
 }
 
-/// What is decoded so far: frames mixed to one channel.
+/// The frames decoded so far, mixed to one channel.
 struct MonoMix<'a> {
     name: &'a str,
     rate_hz: u32,

@@ -1,6 +1,6 @@
-//! What the headers of Ogg Vorbis claim, checked before `lewton` believes it.
+//! Checks of Ogg Vorbis headers before `lewton` trusts them.
 //!
-//! The decoder takes memory for lengths and counts before it reads what they are of, so that a file of a hundred bytes could
+//! The decoder allocates memory for lengths and counts before it reads the data, so that a file of a hundred bytes could
 //! claim terabytes. Layout: Xiph.Org Foundation, Vorbis I specification, sections 3.2.1 (codebooks) and 5 (comments).
 
 use ogg::PacketReader;
@@ -14,7 +14,7 @@ const SETUP: &[u8] = b"\x05vorbis";
 /// unpacked. Encoders write some 50,000 and 300,000.
 const MOST_WORDS: u64 = 1 << 20;
 const MOST_NUMBERS: u64 = 1 << 24;
-/// What a codebook begins with.
+/// The sync pattern of a codebook.
 const SYNC: u64 = 0x56_43_42;
 /// The longest code word, bits (section 3.2.1).
 const LONGEST_WORD: u64 = 32;
@@ -22,7 +22,7 @@ const LONGEST_WORD: u64 = 32;
 /// Checks the headers of every stream in a file.
 ///
 /// # Errors
-/// What is wrong, in words: pages that cannot be read, lengths beyond the packet they stand in, codebooks above the caps.
+/// The fault as a sentence: pages that cannot be read, lengths beyond their packet, codebooks above the caps.
 pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     let mut packets = PacketReader::new(Cursor::new(bytes));
     while let Some(packet) = packets.read_packet().map_err(|error| error.to_string())? {

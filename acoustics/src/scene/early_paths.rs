@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct EarlyPath {
     /// The source, its reflections or bends in order, the receiver, m. Shape (2 to 6,).
     pub points: Vec<Vec3>,
-    /// What arrives over it.
+    /// The propagation path.
     pub path: PropagationPath,
 }
 

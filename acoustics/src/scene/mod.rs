@@ -27,13 +27,13 @@ use std::sync::Arc;
 
 /// Places within a cell of this size have the same random arrivals, m.
 const CELL_M: f64 = 0.1;
-/// Where cells begin: off the round numbers that things are put at.
+/// Offset of the cells: off the round numbers at which things are placed.
 const CELL_START: f64 = 0.32;
 
-/// A house prepared for sound, as it stands in one world.
+/// The acoustic model of a house in the state of one world.
 ///
-/// What belongs to the house (its planes) is shared by clones; what belongs to the world (overridden materials, moved
-/// planes) is not, and is small. Make one, and clone it for each world.
+/// Data of the house (its planes) is shared by clones; data of the world (overridden materials, moved planes) is not, and
+/// is small. Make one, and clone it for each world.
 #[derive(Clone, Debug)]
 pub struct AcousticScene {
     /// As it was asked for.
@@ -42,7 +42,7 @@ pub struct AcousticScene {
     data: PropagationData,
     synthesizer: Arc<Synthesizer>,
     heads: Arc<HeadSet>,
-    /// What air takes above the highest band, where that can be heard.
+    /// Absorption by air above the highest band, where that can be heard.
     upper_air: Option<Arc<UpperAir>>,
 }
 

@@ -21,18 +21,18 @@ use loop_builder::LoopBuilder;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// What is known about a signal.
+/// The description of a signal.
 #[derive(Clone, Copy, Debug)]
 pub struct SignalInfo {
     /// The name, as a [`SoundEmitter`](dwell_scene::SoundEmitter) gives it.
     pub name: &'static str,
-    /// What it sounds like.
+    /// Its sound in words.
     pub description: &'static str,
     /// After how long it repeats, s.
     pub loop_s: f64,
     /// A usual level at 1 m, dB SPL.
     pub usual_level_db: f32,
-    /// Where that level comes from.
+    /// Source of that level.
     pub level_source: &'static str,
     paint: fn(&mut LoopBuilder),
 }
@@ -219,7 +219,7 @@ mod tests {
         assert_eq!(opened.samples(), alone.normalized());
     }
 
-    /// Where a loop begins again, the step is no larger than steps inside of it are.
+    /// At the seam of a loop the step is no larger than steps inside it.
     #[test]
     fn loops_have_no_seam() {
         for signal in list() {

@@ -1,4 +1,4 @@
-//! What is heard in a block: which sources, and which of them need new impulse responses.
+//! The plan of a block: sources that are heard, and those that need new impulse responses.
 
 use super::source_state::{self, ListeningSituation, SituationChange, UpdateThreshold};
 use super::update_queue::{PartialTrace, UpdateRequest};
@@ -13,19 +13,19 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
 use glam::Vec3;
 
-/// What does not glide is computed anew after movements so many times smaller.
+/// Factor by which update distances are smaller for responses without gliding delays.
 const STIFF: f32 = 5.0;
 /// A source that begins so close to another, counted with the listener's way since, begins with its tail, m.
 const BESIDE_M: f64 = 2.0;
 /// Large parts that move less than this in a block stand still, m.
 const STILL_M: f32 = 5e-3;
 
-/// What a voice does in one block.
+/// The plan of a source for one block.
 pub(super) struct PlannedSource {
     pub(super) id: u64,
-    /// Whether its source is heard; else it only rings out.
+    /// True for a source that still sounds; else it only rings out.
     pub(super) named: bool,
-    /// Where source and receiver are.
+    /// Positions of source and receiver.
     pub(super) place: (Vec3, Pose),
     /// The impulse response from now on, and the situation it belongs to; `None`: as before.
     pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
@@ -33,7 +33,7 @@ pub(super) struct PlannedSource {
     pub(super) followed: Option<Vec<PropagationPath>>,
     /// Since which block a new response waits for its turn.
     pub(super) since: Option<u64>,
-    /// What was traced of it so far.
+    /// The state of its partial trace.
     pub(super) job: PartialTrace,
 }
 
@@ -46,12 +46,12 @@ struct SoundingSource {
     rank: usize,
 }
 
-/// What all sources of a block have in common.
+/// The inputs common to all sources of a block.
 pub(super) struct BlockContext<'a> {
     pub(super) rays: &'a RayScene,
     pub(super) receiver: &'a Receiver,
     pub(super) threshold: UpdateThreshold,
-    /// Whether a large part is on its way.
+    /// True while a large part moves.
     pub(super) passing: bool,
 }
 

@@ -1,4 +1,4 @@
-//! How closely a stream follows its world.
+//! Settings of a stream's updates.
 
 use crate::error::{AcousticsError, range};
 use serde::{Deserialize, Serialize};

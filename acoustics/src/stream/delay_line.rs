@@ -1,4 +1,4 @@
-//! What one channel hears of one early path over one block: a filter, and a delay that glides.
+//! Filter and gliding delay of one early path at one channel over one block.
 
 #![expect(
     clippy::inline_always,
@@ -22,7 +22,7 @@ pub(super) struct DelayedSegment<'a> {
     size: usize,
     /// Delays before the block's first sample and at its last one, samples.
     delays: (f64, f64),
-    /// Where in the history it begins, and how long it is.
+    /// Its offset in the history, and its length.
     first: i64,
     count: usize,
 }

@@ -42,7 +42,7 @@ pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationP
 
 /// Moves the paths of a source for one block.
 pub(super) struct DelayGlide<'a> {
-    /// What the source has played; the last samples are the block's.
+    /// Past samples of the source; the last ones are the block's.
     pub(super) history: &'a [f32],
     pub(super) rate_hz: f64,
     /// The weight of the new. Shape (sample,).

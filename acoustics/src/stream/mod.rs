@@ -41,13 +41,13 @@ const VERSION: u32 = 9;
 pub struct ActiveSource<'a> {
     /// Tells sources apart from block to block.
     pub id: u64,
-    /// Where it is at the end of the block, m.
+    /// Its position at the end of the block, m.
     pub position: Vec3,
     /// Pressure at 1 m in the free field, Pa. Shape (block,).
     pub signal: &'a [f32],
 }
 
-/// What a block cost.
+/// The cost of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockReport {
     /// Impulse responses for which rays were traced.
@@ -66,18 +66,18 @@ pub struct BlockReport {
     pub left_out: usize,
 }
 
-/// What one receiver hears, block after block.
+/// The sound at one receiver, block after block.
 ///
 /// Each source is convolved with its impulse response; when that changes, the old and the new one are crossfaded over one
-/// block, so that nothing clicks. While source or listener move, the straight way and the strongest reflections are traced anew in
-/// every block and heard by delays that glide, which gives the Doppler shift; the response holds the rest. A source that is no longer
-/// named rings out.
+/// block, so that nothing clicks. While source or listener move, the direct path and the strongest reflections are traced
+/// again in every block and rendered by gliding delays, which gives the Doppler shift; the response holds the rest. A
+/// source that is no longer named rings out.
 #[derive(Debug)]
 pub struct Stream {
     scene: AcousticScene,
     config: StreamConfig,
     key: RandomKey,
-    /// What is random in the place.
+    /// Random key of the place.
     room: RandomKey,
     threads: Threads,
     partitions: usize,
@@ -87,7 +87,7 @@ pub struct Stream {
     block: u64,
     /// By id.
     voices: Vec<SourceState>,
-    /// Where the large parts were at the end of the last block. Shape (large part,); empty before the first.
+    /// Poses of the large parts at the end of the last block. Shape (large part,); empty before the first.
     parts: Vec<Pose>,
     microphones: MicrophoneChain,
 }

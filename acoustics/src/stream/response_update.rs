@@ -1,4 +1,4 @@
-//! How a stream finds a response: by all rays, by few and what it remembers, or piece by piece.
+//! Computation of a stream's response: from all rays, from few and the previous tail, or in pieces.
 
 use super::tail_update::TailHistory;
 use crate::echogram::Echogram;

@@ -1,5 +1,5 @@
-//! What a snapshot may say of a stream. Its check sum tells damage, not who wrote it: whatever it holds, nothing that follows from it
-//! takes memory without bound, loops without end or panics.
+//! Validation of a stream's snapshot. Its checksum detects damage, not its author: whatever it holds must not lead to
+//! unbounded memory, endless loops or panics.
 
 use super::early::TrackedPath;
 use super::source_state::{ListeningSituation, SourceMemory};
@@ -14,7 +14,7 @@ const SPEEDS_M_S: (f64, f64) = (200.0, 500.0);
 /// Checks the voices of a snapshot for a stream in `scene`.
 ///
 /// # Errors
-/// What is not so, in words.
+/// The violated condition, in words.
 pub(super) fn check(scene: &AcousticScene, voices: &[SourceMemory]) -> Result<(), String> {
     if !voices.is_sorted_by(|a, b| a.id < b.id) {
         return Err("its sources are not in the order of their ids".to_owned());

@@ -23,14 +23,14 @@ pub(super) struct ListeningSituation {
     pub(super) parts: Vec<Pose>,
     pub(super) overrides: BTreeMap<Address, f64>,
     pub(super) effects: PathEffects,
-    /// Whether not all rays have told of the tail: large parts were on their way, so that it is partly remembered from where they were
-    /// before, or only a few rays were traced yet.
+    /// True for a tail that is not traced with all rays: large parts moved, so that it is partly that of their earlier
+    /// poses, or only a few rays were traced yet.
     pub(super) rough: bool,
     /// The tail's random arrivals: those between the places where it was first heard.
     pub(super) noise: RandomKey,
 }
 
-/// How a situation differs from another.
+/// The kind of change between two situations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum SituationChange {
     /// Not so that it could be heard.
@@ -41,7 +41,7 @@ pub(super) enum SituationChange {
     Moved,
 }
 
-/// How large differences must be.
+/// Least differences that count as a change.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UpdateThreshold {
     pub(super) distance_m: f32,
@@ -146,7 +146,7 @@ impl ListeningSituation {
     }
 }
 
-/// What must be remembered of a source so that it goes on bit for bit.
+/// The state of a source that a snapshot holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SourceMemory {
     pub(super) id: u64,
@@ -187,10 +187,10 @@ impl TraceJob {
     }
 }
 
-/// How the early paths of a source are heard while something moves.
+/// The early paths of a source while something moves.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrackedPaths {
-    /// Where source and receiver were at the end of the last block.
+    /// Positions of source and receiver at the end of the last block.
     pub(super) last: Option<(Vec3, Pose)>,
     /// Early paths outside the filter, once anything has moved.
     pub(super) followed: Option<Vec<TrackedPath>>,

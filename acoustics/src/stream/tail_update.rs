@@ -1,10 +1,10 @@
-//! What a listener who moves on still knows of the tail.
+//! Reuse of the previous tail for a listener who moves.
 
 use crate::config::AcousticConfig;
 use crate::echogram::{Echogram, SPAN_COUNT};
 use crate::tail::spans;
 
-/// How far early sound stays alike, m.
+/// Distance over which early sound stays similar, m.
 const NEAR_M: f64 = 0.3;
 /// Late sound stays alike over this fraction of its way: it has mixed.
 const OF_THE_WAY: f64 = 0.3;
@@ -12,9 +12,9 @@ const OF_THE_WAY: f64 = 0.3;
 /// The least weight of the new, in shares of its rays: what is remembered comes from many updates.
 const LEAST: f64 = 0.67;
 
-/// What comes before this has not mixed: it changes with every step, s.
+/// Time before which sound has not mixed: it changes with every step, s.
 const MIXED_S: f64 = 0.04;
-/// How much the level of a mixed tail differs from place to place in one room, as a logarithm of energies: 0.5 dB.
+/// Variation of a mixed tail's level between places in one room, as a logarithm of energies: 0.5 dB.
 const PLACES: f64 = 0.115;
 /// A difference that neither chance nor place makes, in standard deviations of a normal distribution.
 const SURPRISE: f64 = 5.0;
@@ -26,7 +26,7 @@ const FEW: f64 = 0.5;
 /// The tail that was heard before, and what has changed since.
 pub(super) struct TailHistory<'a> {
     pub(super) before: &'a Echogram,
-    /// How far source and receiver have moved since, m.
+    /// Distance that source and receiver have moved since, m.
     pub(super) moved_m: f64,
     /// The share of all rays that is traced anew.
     pub(super) share: f64,

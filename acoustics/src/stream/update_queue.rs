@@ -18,9 +18,9 @@ use crate::tail::TraceProgress;
 use dwell_scene::Pose;
 use glam::Vec3;
 
-/// What finding a response's early paths and making the response count as, rays.
+/// Cost of a response's early paths and synthesis, in rays.
 const OF_A_RESPONSE: usize = 150;
-/// What turning a response counts as, rays.
+/// Cost of rotating a response, in rays.
 const OF_A_TURN: usize = 50;
 /// The fewest rays that tell anything of a tail.
 const FEWEST: usize = 64;
@@ -28,33 +28,33 @@ const FEWEST: usize = 64;
 /// A source in a block, and what it needs.
 pub(super) struct UpdateRequest<'a> {
     pub(super) id: u64,
-    /// Whether its source is heard; else it only rings out.
+    /// True for a source that still sounds; else it only rings out.
     pub(super) named: bool,
     /// Its place among the sources, of which the loudest come first.
     pub(super) rank: usize,
-    /// Where source and receiver are.
+    /// Positions of source and receiver.
     pub(super) place: (Vec3, Pose),
     pub(super) voice: Option<&'a SourceState>,
     pub(super) now: ListeningSituation,
     pub(super) change: SituationChange,
-    /// Whether all rays are to tell what a few have told of.
+    /// True if a tail of few rays is to be replaced by one of all rays.
     pub(super) stale: bool,
     /// The block in which a new response became due.
     pub(super) since: u64,
     pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
     pub(super) job: PartialTrace,
-    /// Whether a new response still waits for its turn or for rays.
+    /// True while a new response still waits for its turn or for rays.
     pub(super) is_waiting: bool,
 }
 
-/// What becomes of rays that are traced piece by piece.
+/// The outcome of a partial trace.
 pub(super) enum PartialTrace {
     Unchanged,
     None,
     Advanced(Box<TraceJob>),
 }
 
-/// How soon a response is needed.
+/// The urgency of a new response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum UpdateUrgency {
     /// There is none, or none that may still be heard.
@@ -84,13 +84,13 @@ impl<'a> UpdateRequest<'a> {
     }
 }
 
-/// What a block may still compute.
+/// The computation left for a block.
 struct RayBudget {
     /// Rays; `None`: as many as are needed.
     left: Option<usize>,
-    /// Whether any response was computed: one always is.
+    /// True once any response was computed: one always is.
     served: bool,
-    /// Whether one tail has settled: one does in a block.
+    /// True once one tail was refined to all rays: one per block is.
     settled: bool,
 }
 

@@ -72,7 +72,7 @@ impl FractionalDelay {
     }
 }
 
-/// What [`FractionalDelay::add`] does.
+/// The arguments of [`FractionalDelay::add`].
 struct DelayedAdd<'a> {
     taps: &'a FractionalDelay,
     out: &'a mut [f32],

@@ -24,9 +24,9 @@ use upper_air::UpperBands;
 
 /// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
-/// What is left of the energy where an impulse response may end: -70 dB.
+/// Remaining energy at which an impulse response may end: -70 dB.
 const END: f64 = 1e-7;
-/// How wide the tail's bands cross, octaves: as little as rings no longer than a window of their energy.
+/// Crossover width of the tail's bands, octaves: the least that rings no longer than a window of their energy.
 const OVERLAP: f64 = 0.5;
 /// Length of the filters of paths that move, s.
 const SHORT_S: f64 = 0.004;
@@ -47,7 +47,7 @@ pub(crate) struct Synthesizer {
     rate_hz: f64,
     arrivals_per_s: f64,
     filters: PathFilters,
-    /// How the filters of paths that move end.
+    /// Fade-out of the filters of moving paths.
     fade: Vec<f32>,
     longest: usize,
     /// Filter banks for a quarter, half and all of the longest response, made when first needed.
@@ -61,11 +61,11 @@ struct FilterBankSet {
     upper: UpperBands,
 }
 
-/// Who listens, in which air.
+/// The receiver, its head filters and the air.
 pub(crate) struct HearingContext<'a> {
     pub(crate) receiver: &'a Receiver,
     pub(crate) heads: &'a HeadSet,
-    /// What it takes above the highest band, where that can be heard.
+    /// Its absorption above the highest band, where that can be heard.
     pub(crate) air: Option<&'a UpperAir>,
 }
 
@@ -351,7 +351,7 @@ impl Synthesizer {
 /// The channels that hear paths, in which air.
 struct PathListening<'a> {
     channels: &'a [ReceiverChannel],
-    /// Whether paths end at the channel itself rather than at the centre.
+    /// True for paths that end at the channel itself rather than at the centre.
     there: bool,
     air: Option<&'a UpperAir>,
 }

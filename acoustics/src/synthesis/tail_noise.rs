@@ -19,13 +19,13 @@ const ARRIVALS_BETWEEN_POLLS: usize = 16_384;
 /// Places between two samples.
 const PHASES: usize = 64;
 
-/// How often one microphone's noise is measured and its gains corrected: what changes over time spreads in frequency, and bands cross.
+/// Rounds of measurement and gain correction for one microphone's noise: changes over time spread in frequency, and bands cross.
 const ROUNDS: usize = 2;
 /// The same of several channels. What is corrected is the centre's noise: where that is faint by chance the others' is not, so that
 /// every round costs them some of their coherence.
 const ROUNDS_OF_MANY: usize = 1;
 
-/// What the noise is made from.
+/// The inputs of the tail's noise.
 pub(super) struct TailNoise<'a> {
     pub(super) echogram: &'a Echogram,
     /// The tail's, as even over time as it is known. Shape (bin, band).
@@ -36,7 +36,7 @@ pub(super) struct TailNoise<'a> {
     /// Samples at the start in which nothing may be heard.
     pub(super) quiet: usize,
     pub(super) bank: &'a FilterBank,
-    /// What air takes above the highest band, if anything.
+    /// Absorption by air above the highest band, if any.
     pub(super) upper: Option<(&'a UpperBands, &'a UpperAir)>,
 }
 

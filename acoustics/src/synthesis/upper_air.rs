@@ -1,7 +1,7 @@
-//! What air takes of sound above the highest band.
+//! Absorption by air above the highest band.
 //!
-//! Surfaces, walls and edges do to all higher sound what they do at 8 kHz. Air takes far more of it, the more the higher it is: at
-//! 16 kHz three and a half times as much.
+//! Surfaces, walls and edges act on all higher frequencies as at 8 kHz. Absorption by air rises with frequency: at 16 kHz
+//! it is three and a half times as large.
 
 use crate::bands::{self, BAND_COUNT};
 use crate::config::AcousticConfig;
@@ -10,7 +10,7 @@ use crate::minimum_phase::PathFilters;
 use dwell_scene::interrupt::PollEvery;
 use realfft::num_complex::Complex;
 
-/// What the filters of parts ring beyond this comes in again at the other end, s: they are a third of an octave wide or more.
+/// Ringing of the parts' filters beyond this wraps around to the other end, s: they are a third of an octave wide or more.
 const WRAP_S: f64 = 0.02;
 /// Further ways leave nothing to hear, m.
 const FURTHEST_M: f64 = 1e6;
@@ -26,7 +26,7 @@ fn centres_hz(rate_hz: f64) -> impl Iterator<Item = f64> {
     centres.take_while(move |centre_hz| *centre_hz < 0.5 * rate_hz)
 }
 
-/// What air takes above the highest band beyond what it takes in that band.
+/// Absorption by air above the highest band, in excess of that in the band.
 #[derive(Debug)]
 pub(crate) struct UpperAir {
     /// Of 1 m, a logarithmic spectrum of minimum phase. Shape (bin,).

@@ -36,7 +36,7 @@ const MOST_BYTES: usize = 64 << 20;
 const THROUGH: f32 = 0.005;
 /// Rays that look around from a receiver, at most and at least.
 const PROBES: (usize, usize) = (128, 512);
-/// How far a probe that leaves the house counts, m.
+/// Distance that a probe counts that leaves the house, m.
 const OPEN_AIR_M: f32 = 20.0;
 /// Time over which directions are summed, s.
 const DIRECTION_S: f64 = 0.02;
@@ -59,13 +59,13 @@ pub(crate) struct LateReverberation {
     pub(crate) statistics: RayStatistics,
 }
 
-/// What a chunk of rays brings, each ray of power 1.
+/// The energy received from a chunk of rays, each of power 1.
 struct RayChunk {
     /// Shape (receiver, bin), flat.
     energy: Vec<BandValues>,
     /// Shape (receiver, time, cell), flat.
     directions: Vec<BandValues>,
-    /// What each ray brings over time, with all that it splits into. Shape (receiver, ray of a chunk, span), flat but for the last.
+    /// The energy from each ray over time, with all that it splits into. Shape (receiver, ray of a chunk, span), flat but for the last.
     by_ray: Vec<[f32; SPAN_COUNT]>,
     segments: u64,
     escaped: u64,
@@ -96,12 +96,12 @@ impl ReceiverSums {
     }
 }
 
-/// What the rays of a [`TailTrace`] have brought so far.
+/// The sums over the rays of a [`TailTrace`] so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TraceProgress {
     /// Those that are done.
     chunks: usize,
-    /// Whether the error is small enough already.
+    /// Set once the error is small enough.
     enough: bool,
     segments: u64,
     escaped: u64,

@@ -32,7 +32,7 @@ const FAINTEST: f32 = 1e-30;
 /// Way between two looks at how energies have spread, m: about two reflections in a living room.
 const STAGE_M: f32 = 5.0;
 
-/// What all rays of one trace have in common.
+/// The inputs common to all rays of one trace.
 pub(super) struct RayTracer<'a> {
     pub(super) data: &'a PropagationData,
     pub(super) rays: &'a RayScene,
@@ -42,7 +42,7 @@ pub(super) struct RayTracer<'a> {
     pub(super) pattern: TabulatedPattern,
     pub(super) listeners: &'a [TailReceiver],
     pub(super) turn: Quat,
-    /// Where the sequence of directions begins.
+    /// Offset of the sequence of directions.
     pub(super) place: (f64, f64),
     pub(super) bins_per_m: f32,
     pub(super) furthest_m: f32,
@@ -82,7 +82,7 @@ struct TracedRay {
     travelled_m: f32,
     /// Way since the source or the last scattering, m.
     straight_m: f32,
-    /// Whether it was ever scattered, and whether its last reflection was a mirror's.
+    /// True if it was ever scattered, and if its last reflection was specular.
     scattered: bool,
     mirrored: bool,
     /// Mirrors so far.
@@ -561,7 +561,7 @@ mod tests {
         assert!(into.len() == 9 && into.iter().all(|one| one.energy == ray(1.0).energy));
     }
 
-    /// What nobody can hear, nor divide by, is no energy.
+    /// Energy that is inaudible, and too small to divide by, counts as none.
     #[test]
     fn the_faintest_rays_end() {
         let mut into = Vec::new();

@@ -1,4 +1,4 @@
-//! What a receiver is to the rays: a point that is shone upon, and balls around it that are crossed.
+//! Receiver model of the ray tracer: a point for diffuse rain, and detection spheres around it for crossing rays.
 
 use super::OPEN_AIR_M;
 use crate::sphere_sequences::fibonacci_direction;
@@ -31,7 +31,7 @@ pub(super) struct TailReceiver {
     balls: Vec<DetectionSphere>,
     /// Volume in sight, m³.
     pub(super) seen_volume_m3: f64,
-    /// Whether the source is out of sight. Beside what is in sight, what comes through walls is not heard.
+    /// True if the source is out of sight. Beside direct sound, transmitted sound is inaudible.
     pub(super) hidden: bool,
 }
 
@@ -110,7 +110,7 @@ impl TailReceiver {
     }
 }
 
-/// Where a ray crosses a ball.
+/// The intersection of a ray with a sphere.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SphereCrossing {
     pub(super) enter_m: f32,

@@ -3,7 +3,7 @@
 use crate::echogram::{EnergyHistogram, SPAN_COUNT};
 use serde::{Deserialize, Serialize};
 
-/// Where the first span ends, s.
+/// End of the first span, s.
 const FIRST_S: f64 = 0.02;
 
 /// The span in which `time_s` lies.

@@ -5,7 +5,7 @@ use crate::space::Pose;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// How a joint moves.
+/// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointKind {
@@ -35,7 +35,7 @@ pub struct Servo {
     pub max_velocity: Option<f32>,
     /// Turns of the motor for one of the joint; above 0.
     pub gear: f32,
-    /// Whether its controller adds the effort that carries the weight of what hangs on the joint.
+    /// Makes its controller add the effort that carries the weight on the joint.
     pub feed_forward: bool,
 }
 
@@ -67,7 +67,7 @@ impl Servo {
     }
 }
 
-/// What a joint's motor is told. A joint without a motor is moved by hand: it obeys positions only.
+/// A command to a joint's motor. A joint without a motor is moved by hand: it obeys positions only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointCommand {
@@ -156,7 +156,7 @@ pub struct Articulation {
     /// The joint it follows, if it follows one.
     #[serde(default)]
     pub mimic: Option<Mimic>,
-    /// Whether it is its object's switch, such as the lever of a tap: opened it switches the object on, closed off.
+    /// True for its object's switch, such as the lever of a tap: opening it switches the object on, closing it off.
     #[serde(default)]
     pub switches: bool,
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub enum Collider {
     /// A box.
     Cuboid {
-        /// Where its centre and axes stand.
+        /// Pose of its centre and axes.
         part_from_box: Pose,
         /// Half of each edge, m.
         half_extents: Vec3,
@@ -25,7 +25,7 @@ pub enum Collider {
     },
     /// A cylinder along its local Y axis.
     Cylinder {
-        /// Where its centre and axes stand.
+        /// Pose of its centre and axes.
         part_from_cylinder: Pose,
         /// Half of its height, m.
         half_height: f32,

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene.
+//! Errors of the scene.
 
 /// A fault in a scene, with its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -7,31 +7,31 @@ pub enum SceneError {
     /// A mesh that contradicts itself.
     #[error("{at}: {what}")]
     Mesh {
-        /// Where it stands.
+        /// Path of the value.
         at: String,
-        /// What was found and what was allowed.
+        /// The value found and the allowed ones.
         what: String,
     },
     /// A texture whose size does not fit its data.
     #[error("{at}: a texture of {what}; allowed are 1 to 16384 pixels a side, four bytes each")]
     Texture {
-        /// Where it stands.
+        /// Path of the value.
         at: String,
-        /// What was found.
+        /// The fault.
         what: String,
     },
     /// Band values out of order or range.
     #[error("{at}: bands must rise and stay in range; found {what}")]
     Bands {
-        /// Where they stand.
+        /// Path of the values.
         at: String,
-        /// What was found.
+        /// The fault.
         what: String,
     },
     /// An index that points outside its table.
     #[error("{at}: points to {table} {index}, but there are {count}")]
     Dangling {
-        /// Where the reference stands.
+        /// Path of the reference.
         at: String,
         /// The table it points into.
         table: &'static str,
@@ -43,13 +43,13 @@ pub enum SceneError {
     /// A number outside its range.
     #[error("{at}: {field} is {found}; allowed is {allowed}")]
     Range {
-        /// Where it stands.
+        /// Path of the value.
         at: String,
         /// The field's name.
         field: &'static str,
-        /// What was found.
+        /// The value found.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A number of threads that makes no sense.
@@ -57,7 +57,7 @@ pub enum SceneError {
     Threads {
         /// The argument or the variable.
         at: &'static str,
-        /// What was found.
+        /// The value found.
         found: String,
         /// The most that are allowed.
         allowed: usize,
@@ -65,7 +65,7 @@ pub enum SceneError {
     /// A name that must be unique and is not.
     #[error("{at}: the name {name:?} is taken")]
     DuplicateName {
-        /// Where the second one stands.
+        /// Path of the second one.
         at: String,
         /// The name.
         name: String,
@@ -73,9 +73,9 @@ pub enum SceneError {
     /// A name that nothing has.
     #[error("{at}: no {kind} {name:?}; there are {known:?}")]
     Unknown {
-        /// Where it was asked for.
+        /// Path of the query.
         at: String,
-        /// What was looked for.
+        /// The kind of thing looked for.
         kind: &'static str,
         /// The name.
         name: String,
@@ -88,9 +88,9 @@ pub enum SceneError {
     /// A parameter address that cannot be read.
     #[error("parameter address {address:?}: {what}")]
     Address {
-        /// What was given.
+        /// The address given.
         address: String,
-        /// What is wrong with it.
+        /// The fault.
         what: String,
     },
 }

@@ -23,9 +23,9 @@ pub enum ReadError {
     /// More bytes than are read.
     #[error("{found} bytes; at most {allowed} are read")]
     TooLarge {
-        /// How many bytes it has; of a file that grows, more than are allowed.
+        /// Its size, bytes; of a file that grows, more than are allowed.
         found: u64,
-        /// How many are read.
+        /// Most bytes that are read.
         allowed: u64,
     },
 }

@@ -1,4 +1,4 @@
-//! What objects carry besides shape: lights, sounds, and surfaces that hold other things.
+//! Fixtures of objects: lights, sound emitters, and receptacles.
 
 use crate::bounds::Aabb;
 use crate::ids::{ObjectId, PartId, SoundFileId};
@@ -34,7 +34,7 @@ pub struct Light {
     pub object: ObjectId,
     /// The part it moves with.
     pub part: PartId,
-    /// Where it stands in part space, m.
+    /// Position in part space, m.
     pub position: Vec3,
     /// Point, spot or line.
     pub shape: LightShape,
@@ -53,17 +53,17 @@ pub struct SoundEmitter {
     pub object: ObjectId,
     /// The part it moves with.
     pub part: PartId,
-    /// Where it stands in part space, m.
+    /// Position in part space, m.
     pub position: Vec3,
-    /// What sounds: the name of a signal, as `dwell_acoustics::signals` lists them (`"radio"`, `"television"`, ...); beside a
-    /// `sound_file` the name of that.
+    /// Name of a signal, as `dwell_acoustics::signals` lists them (`"radio"`, `"television"`, ...); with a `sound_file`,
+    /// the name of that.
     pub signal: String,
     /// Level at 1 m in the free field, dB SPL (RMS over the whole sound).
     pub level_db: f32,
     /// The house's own sound file that sounds instead of a signal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound_file: Option<SoundFileId>,
-    /// Whether it begins again when it is over.
+    /// Starts it again when it ends.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub loops: bool,
     /// When it begins, s after the start of a world; 0 to 86400. What loops from 0 on has always sounded.
@@ -128,7 +128,7 @@ impl SoundFile {
     pub const MOST_BYTES: u64 = 64 << 20;
 }
 
-/// How a receptacle holds things.
+/// The kind of a receptacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReceptacleKind {

@@ -73,7 +73,7 @@ impl EntityId {
     pub const VOID: Self = Self(0);
 }
 
-/// What an [`EntityId`] names.
+/// The thing that an [`EntityId`] names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Entity {
     /// Nothing.

@@ -1,12 +1,13 @@
-//! Work that its caller can stop.
+//! Cancellation of long calls.
 //!
 //! Long loops call [`check`] between pieces of at most some 20 ms; `parallel` does so between all pieces that it hands out.
-//! Who wants to be able to stop a call wraps it in [`interruptible`], with a question that is asked every [`INTERVAL`] on the
-//! calling thread. When the answer is yes, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and
-//! `interruptible` returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
+//! A caller wraps a cancellable call in [`interruptible`], with a function that is polled every [`INTERVAL`] on the calling
+//! thread. When it returns true, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and `interruptible`
+//! returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
-//! What must not stop half-way runs in [`uninterruptible`]; what holds a lock or half a result meanwhile uses [`catch_interrupt`]. What a
-//! `LazyLock` makes must not meet a `check`: stopped once, it is lost for good. A `OnceLock` stays empty, and is filled the next time.
+//! Code that must not stop half-way runs in [`uninterruptible`]; code that holds a lock or half a result meanwhile uses
+//! [`catch_interrupt`]. The initializer of a `LazyLock` must not meet a `check`: interrupted once, it is poisoned for good.
+//! A `OnceLock` stays empty, and is filled the next time.
 
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -14,10 +15,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-/// How often the question is asked.
+/// Polling interval of the caller's function.
 pub const INTERVAL: Duration = Duration::from_millis(25);
 
-/// What unwinds when a call is stopped.
+/// The payload that unwinds when a call is cancelled.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the call was stopped")]
 pub struct Interrupted(());
@@ -29,10 +30,10 @@ impl Interrupted {
     }
 }
 
-/// Whether a call is to stop. Shared with all threads that work for it.
+/// Set when a call is to stop. Shared with all threads that work for it.
 pub(crate) type CancelToken = Arc<AtomicBool>;
 
-/// What is asked, and when again.
+/// The function that is polled, and the next time for it.
 type PollSchedule = Option<(fn() -> bool, Instant)>;
 
 thread_local! {

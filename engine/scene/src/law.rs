@@ -14,10 +14,10 @@ pub struct LawSpec {
     pub id: String,
     /// The version of the law's equation.
     pub version: u32,
-    /// What it acts on; `None`: everything it can act on. For a law on objects an object's name
-    /// (all of its bodies, free or moved by joints) or `OBJECT/PART`; on joints a joint's name,
-    /// `OBJECT/JOINT` or a number; on contacts `NAME` (all contacts of it) or `NAME~NAME` (those between the two), where a
-    /// name is an object's, a piece of structure's or a substance's; laws on the world take none.
+    /// The thing that it acts on; `None`: everything it can act on. For a law on objects an object's name (all of its
+    /// bodies, free or moved by joints) or `OBJECT/PART`; on joints a joint's name, `OBJECT/JOINT` or a number; on contacts
+    /// `NAME` (all contacts of it) or `NAME~NAME` (those between the two), where a name is an object's, a piece of
+    /// structure's or a substance's; laws on the world take none.
     #[serde(default)]
     pub target: Option<String>,
     /// Values by parameter name, in the units of [`ParamInfo::unit`].
@@ -117,22 +117,22 @@ pub struct ParamInfo {
     pub plausible: [f64; 2],
 }
 
-/// What is known about a law: for docs, calibration and errors.
+/// The description of a law: for docs, calibration and errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawInfo {
     /// The id, unique over all engines.
     pub id: &'static str,
     /// The version of the equation.
     pub version: u32,
-    /// What a person calls it: `"quadratic air drag"`.
+    /// Its name in words: `"quadratic air drag"`.
     pub name: &'static str,
     /// The equation, in plain text with units.
     pub equation: &'static str,
-    /// Where the equation comes from.
+    /// The source of the equation.
     pub source: &'static str,
     /// The engine it acts in.
     pub engine: EngineKind,
-    /// What it acts on: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
+    /// The kind of target: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
     pub acts_on: &'static str,
     /// Its parameters.
     pub params: &'static [ParamInfo],

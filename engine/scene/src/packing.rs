@@ -1,7 +1,7 @@
-//! How snapshots are packed: Brotli (RFC 7932).
+//! Compression of snapshots: Brotli (RFC 7932).
 //!
-//! What repeats in a snapshot, such as the same place seen by a body and by its contacts, lies further apart than the 32 KiB
-//! that zlib looks back.
+//! Repetitions in a snapshot, such as the same place in a body and in its contacts, lie further apart than the 32 KiB
+//! window of zlib.
 
 use crate::error::SceneError;
 use crate::interrupt;
@@ -11,7 +11,7 @@ use std::io::{Cursor, Read};
 use std::sync::{Arc, Weak, mpsc};
 use std::thread;
 
-/// How hard (0 to 11). 5 is the first that looks for matches well; 9 takes twice as long for a hundredth less.
+/// Quality level (0 to 11). 5 is the first that looks for matches well; 9 takes twice as long for a hundredth less.
 const QUALITY: i32 = 5;
 /// The first that weighs ways of packing against one another: a tenth less, in some fifty times the time.
 const BEST_QUALITY: i32 = 10;
@@ -22,14 +22,14 @@ const MOST_UNPACKED: u64 = 1 << 30;
 /// So many bytes are packed within some 0.1 s at the usual quality.
 const QUICK: usize = 1 << 20;
 const NEVER: &str = "reading and writing memory cannot fail";
-/// What is unpacked at a time, bytes.
+/// Bytes that are unpacked at a time.
 const BUFFER: usize = 1 << 16;
 
-/// Bytes in fewer bytes; the same bytes give the same. What they share with `base`, which [`unpack`] is told as well, takes next to
-/// nothing.
+/// Compresses bytes; the same bytes give the same result. Parts shared with `base`, which [`unpack`] also gets, take next
+/// to nothing.
 ///
 /// # Panics
-/// Where the system has no room for one more thread.
+/// If the system has no room for one more thread.
 pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
     if bytes.len() + base.len() > QUICK {
         return pack_stoppably(QUALITY, bytes, base);

@@ -14,7 +14,7 @@
 /// A trait, not a closure: what is not `#[inline(always)]` does not use the instructions of the function around it, and
 /// closures cannot be made so.
 pub trait SimdKernel {
-    /// What comes of it.
+    /// The result.
     type Output;
 
     /// Does the work; to be marked `#[inline(always)]`, like everything costly that it calls.
@@ -24,7 +24,7 @@ pub trait SimdKernel {
 /// An instruction level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimdLevel {
-    /// What every machine of the kind has; SSE2 on x86-64.
+    /// The baseline of the architecture; SSE2 on x86-64.
     Portable,
     /// 256 bits.
     #[cfg(target_arch = "x86_64")]

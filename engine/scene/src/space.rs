@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 /// A rigid transform: `world_from_part` maps points of the part to points of the world.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Where the source space's origin lies in the target space, m.
+    /// Position of the source space's origin in the target space, m.
     pub position: Vec3,
     /// The rotation, `[x, y, z, w]`, unit length.
     pub rotation: Quat,

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3, Vec3};
 
 /// kg/m³.
 pub(crate) const DENSITY: f32 = 2000.0;
-/// Where the first bar hangs, m.
+/// Position of the first hinge, m.
 pub(crate) const ORIGIN: Vec3 = Vec3::new(4.0, 4.0, 4.0);
 /// Control steps in a second, and physics steps, as in this crate's default.
 pub(crate) const CONTROL_HZ: usize = 20;
@@ -40,7 +40,7 @@ pub(crate) struct Chain {
     pub(crate) limits: Option<[f32; 2]>,
     /// Dry friction of each hinge, N·m.
     pub(crate) friction: f32,
-    /// Where the hinges begin, rad, and how fast they turn, rad/s.
+    /// Initial hinge angles, rad, and rates, rad/s.
     pub(crate) start: Vec<[f32; 2]>,
     /// Control steps in a second.
     pub(crate) control_hz: usize,
@@ -121,7 +121,7 @@ impl Chain {
         f64::from(DENSITY * bar.length * 4.0 * bar.half * bar.half)
     }
 
-    /// Where each bar's hinge is under the angles, m, and how the bar is turned.
+    /// The position of each bar's hinge at these angles, m, and the bar's orientation.
     pub(crate) fn forward(&self, angles: &[f64]) -> Vec<(DVec3, DQuat)> {
         let (mut at, mut turn) = (ORIGIN.as_dvec3(), DQuat::IDENTITY);
         let mut out = Vec::with_capacity(self.bars.len());

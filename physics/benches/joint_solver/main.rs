@@ -27,7 +27,7 @@ fn all(chain: &Chain) -> [Box<dyn Solver>; 4] {
     std::array::from_fn(|k| one(chain, k))
 }
 
-/// How far the energy of a double pendulum is from its start, as a share of what it gains from level to hanging.
+/// Prints the energy drift of a double pendulum, as a share of what it gains from level to hanging.
 fn drift(seconds: usize) {
     let chain = Chain::double_pendulum();
     let weight_j = chain.loads(&[0.0, 0.0])[0].abs();
@@ -53,7 +53,7 @@ fn drift(seconds: usize) {
     }
 }
 
-/// How far an arm that is told to hold stands from where its load and stiffness say, and how it creeps.
+/// Prints the position error of an arm that holds a load against the one predicted from its stiffness, and its creep.
 fn hold(seconds: usize) {
     for (stiffness, damping) in [(2000.0, 100.0), (1e5, 1e3), (1e6, 1e4)] {
         let chain = Chain::arm(Motor { stiffness, damping });
@@ -82,7 +82,7 @@ fn hold(seconds: usize) {
     }
 }
 
-/// How far beyond its stop a bar swings, and how fast it leaves it in the first steps; weight adds some 0.1 rad/s in each.
+/// Prints how far a bar overshoots its stop and its speed in the first steps after it; weight adds some 0.1 rad/s in each.
 fn stop() {
     for rate in [10.0_f32, 20.0, 50.0] {
         let mut chain = Chain::pendulum();
@@ -109,7 +109,7 @@ fn stop() {
     }
 }
 
-/// How a level bar creeps that dry friction holds with 1.2 times its weight. rapier's rows have no such friction.
+/// Prints the creep of a level bar held by dry friction of 1.2 times its weight. rapier's rows have no such friction.
 fn friction(seconds: usize) {
     let mut chain = Chain::pendulum();
     chain.friction = 1.2 * chain.loads(&[0.0])[0].abs() as f32;
@@ -120,7 +120,7 @@ fn friction(seconds: usize) {
     }
 }
 
-/// Whether the same run gives the same bits, and whether one that goes on from a snapshot does.
+/// Prints whether a repeated run, and a run continued from a snapshot, give the same bits.
 fn bits(seconds: usize) {
     let chain = Chain::double_pendulum();
     for (k, name) in NAMES.iter().enumerate() {

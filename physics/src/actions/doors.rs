@@ -8,7 +8,7 @@ use crate::joints::HandDrive;
 use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
-/// How near to a wanted openness a thing counts as being there.
+/// Tolerance of the openness that an action asks for.
 const THERE: f32 = 0.02;
 
 impl ActionContext<'_> {

@@ -1,4 +1,4 @@
-//! What every action of the hand has in common.
+//! The interface common to all hand actions.
 
 use super::{ActionContext, ActionResult, Actor};
 use crate::outcome::ActionOutcome;

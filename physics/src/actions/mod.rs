@@ -1,5 +1,5 @@
-//! What an agent's hand does: take, put, throw, push, let go, open, close, switch, point. Each says whether it worked and
-//! why.
+//! Actions of an agent's hand: pick, put, throw, push, release, open, close, switch, point. Each reports success or the
+//! reason for its failure.
 
 mod close;
 mod doors;
@@ -46,7 +46,7 @@ use crate::outcome::ActionOutcome;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, State};
 
-/// Who does an action, and what the agent sees.
+/// The agent that performs an action, and its view.
 #[derive(Clone, Copy)]
 struct Actor<'a> {
     id: AgentId,
@@ -86,5 +86,5 @@ impl<'a> ActionContext<'a> {
     }
 }
 
-/// What an action comes to, or the outcome that says why it was refused.
+/// The outcome of an action; `Err` if it was refused.
 pub type ActionResult = Result<ActionOutcome, Box<ActionOutcome>>;

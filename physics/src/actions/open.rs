@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Open {
-    /// What to open; all of an object's joints, or the one that moves the part that a ray meets.
+    /// The thing to open: all of an object's joints, or the one that moves the part that a ray hits.
     pub target: Target,
-    /// How far: 0 is closed, 1 fully open.
+    /// Openness: 0 is closed, 1 fully open.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub fraction: f32,
 }

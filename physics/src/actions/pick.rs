@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pick {
-    /// What to take.
+    /// The object to pick up.
     pub target: Target,
-    /// How to hold it: `"kinematic"` or `{"spring": {"frequency_hz": 4, "damping_ratio": 1}}`.
+    /// Kind of grasp: `"kinematic"` or `{"spring": {"frequency_hz": 4, "damping_ratio": 1}}`.
     pub grasp: Grasp,
 }
 

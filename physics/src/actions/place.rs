@@ -26,7 +26,7 @@ const LOOK_STEP_RAD: f32 = 0.1;
 /// Above a thing's top by so much rays down begin, m.
 const ABOVE_M: f32 = 0.5;
 
-/// Where something was put, and on what.
+/// The position of a placed object, and its support.
 struct ObjectPlacement {
     pose: RapierPose,
     on: Option<ObjectId>,
@@ -37,8 +37,8 @@ struct ObjectPlacement {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Place {
-    /// What to put it on: an object, or the floor that a ray meets (the spot nearest to where it does). Without it any
-    /// level surface in view, the one nearest to the middle of the view first.
+    /// The support: an object, or the floor that a ray hits (the spot nearest to the hit). Without it, any level surface in
+    /// view, the one nearest to the middle of the view first.
     pub target: Option<Target>,
 }
 

@@ -9,7 +9,7 @@ use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far above or below the point a surface may lie, m.
+/// Largest height of a surface above or below the point, m.
 const SURFACE_M: f32 = 0.03;
 
 /// Puts what it holds down with the middle of its foot at a point.

@@ -9,16 +9,16 @@ use rapier3d::geometry::Aabb;
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::pipeline::QueryFilter;
 
-/// How long a trial lasts, and how long a thing must be at rest at its end, s.
+/// Duration of a trial, and of the rest required at its end, s.
 const TRIAL_S: f32 = 1.0;
 const REST_S: f32 = 0.25;
-/// How far it may move and turn in that time, m and rad.
+/// Largest displacement and rotation during that rest, m and rad.
 const RESTS_M: f32 = 5e-4;
 const RESTS_RAD: f32 = 5e-3;
-/// How far it may have moved and turned since it was put down, m and rad.
+/// Largest displacement and rotation since the object was put down, m and rad.
 const SHIFTS_M: f32 = 0.01;
 const TURNS_RAD: f32 = 0.1;
-/// How near other things must be to take part, m.
+/// Distance within which other objects take part, m.
 const NEAR_M: f32 = 0.05;
 
 fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pull {
-    /// What to pull; a ray says where.
+    /// The object to pull; a ray also gives the point.
     pub target: Target,
     /// N, above 0; more than the agent's strength is cut. Without it all of it.
     pub force_n: Option<f32>,

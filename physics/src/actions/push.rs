@@ -13,7 +13,7 @@ use rapier3d::dynamics::RigidBody;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How long a push lasts, s.
+/// Duration of a push, s.
 const PUSH_S: f32 = 0.25;
 /// Beyond the reach by so much, a hand has lost what it pushes, m.
 const SLACK_M: f32 = 0.3;
@@ -26,14 +26,14 @@ pub(crate) struct OngoingPush {
     agent: AgentId,
     object: ObjectId,
     body: u32,
-    /// Where the hand is on the body, m.
+    /// Contact point of the hand on the body, m.
     point_in_body: Vec3,
     /// In world space, N.
     force: Vec3,
     left_s: f32,
-    /// Where the hand was at first, m.
+    /// Initial contact point of the hand, m.
     start: Vec3,
-    /// Whether the hand has turned to something else since.
+    /// Set once the hand has been used for something else.
     left: bool,
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct OngoingPush {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Push {
-    /// What to push; a ray says where.
+    /// The object to push; a ray also gives the point.
     pub target: Target,
     /// N, above 0; more than the agent's strength is cut. Without it all of it.
     pub force_n: Option<f32>,

@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 const GRID: u32 = 7;
 /// Beyond the reach by so much a hand still gets into a container, m.
 const STRETCH_M: f32 = 0.2;
-/// How far a thing may stick out of an open vessel on top, as a share of its height; what is shut must hold all of it.
+/// Largest share of an object's height that may stick out of an open container; a closed one must hold all of it.
 const STICKS_OUT: f32 = 0.6;
 /// From this openness on, nothing is said about closed doors.
 const OPEN: f32 = 0.7;
@@ -30,7 +30,7 @@ const OPEN: f32 = 0.7;
 /// Steps in which the way out of a container is looked along.
 const WAY_STEPS: u32 = 32;
 
-/// What was found while looking for a spot inside.
+/// The result of the search for a free spot inside.
 #[derive(Default)]
 struct InsertionSearch {
     pose: Option<RapierPose>,

@@ -1,4 +1,4 @@
-//! Whether a hand reaches a thing and its eye sees it.
+//! Reach and line-of-sight checks of a hand action.
 
 use super::{ActionContext, Actor};
 use crate::body;
@@ -15,7 +15,7 @@ use rapier3d::pipeline::QueryFilter;
 
 /// Distance from the middle of the body within which a thing is never "behind", m.
 const AT_THE_FEET_M: f32 = 0.5;
-/// How far above and below the feet the thing that carries somebody is looked for, m.
+/// Height above and below the feet within which the agent's support is looked for, m.
 const SOLE_M: f32 = 0.06;
 
 impl ActionContext<'_> {

@@ -1,11 +1,11 @@
-//! What an action of the hand is done to.
+//! Targets of hand actions.
 
 use dwell_scene::{EntityId, ObjectId, PartId};
 use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What an action is done to.
+/// The target of an action.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Target {
@@ -13,18 +13,18 @@ pub enum Target {
     Object(#[schemars(with = "u32")] ObjectId),
     /// A part of an object: one drawer of several.
     Part(#[schemars(with = "u32")] PartId),
-    /// What a sensor's id names.
+    /// The thing with an id that a sensor reports.
     Entity(#[schemars(with = "i32")] EntityId),
     /// The first thing on a ray.
     Ray {
-        /// Where it starts, m: a camera's or the agent's own eye.
+        /// Origin, m: a camera's or the agent's own eye.
         #[schemars(with = "[f32; 3]")]
         origin: Vec3,
         /// Any length but zero.
         #[schemars(with = "[f32; 3]")]
         direction: Vec3,
     },
-    /// What is in the middle of the agent's view.
+    /// The thing in the middle of the agent's view.
     #[default]
     Gaze,
 }

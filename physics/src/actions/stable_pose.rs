@@ -12,15 +12,15 @@ const DIRECTIONS: usize = 16;
 /// The tilt under which the outermost low point of a thing is its edge, rad: what is lower by less than this slope is
 /// part of the sole.
 const TILT_RAD: f32 = 0.02;
-/// How far the centre of mass must lie within the sole, m; for things that stand on a line or a point, how far it may
-/// lie outside.
+/// Least distance of the centre of mass inside the support polygon, m; for objects that stand on a line or a point, the
+/// largest distance outside it.
 const STEADY_M: f32 = 0.002;
 const ROUND_M: f32 = -5e-4;
 /// Gap under what was put down, m.
 const GAP_M: f32 = 5e-4;
-/// How uneven the ground under a sole may be, m.
+/// Largest unevenness of the ground under a sole, m.
 const UNEVEN_M: f32 = 0.002;
-/// How far above and below a sole's point the ground is looked for, m.
+/// Range of the ground search above and below a point of the sole, m.
 const FEEL_M: f32 = 0.02;
 
 /// A thing turned to stand. All points are relative to the body's origin, in world axes, m.

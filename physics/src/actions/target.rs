@@ -1,4 +1,4 @@
-//! What a target turns out to be: an object, a piece of the building, or somebody.
+//! Resolution of a target to an object, a piece of structure, or an agent.
 
 use super::request::Target;
 use super::{ActionContext, Actor};
@@ -7,9 +7,9 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{AgentId, Entity, EntityId, Id, ObjectId, PartId, State, SurfaceOwner};
 use glam::Vec3;
 
-/// How far a ray goes, m.
+/// Longest ray, m.
 const FAR_M: f32 = 100.0;
-/// How far from the origin a ray may start, m.
+/// Largest distance of a ray's origin from the world's origin, m.
 const WORLD_M: f32 = 32_768.0;
 
 /// A thing that was meant.
@@ -18,7 +18,7 @@ pub(super) struct ResolvedTarget {
     pub(super) entity: Entity,
     /// The part that was named or met.
     pub(super) part: Option<PartId>,
-    /// Where a ray met it, m.
+    /// The hit point of the ray, m.
     pub(super) point: Option<Vec3>,
 }
 

@@ -9,7 +9,7 @@ use rapier3d::dynamics::RigidBody;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far the hand goes with what it throws, m: an estimate of ours for an arm.
+/// Distance over which the hand accelerates the object, m: our estimate for an arm.
 const STROKE_M: f32 = 0.5;
 /// The fastest throw of the lightest thing, m/s: an estimate of ours for a person indoors.
 const FASTEST_M_S: f32 = 20.0;

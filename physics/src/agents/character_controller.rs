@@ -16,7 +16,7 @@ const LEVEL_M: f32 = 1e-3;
 pub(crate) const FASTEST_FALL_M_S: f32 = 30.0;
 /// Pieces of one movement, at most.
 const MOST_PIECES: f32 = 256.0;
-/// How far an agent is moved out of something in one step, m.
+/// Largest displacement of an agent out of an overlap in one step, m.
 const WAY_OUT_M: f32 = 0.02;
 /// Gap that is left before what was hit, besides the skin, m.
 const BACK_M: f32 = 1e-4;
@@ -37,7 +37,7 @@ pub(crate) struct CharacterPush {
     pub(crate) point: Vec3,
     /// Unit length, level.
     pub(crate) direction: Vec3,
-    /// How fast the agent wants to go that way, m/s.
+    /// Desired speed in that direction, m/s.
     pub(crate) speed_m_s: f32,
 }
 

@@ -1,4 +1,4 @@
-//! What an agent's body is told to do.
+//! Control inputs of an agent's body.
 
 use crate::error::PhysicsError;
 use dwell_scene::{AgentState, Locomotion};
@@ -13,7 +13,7 @@ pub(crate) const STEEPEST_LOOK_RAD: f32 = 1.5;
 /// no faster than their own limits, whatever they are told.
 const FASTEST: f32 = 1e6;
 
-/// What an agent's body does during one control step: constant velocities in its own frame.
+/// The control input of an agent's body for one control step: constant velocities in its own frame.
 ///
 /// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`. An agent on legs has these
 /// velocities at once, up to its speed limit; wheels go towards them as fast as they accelerate.
@@ -30,7 +30,7 @@ pub struct AgentControl {
     pub pitch_rate_rad_s: f32,
     /// Speeds of the left and right wheel of a differential drive, rad/s, instead of the velocities above.
     pub wheel_rad_s: Option<[f32; 2]>,
-    /// Whether an agent on legs crouches; it stands up again where it has room.
+    /// Makes an agent on legs crouch; without it the agent stands up again where there is room.
     pub crouch: bool,
 }
 

@@ -42,7 +42,7 @@ pub(crate) struct Agent {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Agents {
     pub(crate) list: Vec<Agent>,
-    /// What each has of speed that is not its own will. Shape (agent,).
+    /// The velocity of each agent that is not commanded. Shape (agent,).
     pub(crate) passive_velocities: Vec<PassiveVelocity>,
 }
 

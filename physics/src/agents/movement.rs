@@ -10,11 +10,11 @@ use crate::outcome::{DelayedOutcome, OutcomeCode, fail};
 use dwell_scene::{AgentBody, AgentId, AgentState, Id, LeggedLocomotion, Locomotion, State};
 use glam::Vec3;
 
-/// What an agent wanted to do and did in a control step.
+/// The commanded and the actual motion of an agent in a control step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct MovementRecord {
     start: Vec3,
-    /// How it gets about in this world.
+    /// Its locomotion in this world.
     locomotion: Locomotion,
     wanted_m: f32,
     made_m: f32,

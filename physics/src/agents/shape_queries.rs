@@ -1,4 +1,4 @@
-//! What an agent's body asks of its surroundings.
+//! Collision queries of an agent's body.
 //!
 //! For walking, an agent is an upright cylinder whose lower end hovers at the height of the steps it climbs, and a foot
 //! that feels for the ground below. The cylinder is at least as large as the capsule that others see, so that nothing the
@@ -18,18 +18,18 @@ use rapier3d::pipeline::QueryFilter;
 
 /// Gap that the cylinder keeps from what it cannot enter, m.
 pub(crate) const SKIN_M: f32 = 0.008;
-/// What is left between the cylinder's skin and the edge that its foot has rolled off, m.
+/// Gap between the cylinder's skin and the edge that its foot has rolled off, m.
 const CLEAR_M: f32 = 0.002;
-/// How far the cylinder hovers above the highest step, m; more than the skin, so that a step never catches it.
+/// Height of the hovering cylinder above the highest step, m; more than the skin, so that a step never catches it.
 const HOVER_M: f32 = 0.015;
-/// How much slimmer the core is that must never overlap anything, m.
+/// Inset of the core, which must never overlap anything, m.
 const CORE_MARGIN_M: f32 = 0.03;
 /// The heaviest free body that is pushed instead of walked around, kg.
 const HEAVIEST_PUSHED_KG: f32 = 30.0;
 /// Height up to which light things are stepped on, m.
 const SOLE_M: f32 = 0.05;
-/// How far above and below the foot's lowest point the surface under the middle is looked for, m; below by the foot's
-/// radius more, which lies on a slope beside its middle.
+/// Search range above and below the foot's lowest point for the surface under its middle, m; below by the foot's radius
+/// more, because on a slope the surface lies lower there.
 const ABOVE_GROUND_M: f32 = 0.1;
 const BELOW_GROUND_M: f32 = 0.1;
 
@@ -41,20 +41,20 @@ pub(crate) struct AgentCylinder {
     pub(crate) height_m: f32,
 }
 
-/// What stops a movement.
+/// The obstacle that stops a movement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweepHit {
-    /// How much of the motion can be made, 0 to 1.
+    /// Share of the motion that is free, 0 to 1.
     pub(crate) fraction: f32,
     /// Away from the obstacle, in world space.
     pub(crate) normal: Vec3,
-    /// Where they touch, m.
+    /// Contact point, m.
     pub(crate) point: Vec3,
     /// The light body that is in the way; nothing for what cannot be pushed.
     pub(crate) light: Option<u32>,
 }
 
-/// What a collider is to an agent.
+/// The kind of obstacle that a collider is to an agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ObstacleKind {
     /// Itself, another agent, or what it holds.

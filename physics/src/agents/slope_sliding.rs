@@ -8,7 +8,7 @@ use super::character_controller::CharacterController;
 use dwell_scene::math;
 use glam::Vec3;
 
-/// How much less level than the limit counts as too steep (difference of cosines).
+/// Margin by which a slope must exceed the limit to count as too steep (difference of cosines).
 const MARGIN: f32 = 1e-3;
 /// Highest speed of a slide, m/s.
 const FASTEST_M_S: f32 = 30.0;

@@ -1,4 +1,4 @@
-//! Where agents stand when a world starts.
+//! Start positions of agents.
 
 use super::movement::probe_with;
 use super::{Agents, current_body};
@@ -8,14 +8,14 @@ use crate::report::MovedAgent;
 use dwell_scene::{AgentBody, AgentId, House, Id, State};
 use glam::{Vec2, Vec3};
 
-/// How far apart the places are that are tried, m, and the most of them: in large houses they are further apart.
+/// Spacing of the positions that are tried, m, and their largest number: in large houses they are further apart.
 const SPACING_M: f32 = 0.1;
 const MOST_PLACES: f32 = 20_000.0;
 
 /// Between the bodies of agents that begin beside each other, m.
 const GAP_M: f32 = 0.1;
 
-/// Where one body may begin, the nearest first; agents that begin alike go on where the one before them found its place.
+/// Start positions for one body, nearest first; agents with the same body continue where the previous one was placed.
 struct SpawnSearch {
     body: AgentBody,
     from: Vec3,

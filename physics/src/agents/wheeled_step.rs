@@ -7,14 +7,14 @@ use crate::bases::{
 use dwell_scene::{AgentState, DifferentialDrive, Locomotion, math};
 use glam::Vec3;
 
-/// Where a base goes in one physics step if nothing stops it.
+/// The displacement of a base in one physics step if nothing stops it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BaseMotion {
     /// m, level.
     pub(crate) displacement: Vec3,
     /// rad to the left.
     pub(crate) turn_rad: f32,
-    /// How fast it would slip over the ground if its wheels touched it now, level, m/s.
+    /// Slip velocity over the ground if its wheels touched it now, level, m/s.
     pub(crate) slips_m_s: Vec3,
 }
 

@@ -1,4 +1,4 @@
-//! What moves joints in a control step: motors, and hands that lead doors and drawers.
+//! Joint actuation in a control step: motors, and hands that open doors and drawers.
 
 use super::JointSystem;
 use crate::contact::{ContactEntity, entry_index};

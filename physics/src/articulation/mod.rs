@@ -23,7 +23,7 @@ pub(crate) struct JointSystem {
     /// Each joint's numbers within a control step; the turns of hinges are counted here. Between control steps the state has
     /// them. Shape (joint,).
     pub(crate) joint_coordinates: Vec<JointCoordinate>,
-    /// What pulls at each joint during this control step. Shape (joint,).
+    /// The actuation of each joint during this control step. Shape (joint,).
     pub(crate) pulls: Vec<Option<JointActuation>>,
     pub(crate) drives: HandDrives,
 }

@@ -7,7 +7,7 @@ use crate::joints::{
 };
 use dwell_scene::JointId;
 
-/// What is expected of the trees of joints in a physics step.
+/// The predicted motion of all kinematic trees in a physics step.
 pub(crate) struct JointStep {
     /// `None` for a tree that is asleep or shut. Shape (tree,).
     predictions: Vec<Option<TreePrediction>>,

@@ -47,7 +47,7 @@ impl WheelGeometry {
     }
 }
 
-/// What the wheels are told: rates of the left and right one, rad/s.
+/// Commanded rates of the left and the right wheel, rad/s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WheelCommand(pub(crate) [f64; 2]);
 
@@ -67,7 +67,7 @@ impl WheelCommand {
     }
 }
 
-/// What two wheels do in one physics step; laws change it before it becomes a motion.
+/// The motion of two wheels in one physics step; laws change it before it becomes a motion of the base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WheelMotion {
     /// The true geometry.

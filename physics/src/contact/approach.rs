@@ -1,4 +1,4 @@
-//! How two surfaces approach at a point of contact.
+//! Approach of two surfaces at a contact point.
 
 use super::body_motion::BodyMotion;
 use glam::Vec3;
@@ -14,9 +14,9 @@ pub(super) struct ApproachMotion {
     pub(super) arms: [Vec3; 2],
     /// The velocity of the first against the second, m/s.
     pub(super) relative: Vec3,
-    /// How fast they approach along the normal, m/s; negative when they part.
+    /// Approach speed along the normal, m/s; negative when they part.
     pub(super) speed: f32,
-    /// How fast they approach when they meet, m/s.
+    /// Approach speed when they meet, m/s.
     pub(super) meeting: f32,
     /// When they meet, from the beginning of the step, s; negative when they met before.
     pub(super) meets_s: f32,

@@ -1,27 +1,27 @@
-//! Where bodies are and how they move before a step.
+//! Positions and velocities of bodies before a step.
 
 use super::contact_tracker::ContactTracker;
 use crate::engine::RapierWorld;
 use glam::{Quat, Vec3};
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 
-/// Where a body is and how it moves before the step, at its centre of mass.
+/// Position and velocity of a body before the step, at its centre of mass.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct BodyMotion {
-    /// Whether it is known: of what is awake, and of what sleeps where something that flies may wake it.
+    /// Set for awake bodies, and for sleeping ones while any body is in free flight; otherwise the other fields are unset.
     pub(super) known: bool,
     pub(super) linear: Vec3,
     pub(super) angular: Vec3,
     pub(super) center: Vec3,
     pub(super) rotation: Quat,
-    /// What gravity adds to its velocity, m/s².
+    /// Gravitational acceleration, m/s².
     pub(super) gravity: Vec3,
-    /// How far it would stand ahead if the last step had not stopped it at a surface, m.
+    /// Displacement that the last step cut off by stopping the body at a surface, m.
     pub(super) ahead: Vec3,
     /// A bound on the speed of all its points, m/s.
     pub(super) fastest: f32,
-    /// What the step adds to its momentum when nothing touches it, over its mass, m/s; `None` for what joints or hands of
-    /// others move.
+    /// Velocity change over the step if nothing touches the body, m/s; `None` for bodies moved by joints or by an agent's
+    /// hand.
     pub(super) free_change: Option<Vec3>,
     /// J; 0 for what does not fly freely.
     pub(super) kinetic_energy_j: f32,

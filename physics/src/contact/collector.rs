@@ -1,4 +1,4 @@
-//! What rapier tells of contacts while it steps.
+//! Contact reports gathered while rapier steps.
 
 use super::approach::ApproachMotion;
 use super::body_motion::{BodyMotion, before};
@@ -11,7 +11,7 @@ use rapier3d::geometry::{Collider, ColliderSet, CollisionEvent, ContactManifold,
 use rapier3d::pipeline::EventHandler;
 use std::sync::{Mutex, PoisonError};
 
-/// What rapier reports of one pair of colliders in one step.
+/// The contact of one pair of colliders in one step, as rapier reports it.
 pub(crate) struct ContactReport {
     pub(super) pair: (ContactEntity, ContactEntity),
     pub(super) classes: (u16, u16),
@@ -25,15 +25,15 @@ pub(crate) struct ContactReport {
     pub(super) speed: f32,
     /// When the surfaces meet at that speed, from the beginning of the step, s.
     pub(super) meets_s: f32,
-    /// How fast they approach then, m/s.
+    /// Approach speed then, m/s.
     pub(super) meeting: f32,
     /// Sum of slip speed times impulse.
     pub(super) slip: f32,
-    /// How fast the centres of mass pass each other along the surface, m/s.
+    /// Relative speed of the centres of mass along the surface, m/s.
     pub(super) passing: f32,
-    /// What the normal impulses push into the second body, N·s.
+    /// Sum of the normal impulses on the second body, N·s.
     pub(super) pressed: Vec3,
-    /// What all contacts together pushed into each of the two bodies, N·s, with the body; where that can be told.
+    /// Total contact impulse on each of the two bodies, N·s, with the body; where it can be determined.
     pub(super) pushed: [Option<(RigidBodyHandle, Vec3)>; 2],
 }
 
@@ -44,7 +44,7 @@ pub(crate) struct ContactCollector<'a> {
     slowest: f32,
     /// Motion before the step of every body that was awake, by its arena index.
     before: &'a [BodyMotion],
-    /// How rapier keeps friction.
+    /// Rapier's layout of friction impulses.
     kept: FrictionStorage,
     reports: Mutex<Vec<ContactReport>>,
 }

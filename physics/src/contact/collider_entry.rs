@@ -1,4 +1,4 @@
-//! What a collider stands for. A collider's user data is its number in the list of entries.
+//! The owner of each collider. A collider's user data is its index in the list of entries.
 
 use crate::model::PieceOwner;
 use dwell_scene::{AgentId, PartId, StructureId};
@@ -47,10 +47,10 @@ impl ContactClasses {
     }
 }
 
-/// What a collider stands for.
+/// The owner and the materials of a collider.
 #[derive(Clone, Debug)]
 pub(crate) struct ColliderEntry {
-    /// What it is; `None` for the box of last resort.
+    /// Its owner; `None` for the fallback box.
     pub(crate) toucher: Option<ContactEntity>,
     /// The rigid body it moves with, unless it is static or an agent's.
     pub(crate) body: Option<u32>,

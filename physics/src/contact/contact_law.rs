@@ -19,9 +19,9 @@ pub(crate) trait ContactLaw: Debug + Send + Sync {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactSide<'a> {
     pub(crate) toucher: Option<ContactEntity>,
-    /// What it is made of there, as the materials library names it.
+    /// Its substance at the contact, by its name in the materials library.
     pub(crate) substance: &'a str,
-    /// How its own frame is turned in the world; the identity for structure and fixed things.
+    /// Orientation of its own frame in the world; the identity for structure and fixed things.
     pub(crate) rotation: Quat,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct ContactSide<'a> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LawContact<'a> {
     pub(crate) surface: ContactSide<'a>,
-    /// What slides or rolls over the surface, or hits it.
+    /// The side that slides or rolls over the surface, or hits it.
     pub(crate) other: ContactSide<'a>,
     /// From the surface to the other, unit length.
     pub(crate) normal: Vec3,

@@ -1,11 +1,11 @@
-//! Who touches whom.
+//! Pairs of bodies in contact.
 
 use super::collider_entry::{ColliderEntry, ContactEntity, entry_index};
 use dwell_scene::{Contact, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
 
-/// How much a normal must face up to carry: the cosine of 60 degrees.
+/// Least upward component of a normal that supports: the cosine of 60 degrees.
 const CARRIES: f32 = 0.5;
 
 /// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart, with their bodies; for each pair

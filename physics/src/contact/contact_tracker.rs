@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// Physics steps over which one impact may last: the solver stops a body at the surface in one step and bounces it in
 /// the next.
 const LONGEST_IMPACT_STEPS: u8 = 3;
-/// What rolls slips by less than this share of its speed.
+/// Slip of a rolling body is less than this share of its speed.
 const ROLLING_SLIP: f32 = 0.2;
 
 type ContactPair = (ContactEntity, ContactEntity);
@@ -33,7 +33,7 @@ struct ImpactAccumulator {
     classes: (u16, u16),
 }
 
-/// What a pair did in the present control step, apart from impacts.
+/// The contact of a pair in the present control step, apart from impacts.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct ContactAccumulator {
     first_tick: u64,
@@ -65,7 +65,7 @@ pub(crate) struct ContactTracker {
     impacts: BTreeMap<ContactPair, ImpactAccumulator>,
     touching: BTreeMap<ContactPair, ContactAccumulator>,
     moving: BTreeMap<ContactPair, SlidingPair>,
-    /// How far bodies that were stopped at a surface in the last step would have gone on, by their arena index, m.
+    /// Displacement that the last step cut off by stopping a body at a surface, by its arena index, m.
     pub(super) held_back: BTreeMap<u32, Vec3>,
 }
 

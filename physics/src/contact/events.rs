@@ -1,10 +1,10 @@
-//! What touches tell the world: impacts, scrapes and rolling.
+//! Contact events: impacts, sliding and rolling.
 
 use super::collider_entry::ContactEntity;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How two things touch.
+/// The kind of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactKind {
@@ -16,7 +16,7 @@ pub enum ContactKind {
     Roll,
 }
 
-/// Where in its time an event stands.
+/// The phase of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactPhase {
@@ -33,24 +33,24 @@ pub enum ContactPhase {
 /// Two things that touched: an impact, or a control step of scraping or rolling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactEvent {
-    /// What happened.
+    /// The kind of contact.
     pub kind: ContactKind,
-    /// Whether it began, went on or ended.
+    /// Begin, continuation or end.
     pub phase: ContactPhase,
     /// Simulated time since the world was made, s. Impacts: when the surfaces met, within the physics step, from their gap
     /// and approach. Others: the first physics step of this control step in which they did so, or after the last one.
     pub time_s: f64,
-    /// How much of this control step it lasted, s; 0 for impacts and ends.
+    /// Its duration within this control step, s; 0 for impacts and ends.
     pub duration_s: f32,
-    /// Where, m: the mean of the contact points, weighted by impulse.
+    /// Position, m: the mean of the contact points, weighted by impulse.
     pub position: Vec3,
     /// The thing that sorts first: structure, then parts, then agents, each by number.
     pub a: ContactEntity,
     /// The other one.
     pub b: ContactEntity,
-    /// What `a` is made of there, as the materials library names it.
+    /// The substance of `a` at the contact, by its name in the materials library.
     pub substance_a: &'static str,
-    /// What `b` is made of there.
+    /// The substance of `b` at the contact.
     pub substance_b: &'static str,
     /// The friction coefficient of the two there, as overrides have it; laws may change what acts.
     pub friction: f32,
@@ -58,13 +58,12 @@ pub struct ContactEvent {
     pub restitution: f32,
     /// The sum of all normal impulses of the impact, or of this control step, N·s.
     pub impulse_n_s: f32,
-    /// How strong friction was in the same time, N·s: the sum over its physics steps. It is exact for what nothing else touches
-    /// in the step; otherwise reckoned from its share of the normal impulse in the last substep.
+    /// Friction impulse in the same time, N·s: the sum over its physics steps. It is exact for a body with no other contact
+    /// in the step; otherwise estimated from its share of the normal impulse in the last substep.
     pub tangential_impulse_n_s: f32,
     /// Impacts: how fast they approached along the normal, m/s; at least 0. Others: 0.
     pub relative_normal_speed_m_s: f32,
-    /// How fast they slipped over each other where they touched, m/s: at the beginning of an impact, in the mean of a
-    /// scrape or rolling.
+    /// Slip speed at the contact, m/s: at the beginning of an impact, the mean of sliding or rolling.
     pub relative_tangential_speed_m_s: f32,
     /// Rolling: how fast the place of contact moved, m/s; else 0.
     pub rolling_speed_m_s: f32,
@@ -93,7 +92,7 @@ impl ContactEvent {
 /// Events of a control step beyond its limit, which are not told one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MergedEvents {
-    /// How many.
+    /// Number of events.
     pub count: usize,
     /// The sum of their normal impulses, N·s.
     pub impulse_n_s: f32,

@@ -1,8 +1,8 @@
-//! How much friction pushed.
+//! Friction impulses of a step.
 //!
-//! rapier keeps the friction of the last substep alone. What a body's contacts pushed altogether is what its momentum changed
-//! by beyond gravity, and without the normal impulses, which rapier sums over all substeps, that is friction. So a body that one
-//! thing touches tells all of it; where several touch, each is reckoned from the last substep.
+//! rapier keeps the friction of the last substep alone. The total contact impulse on a body is its change of momentum less
+//! gravity; without the normal impulses, which rapier sums over all substeps, that is friction. So friction is exact for a
+//! body with one contact; with several, each is estimated from the last substep.
 
 use super::collector::ContactReport;
 use crate::engine::{FrictionStorage, points};

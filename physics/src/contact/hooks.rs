@@ -1,4 +1,4 @@
-//! What rapier asks during a step: which pairs meet, and with what friction.
+//! Callbacks from rapier during a step: contact filter and friction of a pair.
 
 use super::collider_entry::{ColliderEntry, entry_index};
 use super::contact_law::{ContactLaw, ContactSide, ContactValues, LawContact};
@@ -60,7 +60,7 @@ pub(crate) struct ContactProperties<'a> {
     pub(crate) house: &'a House,
     pub(crate) table: &'a ContactTable,
     pub(crate) laws: &'a [Arc<dyn ContactLaw>],
-    /// Whether a law makes contacts give.
+    /// Set if a law makes contacts compliant.
     pub(crate) soft: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What happens where things touch: friction and bounce by pair of substances, events, who touches whom.
+//! Contacts: friction and restitution by pair of substances, events, pairs in contact.
 
 mod approach;
 mod body_motion;

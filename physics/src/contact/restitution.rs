@@ -1,10 +1,9 @@
-//! How fast things bounce.
+//! Restitution of impacts.
 //!
-//! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds on
-//! the last bit of the way, half a step's on the mean at every rebound, and with what it added beyond the surface to a body
-//! that was stopped there. A body that flew into something leaves it as fast as it met it, times the restitution, at the
-//! surface. What hangs on joints gives way as its joints do, and takes its part of the blow: it is looked at after its tree was
-//! put together again.
+//! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds
+//! until the impact, half a step's on average at every rebound, and with what it added beyond the surface to a body that
+//! was stopped there. Here a body in free flight leaves a surface at its speed of impact times the restitution. A body on
+//! joints yields as its joints do, and takes its share of the impulse: it is handled after its tree was assembled again.
 
 use super::approach::{ApproachMotion, speed_after};
 use super::body_motion::{BodyMotion, before};
@@ -20,7 +19,7 @@ use std::collections::BTreeMap;
 const SWEEPS: usize = 16;
 /// Trials of how much of a rebound the energy allows.
 const HALVINGS: usize = 8;
-/// How much energy rounding may seem to make.
+/// Relative energy gain that rounding can feign.
 const ROUNDING: f32 = 1e-5;
 
 /// A point in which a body hit something in a step.
@@ -28,13 +27,13 @@ struct ImpactPoint {
     pair: (ContactEntity, ContactEntity),
     /// The first and the second body.
     sides: [ImpactSide; 2],
-    /// What moves with 1 m/s after 1 N·s along the normal, kg.
+    /// Effective mass: 1 N·s along the normal changes the relative velocity by its inverse, kg.
     mass_kg: f32,
-    /// How fast the two are to part, m/s.
+    /// Required separation speed, m/s.
     parting: f32,
-    /// What rapier pushed, N·s.
+    /// Normal impulse applied by rapier, N·s.
     pushed: f32,
-    /// What has been added, N·s; negative where rapier gave too much.
+    /// Added normal impulse, N·s; negative where rapier applied too much.
     added: f32,
 }
 
@@ -45,7 +44,7 @@ struct ImpactSide {
     arm: Vec3,
     /// The direction in which it is pushed.
     way: Vec3,
-    /// Where joints move it.
+    /// The point on its kinematic tree, if joints move it.
     joined: Option<TreeImpactPoint>,
 }
 
@@ -54,19 +53,19 @@ struct TreeImpactPoint {
     /// The place of the tree among those that are struck.
     tree: usize,
     point: ImpulsePoint,
-    /// Where rapier pushed at it.
+    /// The point at which rapier applied its impulse.
     pushed_at: ImpulsePoint,
 }
 
-/// What a step's rebounds came to.
+/// The corrections made in a step.
 pub(crate) struct RestitutionResult {
-    /// What was added to the pairs' normal impulses, N·s.
+    /// Impulses added to the pairs' normal impulses, N·s.
     pub(crate) added: BTreeMap<(ContactEntity, ContactEntity), f32>,
-    /// Whether bodies of trees were put anew.
+    /// Set if bodies of trees were placed again.
     pub(crate) placed: bool,
 }
 
-/// What a body that flew has hit.
+/// The impacts of a body in free flight.
 struct FreeFlightImpact {
     body: RigidBodyHandle,
     hits: Vec<ImpactPoint>,
@@ -74,7 +73,7 @@ struct FreeFlightImpact {
     max_energy_j: Option<f32>,
 }
 
-/// What the correction of a step knows.
+/// The inputs of a step's correction.
 pub(crate) struct RestitutionContext<'a> {
     /// Before the step.
     pub(crate) motions: &'a [BodyMotion],

@@ -1,4 +1,4 @@
-//! Cylinders that roll.
+//! Contacts of rolling cylinders.
 //!
 //! Where a cylinder lies on something flat, the general search for nearest points finds the line of contact only to a tenth
 //! of a radian (its distance hardly changes there), and with it a normal that leans: a cart on such wheels jerks, and stops
@@ -13,9 +13,9 @@ use rapier3d::dynamics::RigidBodySet;
 use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
 use rapier3d::pipeline::{ActiveHooks, ModifiableManifold};
 
-/// How far a cylinder may stand up that still lies on its side: the sine.
+/// Sine of the largest tilt at which a cylinder lies on its side.
 const LYING: f32 = 0.2;
-/// How much the normal found and a face's own may differ: the cosine.
+/// Cosine of the largest angle between the normal found and a face's own.
 const SAME_WAY: f32 = 0.99;
 /// Points of contact ride with the side up from the face, by `r (1 - cos w t)` in a step; rapier knows a drift at a steady
 /// rate only. This share of the way at the end of a step keeps it nearest over all substeps.

@@ -8,7 +8,7 @@ use crate::model::PhysicsModel;
 use dwell_scene::material::library;
 use dwell_scene::{House, LawInfo, LawSpec, ObjectId, StructureId};
 
-/// What one name of a contact's target stands for: all objects, structure pieces and the substance of that name.
+/// All objects, pieces of structure and the substance that one name of a contact's target stands for.
 #[derive(Clone, Debug, PartialEq)]
 struct NamedContactTarget {
     objects: Vec<ObjectId>,

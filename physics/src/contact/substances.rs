@@ -6,7 +6,7 @@ use dwell_scene::material::{PairContact, library};
 use dwell_scene::{Address, House, IdVec, MaterialId, State};
 use std::sync::Arc;
 
-/// What tells contact behaviour apart: a substance, and its own values where a world overrides a material's.
+/// A class of equal contact behaviour: a substance, and its own values where a world overrides a material's.
 #[derive(Clone, Debug, PartialEq)]
 struct ContactClass {
     substance: &'static str,
@@ -29,8 +29,8 @@ pub(crate) struct ContactTable {
     pairs: Vec<PairContact>,
     /// The value with itself under the geometric mean. Shape (class,).
     own: Vec<PairContact>,
-    /// Whether rapier asks about pairs of the class. Of two classes whose pair differs from the geometric mean at least one
-    /// is asked about. Shape (class,).
+    /// Set for classes whose pairs rapier asks the hook about. Of two classes whose pair differs from the geometric mean,
+    /// at least one is set. Shape (class,).
     special: Vec<bool>,
 }
 

@@ -15,12 +15,12 @@ use rapier3d::geometry::{Collider, ColliderBuilder, ColliderSet, InteractionGrou
 use rapier3d::math::Pose as RapierPose;
 use rapier3d::pipeline::{ActiveEvents, ActiveHooks};
 
-/// What bodies weigh in a world.
+/// Masses of bodies in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BodyMasses {
-    /// What densities are multiplied with. Shape (body, part).
+    /// Density factors. Shape (body, part).
     pub(crate) factors: Vec<Vec<f32>>,
-    /// What laws make of mass and inertia. Shape (body,).
+    /// Mass and inertia changed by laws. Shape (body,).
     pub(crate) altered: Vec<Option<BodyInertia>>,
 }
 
@@ -167,20 +167,20 @@ pub(crate) fn insert_body(
     BodyHandle { handle }
 }
 
-/// Where and how a body starts.
+/// Initial pose and state of a body.
 #[derive(Clone, Copy)]
 pub(crate) struct BodyPlacement<'a> {
     pub(crate) index: u32,
     pub(crate) world_from_body: RapierPose,
     pub(crate) hold: BodyStatus,
-    /// What its parts' densities are multiplied with. Shape (part,).
+    /// Density factors of its parts. Shape (part,).
     pub(crate) mass_factors: &'a [f32],
-    /// What a law makes of its mass and inertia.
+    /// Mass and inertia, if a law changes them.
     pub(crate) inertia: Option<BodyInertia>,
     pub(crate) sleeping_allowed: bool,
     pub(crate) event_force_n: f32,
-    /// Whether rapier asks which of its pairs meet: leaves do; free bodies only against agents, who ask themselves, and where there
-    /// are so many pairs that the call may have to stop between them.
+    /// Makes rapier ask the hook which of its pairs meet: for leaves; for free bodies only against agents, who do so
+    /// themselves, and where there are so many pairs that the call must be cancellable between them.
     pub(crate) asks: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What is in a hand's way: between the eye and a place, and at the place itself.
+//! Clearance of a hand's path: between the eye and a place, and at the place itself.
 
 use super::Dynamics;
 use crate::body::BodyStatus;
@@ -13,20 +13,20 @@ use rapier3d::pipeline::QueryFilter;
 
 /// Surfaces below each other that are looked at.
 const MOST_LEVELS: usize = 24;
-/// How far below a surface the next is looked for, m.
+/// Depth below a surface from which the search for the next one goes on, m.
 const THROUGH_M: f32 = 1e-3;
 
 /// Places between the hand and where a thing lies that are tried for it when it is taken.
 const TRIES: u32 = 6;
 
-/// Whether what a body touches by its holder's body counts.
+/// Treatment of contacts of a held object with its holder's body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum HolderContacts {
     Counts,
     Passes,
 }
 
-/// What a hand can put things on.
+/// The surfaces that an object may be put on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SupportFilter {
     Object(ObjectId),

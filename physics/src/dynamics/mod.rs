@@ -26,12 +26,12 @@ pub(crate) struct Dynamics {
     pub(crate) model: Arc<PhysicsModel>,
     pub(crate) settings: ResolvedConfig,
     pub(crate) engine: RapierWorld,
-    /// What each collider stands for, by its user data.
+    /// The entry of each collider, by its user data.
     pub(crate) entries: Vec<ColliderEntry>,
     pub(crate) table: ContactTable,
     /// Shape (body,).
     pub(crate) bodies: Vec<BodyHandle>,
-    /// What each body may do at present. Shape (body,).
+    /// The current status of each body. Shape (body,).
     pub(crate) holds: Vec<BodyStatus>,
     pub(crate) weights: BodyMasses,
     pub(crate) excluded: CollisionExclusions,

@@ -1,4 +1,4 @@
-//! What fell asleep is laid aside.
+//! Transfer of sleeping bodies to the sleeping-island cache.
 
 use super::Dynamics;
 use crate::body::{BodyHandle, BodyStatus};

@@ -1,4 +1,4 @@
-//! How hard contacts are: rapier's parameters for them.
+//! Contact stiffness: rapier's parameters for it.
 
 use crate::config::{ContactFriction, ResolvedConfig};
 use rapier3d::dynamics::{FrictionModel, IntegrationParameters, SpringCoefficients};

@@ -1,4 +1,4 @@
-//! What rapier keeps in the points of contacts.
+//! Data that rapier keeps in contact points.
 
 use rapier3d::geometry::{ContactData, ContactManifold, SolverContact};
 
@@ -12,7 +12,7 @@ pub(crate) fn points(
     })
 }
 
-/// How rapier keeps friction in contact points.
+/// Layout of friction impulses in rapier's contact points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FrictionStorage {
     /// Each point of a plane holds the friction of the whole plane.

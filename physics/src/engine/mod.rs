@@ -35,7 +35,7 @@ pub(crate) struct RapierWorld {
     parameters: IntegrationParameters,
     /// Runs of rapier in a physics step: 1, or as many as soft contacts need.
     runs: u32,
-    /// Whether contacts give.
+    /// Set if contacts are compliant.
     soft: bool,
     workspace: Workspace,
     /// Bodies that rapier took out since they were asked for, because their place or speed is no number.

@@ -1,11 +1,11 @@
-//! What rest costs: no more pairs than touch or nearly touch, and no room for those that are gone.
+//! Reduction of broad-phase pairs at rest: only pairs that touch or nearly touch, and no memory for those that are gone.
 //!
-//! rapier pairs colliders whose boxes in its tree overlap, and keeps for each pair what it knows of its contacts. A box is
-//! wider than its collider, so that what moves a little leaves the tree alone, and never shrinks while the collider stays
-//! inside: a thing that came to rest keeps the width of its last motion, and with it pairs of things that stand a hand's
-//! breadth apart. Such pairs are most of all where many things have been thrown about, and they stay in memory and in
-//! snapshots for good. So a box is drawn tight when its body falls asleep; the next step forgets the pairs that are gone. A
-//! body that wakes and moves gets its wide box back from rapier at once.
+//! rapier pairs colliders whose boxes in its tree overlap, and keeps the contact data of each pair. A box is wider than its
+//! collider, so that small motions leave the tree alone, and never shrinks while the collider stays inside: a body that
+//! came to rest keeps the width of its last motion, and with it pairs with bodies a hand's breadth away. Such pairs are
+//! most frequent where many bodies have been thrown about, and they stay in memory and in snapshots for good. So a box is
+//! shrunk when its body falls asleep; the next step forgets the pairs that are gone. A body that wakes and moves gets its
+//! wide box back from rapier at once.
 
 use super::RapierWorld;
 use rapier3d::dynamics::{IntegrationParameters, RigidBodyHandle};
@@ -13,8 +13,8 @@ use rapier3d::geometry::Aabb;
 use rapier3d::math::Vector;
 use rapier3d::pipeline::QueryFilter;
 
-/// How much wider than its contacts reach the box of a sleeping body's collider stands on each side, m. Not 0: rapier would
-/// then not notice that the box changed.
+/// Margin of the box of a sleeping body's collider beyond its contact range, m, on each side. Not 0: rapier would then not
+/// notice that the box changed.
 const SKIN_M: f32 = 1e-3;
 /// rapier's margin around a box in units of its length unit.
 const RAPIER_SKIN: f32 = 0.04;
@@ -23,7 +23,7 @@ const WIDE_ENOUGH_M: f32 = 2.0 * SKIN_M;
 /// Physics steps after which room is given back: a quarter of a minute, so that a copy of a millisecond costs nothing.
 const TICKS_BETWEEN_COPIES: u64 = 2048;
 
-/// How many pairs of colliders a world keeps.
+/// Numbers of collider pairs that a world keeps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairCounts {
     /// Pairs whose boxes overlap.

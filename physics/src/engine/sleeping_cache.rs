@@ -1,12 +1,12 @@
-//! What lies still is laid aside until something comes near.
+//! The sleeping-island cache: bodies at rest are fixed until something comes near.
 //!
-//! rapier keeps, for each pair of colliders near each other, their points of contact and what the solver knows of them: some
-//! 1.5 KB a pair, for things asleep too, and that is most of what a world takes. A thing that sleeps needs none of it. So it
-//! is made one that stands, of which rapier keeps no pairs but with what moves; what it touched is remembered here. Whatever
-//! comes within reach of it, as far as it goes in the next step, makes it a free body again before that step, and so on along
-//! all that touches: it never meets anything as one that stands, and what it carries falls when it is taken away.
+//! rapier keeps, for each pair of near colliders, contact points and solver data: some 1.5 KB a pair, for sleeping bodies
+//! too, which is most of a world's memory. A sleeping body needs none of it. So it is made fixed, for which rapier keeps
+//! pairs with moving bodies only; its contacts are stored here. Whatever comes within its reach, extrapolated by one step,
+//! makes it a free body again before that step, and so on along all contacts: nothing ever collides with it as a fixed
+//! body, and a body that rests on it falls when it is taken away.
 //!
-//! What joints hold together is laid aside together, and wakes together.
+//! Bodies connected by joints are cached together, and wake together.
 
 use super::RapierWorld;
 use super::workspace::Workspace;
@@ -21,11 +21,11 @@ use rapier3d::pipeline::QueryFilter;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How near to each other things count as touching, m: more than contacts leave between things at rest.
+/// Distance below which bodies count as touching, m: more than contacts leave between bodies at rest.
 const TOUCH_M: f32 = 2e-3;
-/// How much further than it goes in a step at its velocity something is looked ahead of: gravity and pushes add to that.
+/// Look-ahead factor on the displacement in a step at the present velocity: gravity and pushes add to that.
 const AHEAD: f32 = 1.5;
-/// How far a box must move for rapier to notice, m; its margin in units of its length unit.
+/// Displacement of a box that rapier notices, m; its margin in units of its length unit.
 const BOX_STEP_M: f32 = 1e-3;
 const RAPIER_SKIN: f32 = 0.04;
 
@@ -36,7 +36,7 @@ struct CachedContact {
     contact: Contact,
 }
 
-/// What is laid aside.
+/// The cached bodies and contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct SleepingIslandCache {
     /// In order.
@@ -95,7 +95,7 @@ impl SleepingIslandCache {
 /// Bodies, as rapier numbers them.
 type BodyIndexSet = BTreeSet<(u32, u32)>;
 
-/// What is left to do for a body that wakes.
+/// The pending operation for a body that wakes.
 enum WakeRequest {
     /// If it is laid aside, it is no longer, nor is what hangs on it.
     Free(RigidBodyHandle),

@@ -1,9 +1,9 @@
-//! How a hand holds a thing.
+//! Kinds of grasp.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a hand holds a thing. In both ways the thing stays a rigid body that walls and furniture stop.
+/// The way a hand holds an object. In both the object stays a rigid body that walls and furniture stop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Grasp {

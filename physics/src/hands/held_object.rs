@@ -11,7 +11,7 @@ use std::f32::consts::TAU;
 
 /// Space between the body and what it holds, m.
 const GAP_M: f32 = 0.12;
-/// How far below the eye the hand is, m.
+/// Height of the hand below the eye, m.
 const BELOW_EYE_M: f32 = 0.2;
 /// The hand follows the look within these pitches, rad.
 const PITCHES: [f32; 2] = [-0.9, 0.4];
@@ -21,7 +21,7 @@ const FASTEST_HAND_M_S: f32 = 5.0;
 const FASTEST_TURN_RAD_S: f32 = 12.0;
 /// Distance beyond which what is held counts as stuck, m.
 const FAR_M: f32 = 0.35;
-/// How long it may be stuck before it slips, s.
+/// Time for which it may be stuck before it slips, s.
 const GRIP_S: f32 = 0.5;
 /// Force of the hand besides the thing's weight, N.
 const HAND_FORCE_N: f32 = 150.0;
@@ -29,7 +29,7 @@ const HAND_FORCE_N: f32 = 150.0;
 const HAND_M_S2: f32 = 150.0;
 /// Share of the speed from which the hand could still stop in time.
 const CAREFUL: f32 = 0.8;
-/// How a loaded thing is brought to the hand: highest speed, m/s, acceleration, m/s², and how long it may take, s.
+/// Motion of a loaded object to the hand: highest speed, m/s, acceleration, m/s², and longest duration, s.
 const GENTLE_M_S: f32 = 0.6;
 const GENTLE_M_S2: f32 = 3.0;
 const GENTLE_S: f32 = 4.0;
@@ -40,17 +40,17 @@ pub(crate) struct HeldObject {
     pub(crate) object: ObjectId,
     pub(crate) body: u32,
     pub(crate) agent: AgentId,
-    /// How the thing is turned in the hand.
+    /// Orientation of the object in the hand.
     hand_from_body: Quat,
     /// The middle of the thing in its own frame, m.
     middle_in_body: Vec3,
     /// Half of its largest horizontal edge, m.
     half_m: f32,
-    /// Where its middle was before the last physics step, m.
+    /// Position of its middle before the last physics step, m.
     pub(crate) middle: Vec3,
     stuck_s: f32,
     grasp: Grasp,
-    /// Whether something stands on it or lies in it: then it is moved gently.
+    /// Set if something stands on it or lies in it: it is then moved gently.
     loaded: bool,
 }
 

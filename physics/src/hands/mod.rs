@@ -16,7 +16,7 @@ use rapier3d::dynamics::RigidBody;
 /// The hands of all agents.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Hands {
-    /// What is held, by agent.
+    /// Held objects, by agent.
     pub(crate) grips: Vec<HeldObject>,
     /// Bodies that were let go and still overlap the agent that held them.
     pub(crate) released_overlapping: Vec<(u32, AgentId)>,

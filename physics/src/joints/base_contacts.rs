@@ -10,10 +10,10 @@ use super::floating_base::{FloatingBase, dot};
 use super::tree_dynamics::{TreeDynamics, TreeLoads, Wrench};
 use glam::DVec3;
 
-/// How much heavier than the tree a point that stands seems to be.
+/// Virtual mass of a sticking support point, in masses of the tree.
 const FIRM: f64 = 1e4;
 
-/// How a point stands.
+/// The contact state of a support point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SupportState {
     Sticks,
@@ -52,7 +52,7 @@ struct PointJacobian {
 /// The root's part of a step.
 pub(super) struct BaseContactSolver {
     factor: CholeskyFactor,
-    /// What root and joints share of inertia. Shape (freedom, 6).
+    /// Coupling inertia of root and joints. Shape (freedom, 6).
     shared: Vec<[f64; 6]>,
     momentum: [f64; 6],
     before: [f64; 6],
@@ -63,7 +63,7 @@ pub(super) struct BaseContactSolver {
     dt_s: f64,
 }
 
-/// What the root does in a step, and what carries it.
+/// The root's acceleration in a step, and its support forces.
 #[derive(Clone, Debug)]
 pub(super) struct BaseResponse {
     /// The change of its six velocities, per second.
@@ -72,7 +72,7 @@ pub(super) struct BaseResponse {
     pub(super) forces: Vec<DVec3>,
 }
 
-/// What the joints alone see of a step: `inertia * velocity = momentum` at its end, without efforts.
+/// The joint-space equations of a step after elimination of the root: `inertia * velocity = momentum` at its end, without efforts.
 pub(super) struct ReducedProblem {
     pub(super) inertia: SymmetricMatrix,
     /// Shape (freedom,).

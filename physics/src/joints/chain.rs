@@ -32,13 +32,13 @@ struct ChainLink {
     lump: LumpedBody,
 }
 
-/// How laws push at a tree, and when within a step.
+/// The wrenches of laws on a tree, and the time of their evaluation within a step.
 #[derive(Clone, Copy)]
 pub(super) struct LawWrenchQuery<'a> {
     pub(super) push: &'a LinkWrenchFn<'a>,
     /// Length of the step, s.
     pub(super) dt_s: f64,
-    /// Whether it is its middle, else its beginning.
+    /// Evaluates at the middle of the step, else at its beginning.
     pub(super) middle: bool,
 }
 
@@ -53,7 +53,7 @@ pub(super) struct Chain {
     root_body: Option<u32>,
     supports: Vec<SupportPoint>,
     touches: Vec<ExternalContact>,
-    /// Whether what it hangs on stands.
+    /// Set if its root is not dynamic and does not move.
     stands: bool,
     gravity: DVec3,
 }

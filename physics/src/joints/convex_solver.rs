@@ -151,7 +151,7 @@ impl CholeskyFactor {
     }
 }
 
-/// What happens to a tree in one step.
+/// The effort problem of a tree in one step.
 pub(super) struct EffortProblem {
     pub(super) inertia: SymmetricMatrix,
     /// The velocities at the end of the step if there were no efforts. Shape (freedom,).

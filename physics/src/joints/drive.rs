@@ -1,4 +1,4 @@
-//! What moves joints: their own servos, or a hand that opens and closes them.
+//! Joint actuation: servos, or a hand that opens and closes a joint.
 
 use super::effort_term::{ActuationGain, JointActuation};
 use super::latch::tolerance;
@@ -8,36 +8,36 @@ use std::collections::BTreeMap;
 
 /// Lowest natural frequency of the hand's pull, rad/s.
 const HAND_FREQUENCY_RAD_S: f32 = 12.0;
-/// How fast a hand swings a door, rad/s.
+/// Speed at which a hand swings a door, rad/s.
 const HAND_SWING_RAD_S: f32 = 1.5;
-/// How fast a hand pulls a drawer, m/s.
+/// Speed at which a hand pulls a drawer, m/s.
 const HAND_PULL_M_S: f32 = 0.5;
-/// How far the hand runs ahead of a joint that does not follow, rad or m.
+/// Largest lead of the hand over a joint that does not follow, rad or m.
 const HAND_LEAD: [f32; 2] = [0.3, 0.1];
 /// Speed under which a joint makes no progress, rad/s or m/s.
 const CREEP: f32 = 0.02;
 /// Speed under which a joint that reaches its stop has arrived, rad/s or m/s.
 const STOPPED: f32 = 0.2;
-/// How long a joint may make no progress before the hand, which pulls as far ahead as it can, gives up, s.
+/// Time without progress after which the hand gives up while it pulls at full lead, s.
 const PATIENCE_S: f32 = 0.4;
 
 /// A hand that moves a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct HandDrive {
-    /// Where the joint shall go.
+    /// Goal position of the joint.
     pub(crate) goal: f32,
-    /// Where the hand is.
+    /// Present position of the hand.
     ramp: f32,
     /// For how long nothing has moved, s.
     stalled_s: f32,
-    /// Who pulls, if it is an agent.
+    /// The agent that pulls, if any.
     pub(crate) agent: Option<AgentId>,
 }
 
 /// All hands on joints.
 pub(crate) type HandDrives = BTreeMap<JointId, HandDrive>;
 
-/// How a drive stands after a control step.
+/// The state of a drive after a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum DriveProgress {
     Moving,

@@ -5,12 +5,12 @@ use super::convex_solver::EffortTerm;
 use dwell_scene::JointKind;
 use serde::{Deserialize, Serialize};
 
-/// How much steeper than inertia over step what shall give way to nothing answers: it leaves a millionth of the velocity.
+/// Steepness of a rigid constraint, relative to inertia over step: it leaves a millionth of the velocity.
 const RIGID: f64 = 1e6;
 /// The same for positions, which are mended within a few steps.
 const STOP: f64 = 1e2;
 
-/// What drives a joint during a control step.
+/// The actuation of a joint during a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct JointActuation {
     /// In the unit of its gain.
@@ -19,12 +19,12 @@ pub(crate) struct JointActuation {
     pub(crate) max_effort: f32,
     /// It drives to no higher speed, rad/s or m/s; may be infinite.
     pub(crate) max_velocity: f32,
-    /// How much of the weight of what hangs on the joint is carried besides.
+    /// Share of the weight on the joint that is compensated besides.
     pub(crate) feed_forward: f32,
     pub(crate) gain: ActuationGain,
 }
 
-/// How a pull grows with the way to its target.
+/// The gain from position or velocity error to effort.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) enum ActuationGain {
     /// N·m/rad or N/m, and N·m·s/rad or N·s/m.
@@ -50,7 +50,7 @@ pub(super) struct JointDof {
     pub(super) index: usize,
     pub(super) position: f64,
     pub(super) velocity: f64,
-    /// What it resists with when everything else stands, kg·m² or kg.
+    /// Effective inertia along it with all else fixed, kg·m² or kg.
     pub(super) inertia: f64,
     /// The effort that carries the weight of what hangs on it.
     pub(super) weight: f64,

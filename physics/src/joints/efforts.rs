@@ -17,31 +17,31 @@ use crate::engine::RapierWorld;
 use dwell_scene::JointId;
 use glam::Vec3;
 
-/// How far from its course something else may have taken a joint before it is left there: rad or m, and as a share of
-/// the way.
+/// Largest deviation of a joint from its predicted motion up to which it is moved back: rad or m, and as a share of the
+/// displacement.
 const OFF_COURSE: (f64, f64) = (2e-3, 0.1);
 
-/// What joints do in a step, beside the bodies.
+/// The actuation of joints in a step, besides the bodies.
 pub(crate) struct JointDrivers<'a> {
     pub(crate) joints: &'a [PhysicsJoint],
-    /// What pulls at each. Shape (joint,).
+    /// The actuation of each joint. Shape (joint,).
     pub(crate) pulls: &'a [Option<JointActuation>],
     /// The numbers of each, as the last step left them. Shape (joint,).
     pub(crate) joint_coordinates: &'a [JointCoordinate],
-    /// How laws change what a joint resists with; `None`: no law does.
+    /// Changes of joint resistance by laws; `None`: no law changes it.
     pub(crate) resist: Option<&'a ResistanceFn<'a>>,
-    /// How laws push at the bodies that joints move; `None`: no law does.
+    /// Wrenches of laws on the bodies that joints move; `None`: no law exerts one.
     pub(crate) push: Option<&'a LinkWrenchFn<'a>>,
     pub(crate) dt_s: f32,
 }
 
-/// How laws push at a body.
+/// The wrench of laws on a body.
 pub(crate) type LinkWrenchFn<'a> = dyn Fn(LinkStep) -> ExternalWrench + 'a;
 
 /// Changes what a joint resists with under a load.
 pub(crate) type ResistanceFn<'a> = dyn Fn(JointId, &JointLoad, &mut JointResistance) + 'a;
 
-/// Where one joint goes in a step.
+/// The predicted motion of one joint in a step.
 #[derive(Clone, Copy, Debug)]
 struct PredictedJoint {
     /// Its place in the world's joints.
@@ -52,15 +52,15 @@ struct PredictedJoint {
     velocity: f64,
 }
 
-/// What is expected of a tree in a step.
+/// The predicted motion of a tree in a step.
 #[derive(Clone, Debug)]
 pub(crate) struct TreePrediction {
     standing: TreeStep,
-    /// Where its joints go if nothing touches them, parents first. Shape (freedom,).
+    /// Its joints' motion if nothing touches them, parents first. Shape (freedom,).
     course: Vec<PredictedJoint>,
-    /// Whether they go anywhere, over a root that stands.
+    /// Set if any joint moves, over a root at rest.
     moves: bool,
-    /// Whether something pressed on the tree, or its root is free.
+    /// Set if something pressed on the tree, or its root is free.
     loose: bool,
 }
 
@@ -138,11 +138,8 @@ impl PredictedJoint {
     }
 }
 
-/// Puts a tree that nothing touched in the step where its joints went, and holds one together that something did; `joint_coordinates` then
-/// has its joints' numbers. Returns whether it was moved.
-///
-/// What nothing touched goes its course however far rapier had it elsewhere: its rows brake a bar that turns fast about its
-/// end. Only where rapier runs several times in a step may something have touched it in between and left no trace.
+/// Puts a tree that nothing touched in the step at its predicted joint positions, and closes the joints of one that was
+/// touched; `joint_coordinates` then holds its joints' values. Returns whether it was moved.
 pub(crate) fn settle(
     engine: &mut RapierWorld,
     tree: &KinematicTree,

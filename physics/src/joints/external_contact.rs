@@ -1,4 +1,4 @@
-//! What presses on the bodies of a tree, besides what a free root stands on.
+//! Contact forces on the bodies of a tree, besides the support of a free root.
 //!
 //! Joints' efforts answer to the velocity at the end of a step. A finger that presses on a thing does not get the velocity
 //! that it would get alone, and a motor that reckoned with that would hardly press. So the problem of a tree holds the forces
@@ -11,7 +11,7 @@ use glam::DVec3;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use rapier3d::geometry::{Collider, ContactManifold, ContactPair};
 
-/// How fast surfaces may part that press on each other in the next step too, m/s.
+/// Largest separation speed of surfaces that are taken to press on each other in the next step too, m/s.
 const PARTING_M_S: f64 = 0.02;
 
 /// A surface that presses on a body of a tree.
@@ -19,7 +19,7 @@ const PARTING_M_S: f64 = 0.02;
 pub(super) struct ExternalContact {
     /// Which joint's body is touched; `None`: the root.
     pub(super) link: Option<usize>,
-    /// Where the force acts, m.
+    /// Point of application, m.
     pub(super) at: DVec3,
     /// Push and friction, and torsional friction about `at`.
     wrench: Wrench,

@@ -6,16 +6,16 @@ use crate::engine::RapierWorld;
 use dwell_scene::JointKind;
 use glam::{DVec3, Vec3};
 
-/// Where one joint shall stand.
+/// The commanded placement of one joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointPlacement {
     /// rad or m.
     pub(crate) position: f32,
     /// rad/s or m/s.
     pub(crate) velocity: f32,
-    /// Whether it is put there even if it stands there already.
+    /// Places it again even if it is there already.
     pub(crate) anew: bool,
-    /// Whether its body stays where it is: a door that is shut.
+    /// Leaves its body in place: a door that is shut.
     pub(crate) shut: bool,
 }
 

@@ -17,9 +17,9 @@ use crate::engine::RapierWorld;
 use glam::{DVec3, Vec3};
 use rapier3d::dynamics::RigidBodyHandle;
 
-/// How near to a stop a joint stands at it, rad or m.
+/// Distance from a stop within which a joint is at it, rad or m.
 const AT_STOP: f64 = 1e-4;
-/// How much heavier than it is a joint seems that gives way to nothing.
+/// Factor on the inertia of a rigid joint.
 const RIGID: f64 = 1e6;
 
 /// A tree after a step, as impulses change how it moves.
@@ -39,7 +39,7 @@ pub(crate) struct ImpulseDynamics {
     root: BodyAcceleration,
     root_velocity: DVec3,
     floating: Option<FloatingBase>,
-    /// What the joints resist with, and a free root's six freedoms.
+    /// The joint-space inertia matrix, with a free root's six freedoms.
     inertia: SymmetricMatrix,
     /// Of the joints, and of a free root's six freedoms.
     velocities: Vec<f64>,
@@ -48,11 +48,11 @@ pub(crate) struct ImpulseDynamics {
 
 /// A point of a tree's bodies and a direction in which it may be pushed.
 pub(crate) struct ImpulsePoint {
-    /// How fast it goes that way for each unit of the tree's velocities.
+    /// Jacobian row: its speed in that direction for each unit of the tree's velocities.
     row: Vec<f64>,
-    /// What 1 N·s that way adds to the tree's velocities.
+    /// Change of the tree's velocities by 1 N·s in that direction.
     answer: Vec<f64>,
-    /// How fast a root that is led takes it that way, m/s.
+    /// Its speed in that direction by the motion of a kinematic root, m/s.
     root_velocity_along: f64,
 }
 

@@ -23,15 +23,15 @@ pub(super) const AT_REST: f64 = 1e-5;
 const STRIDE: f64 = 0.05;
 /// The most parts of a step: as many as the fastest that may be set, 1000 rad/s, takes at 120 Hz.
 const MOST_PARTS: f64 = 168.0;
-/// How often the middle of a part is looked for.
+/// Iterations for the middle of a part.
 const SWEEPS: usize = 3;
-/// How often friction is found anew, at most, from the load that it answers to.
+/// Most iterations of friction and the load that depends on it.
 const FRICTION_SWEEPS: usize = 8;
 /// Loads that differ by less count as found: N·m or N, and as a share.
 const FOUND: f64 = 1e-6;
-/// How steeply a load may seem to fall, and to rise, with what is taken for it.
+/// Bounds on the slope of a load over the load assumed for it.
 const FALLS: [f64; 2] = [-20.0, 0.5];
-/// How often what carries a tree is looked at anew.
+/// Most iterations of the support contacts.
 const GROUND_ROUNDS: usize = 6;
 
 /// The free joints of a tree in a step.
@@ -43,15 +43,15 @@ pub(super) struct TreeSolver<'a> {
     pub(super) drivers: &'a JointDrivers<'a>,
 }
 
-/// What becomes of a tree in a step that nothing else touches. Shape (freedom,) each.
+/// The motion of a tree in a step that nothing else touches. Shape (freedom,) each.
 pub(super) struct TreeIntegration<'a> {
-    /// Whether it moves so that rounding alone does not say where to.
+    /// Set if it moves by more than rounding.
     pub(super) moves: bool,
     pub(super) positions: Vec<f64>,
     pub(super) velocities: Vec<f64>,
     /// Mean accelerations.
     pub(super) gained: Vec<f64>,
-    /// What a free root does.
+    /// The response of a free root.
     pub(super) answer: Option<BaseResponse>,
     /// The tree at the middle of the step.
     pub(super) middle: TreeDynamics<'a>,
@@ -63,13 +63,13 @@ struct SubstepResult {
     answer: Option<BaseResponse>,
 }
 
-/// What the joints start a part of a step with. Shape (freedom,).
+/// The initial values of a part of a step. Shape (freedom,).
 #[derive(Clone, Copy)]
 struct SubstepStart<'a> {
     from: &'a [f64],
     now: &'a [f64],
     weights: &'a [f64],
-    /// What the joints resist with where nothing carries the tree. Shape (freedom, freedom).
+    /// The inertia matrix without support contacts. Shape (freedom, freedom).
     bare: &'a SymmetricMatrix,
     part_s: f64,
 }

@@ -1,8 +1,8 @@
-//! Where joints stand and how they move, with the turns of hinges counted through a step.
+//! Joint positions and velocities, with the turns of hinges counted through a step.
 //!
-//! Bodies say where a hinge stands within a turn. Which turn it is follows from where it stood a physics step ago and how it
-//! moved since. rapier turns a body in each of its substeps by `2 atan(w h / 2)` instead of `w h`; what is missing of a turn is
-//! given back where nothing touches the body, so that a fast wheel's angle is the integral of its velocity. A wheel on the ground
+//! Body poses give a hinge's angle within a turn. The number of turns follows from the angle a physics step ago and the
+//! motion since. rapier turns a body in each of its substeps by `2 atan(w h / 2)` instead of `w h`; the difference is given
+//! back where nothing touches the body, so that a fast wheel's angle is the integral of its velocity. A wheel on the ground
 //! stays where rapier's contacts saw it: its angle is short by 3e-4 of its way at 30 rad/s and by 4e-3 at 100 rad/s (at 480
 //! substeps a second).
 
@@ -24,8 +24,8 @@ pub(crate) struct JointCoordinate {
     pub(crate) velocity: f64,
 }
 
-/// How much more than the spacing of f32 a joint's numbers may differ from what its bodies say of it: each is a difference of
-/// a few rounded ones.
+/// Tolerance between a joint's values and those of its bodies, in spacings of f32: each is a difference of a few rounded
+/// numbers.
 const ROUNDINGS: f64 = 8.0;
 
 /// A joint at one moment.
@@ -35,7 +35,7 @@ pub(super) struct JointReading {
     pub(super) position: f64,
     /// rad/s or m/s.
     pub(super) velocity: f64,
-    /// How the bodies that it moves and that it hangs on turn, rad/s.
+    /// Angular velocities of the child and the parent body, rad/s.
     spins: [DVec3; 2],
 }
 

@@ -27,7 +27,7 @@ pub(crate) struct LinkStep {
     pub(crate) spin: DVec3,
     /// Length of the step, s.
     pub(crate) dt_s: f64,
-    /// Whether velocities are those at the middle of the step.
+    /// Set if velocities are those at the middle of the step.
     pub(crate) middle: bool,
     /// Since the world was made, s.
     pub(crate) time_s: f64,

@@ -61,9 +61,9 @@ pub(crate) struct PhysicsJoint {
     body_from_parent: Pose,
     parent_from_joint: RapierPose,
     child_from_joint: RapierPose,
-    /// Whether it hangs on what never moves and opens by hand: then it can be shut for good.
+    /// Set if its parent never moves and it opens by hand: it can then be latched.
     pub(crate) latchable: bool,
-    /// What is in force. Stops that rapier can keep it keeps too: it feels what presses against them.
+    /// The values in force. rapier also enforces the stops that it can: it feels contacts that press against them.
     pub(crate) values: JointParameters,
 }
 
@@ -145,8 +145,8 @@ fn free_axis(kind: JointKind) -> JointAxis {
     }
 }
 
-/// How much further than ours rapier's stops stand, rad or m: at a stop it would take the rounding of bodies' coordinates for a way
-/// beyond it, and push.
+/// Slack of rapier's stops beyond ours, rad or m: at a stop it would take the rounding of bodies' coordinates for a
+/// violation, and push.
 const SLACK: f32 = 1e-5;
 
 /// The limits that rapier keeps too.

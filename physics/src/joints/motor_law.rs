@@ -4,7 +4,7 @@ use super::JointActuation;
 use dwell_scene::{JointCommand, JointId, State};
 use std::fmt::Debug;
 
-/// What a law of a motor or joint remembers from step to step.
+/// The state of a motor's or joint's law between steps.
 pub(crate) trait LawMemory {
     /// Notes that a joint was put at `position` (rad or m) from outside, which is no motion.
     fn placed(&mut self, _joint: JointId, _position: f32) {}

@@ -19,7 +19,7 @@ use super::tree_step::TreeStep;
 use crate::engine::RapierWorld;
 use glam::DVec3;
 
-/// How much steeper than inertia a stop is that gives way to nothing.
+/// Steepness of a rigid stop, relative to inertia.
 const RIGID: f64 = 1e6;
 
 impl TreeStep {

@@ -23,23 +23,23 @@ impl Clone for Box<dyn ResistanceLaw> {
     }
 }
 
-/// What loads a joint in a physics step; efforts are positive along the joint.
+/// The loads on a joint in a physics step; efforts are positive along the joint.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct JointLoad {
     /// At the beginning of the step, rad or m.
     pub(crate) position: f32,
     /// At the middle of the step, rad/s or m/s.
     pub(crate) velocity: f32,
-    /// What the motor or the hand gives, N·m or N.
+    /// Effort of the motor or the hand, N·m or N.
     pub(crate) motor_effort: f32,
-    /// What acts along the joint besides its motor and what it resists with: weight, air, contacts and stops, and what the
-    /// motion of the other joints and of the root asks of it; N·m or N.
+    /// Effort along the joint besides its motor and its resistance: weight, air, contacts and stops, and the inertial
+    /// forces of the other joints and of the root; N·m or N.
     pub(crate) external_effort: f32,
-    /// Whether something drives it.
+    /// Set if a motor or a hand drives it.
     pub(crate) is_driven: bool,
 }
 
-/// How a joint resists in one physics step.
+/// The resistance of a joint in one physics step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JointResistance {
     /// The largest effort with which it holds or brakes whatever the speed, N·m or N.

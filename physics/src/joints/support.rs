@@ -1,4 +1,4 @@
-//! What carries a tree whose root is free: the points where it stands on something.
+//! Support of a tree with a free root: its contact points with the ground.
 
 use super::convex_solver::SymmetricMatrix;
 use super::tree_dynamics::Wrench;
@@ -9,13 +9,13 @@ use rapier3d::geometry::{
     Collider, ColliderHandle, ContactManifold, ContactPair, SolverContact, TypedShape,
 };
 
-/// How near to a surface a point stands on it, m.
+/// Distance from a surface within which a point is in contact, m.
 const STANDS_M: f32 = 1e-3;
-/// How far a surface that carries may lean: the least vertical part of its normal.
+/// Least vertical component of the normal of a supporting surface.
 const UPRIGHT: f32 = 0.5;
-/// How far a cylinder may stand up that still lies on its side: the sine.
+/// Sine of the largest tilt at which a cylinder lies on its side.
 const LYING: f32 = 0.2;
-/// What three equations are stiffened by, relative to their size, where fewer than three points carry.
+/// Relative regularization of the three equations where fewer than three points support.
 const RIDGE: f64 = 1e-9;
 
 /// A point where a tree stands on something.

@@ -1,4 +1,4 @@
-//! How the bodies of a tree move: inertia along its joints, and what gravity and rotation ask of them.
+//! Dynamics of a kinematic tree: joint-space inertia, and the efforts of gravity and rotation.
 //!
 //! # Source
 //! R. Featherstone, Rigid Body Dynamics Algorithms (2008): the composite-rigid-body method (6.2) and the recursive
@@ -106,7 +106,7 @@ impl JointAxisState {
     }
 }
 
-/// How a body moves, with accelerations as if no joint accelerated.
+/// The motion of a body, with accelerations as if no joint accelerated.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct BodyAcceleration {
     pub(super) center: DVec3,
@@ -135,22 +135,22 @@ impl BodyAcceleration {
 
 /// A tree at one moment. Shape (freedom,) each.
 pub(super) struct TreeDynamics<'a> {
-    /// How laws push at the joints' bodies; empty where none does.
+    /// Wrenches of laws on the joints' bodies; empty where none acts.
     pub(super) pushes: Vec<ExternalWrench>,
-    /// How laws push at a free root.
+    /// Wrench of laws on a free root.
     pub(super) root_push: ExternalWrench,
     pub(super) axes: Vec<JointAxisState>,
     pub(super) masses: Vec<LumpedBody>,
     pub(super) angular: Vec<DVec3>,
-    /// How the root moves.
+    /// The motion of the root.
     pub(super) root: BodyAcceleration,
     /// The root's own mass if it is free to answer, its joints' efforts pushing back on it.
     pub(super) free_root: Option<LumpedBody>,
     /// The velocity of the root's centre of mass, m/s.
     pub(super) root_velocity: DVec3,
-    /// What carries a tree whose root is free.
+    /// The support points of a tree whose root is free.
     pub(super) supports: &'a [SupportPoint],
-    /// What else presses on the tree.
+    /// Other contact forces on the tree.
     pub(super) touches: &'a [ExternalContact],
     pub(super) gravity: DVec3,
 }

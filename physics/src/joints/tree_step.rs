@@ -6,10 +6,10 @@ use super::tree::KinematicTree;
 use super::{PhysicsJoint, child_at};
 use crate::engine::RapierWorld;
 
-/// How fast something moves that stands, m/s and rad/s: a tenth of a millimetre in the half second after which rapier lets it
-/// sleep.
+/// Speed below which a body counts as still, m/s and rad/s: a tenth of a millimetre in the half second after which rapier
+/// lets it sleep.
 const STILL: f32 = 2e-4;
-/// How far from where its joint says a body stands that is in its place, m and rad.
+/// Largest distance of a body in place from where its joint puts it, m and rad.
 const IN_PLACE: f32 = 2e-5;
 
 /// A tree in a step: made before it, and used again after it.

@@ -25,7 +25,7 @@ pub(crate) struct LawContext<'a> {
     pub(crate) plans: &'a [BodyPlan],
     /// Bodies that joints hang on and that answer to what these do: laws push at them as at links, through [`LinkLaw`](crate::joints::LinkLaw).
     pub(crate) floating_roots: &'a [u32],
-    /// What each collider stands for, by its user data.
+    /// The entry of each collider, by its user data.
     pub(crate) entries: &'a [ColliderEntry],
     pub(crate) house: &'a House,
     pub(crate) table: &'a ContactTable,

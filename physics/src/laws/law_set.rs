@@ -9,10 +9,10 @@ use crate::joints::{LawMemory, LinkLaw, MotorLaw, ResistanceLaw};
 use dwell_scene::{House, JointId, LawSpec};
 use std::sync::Arc;
 
-/// What a law does at one stage.
+/// The effect of a law at one stage.
 #[derive(Debug)]
 pub(crate) enum LawEffect {
-    /// What bodies weigh.
+    /// Masses of bodies.
     Mass(Arc<dyn MassLaw>),
     /// Bodies between steps.
     Body(Arc<dyn BodyLaw>),
@@ -20,13 +20,13 @@ pub(crate) enum LawEffect {
     Link(Arc<dyn LinkLaw>),
     /// The values of contacts.
     Contact(Arc<dyn ContactLaw>),
-    /// How all contacts give.
+    /// Compliance of all contacts.
     Compliance(ContactCompliance),
-    /// What motors do.
+    /// Motor efforts.
     Motor(Box<dyn MotorLaw>),
-    /// What joints resist with.
+    /// Joint resistances.
     Resistance(Box<dyn ResistanceLaw>),
-    /// How bases move.
+    /// Motion of bases.
     Base(Arc<dyn BaseLaw>),
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct LawSet {
     pub(crate) bodies: Vec<Arc<dyn BodyLaw>>,
     pub(crate) links: Vec<Arc<dyn LinkLaw>>,
     pub(crate) contacts: Vec<Arc<dyn ContactLaw>>,
-    /// How contacts give; of several laws the last decides.
+    /// The contact compliance; of several laws the last decides.
     pub(crate) compliance: Option<ContactCompliance>,
     pub(crate) motors: Vec<NumberedEffect<Box<dyn MotorLaw>>>,
     pub(crate) resistances: Vec<NumberedEffect<Box<dyn ResistanceLaw>>>,

@@ -1,4 +1,4 @@
-//! What physics makes of a house, once: collision pieces and rigid bodies. All worlds over a house share it.
+//! The physics model of a house, built once: collision pieces and rigid bodies. All worlds over a house share it.
 
 mod decompose;
 mod plan;

@@ -18,7 +18,7 @@ use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What a collision piece belongs to.
+/// The owner of a collision piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum PieceOwner {
     /// A wall, floor or ceiling.
@@ -29,7 +29,7 @@ pub(crate) enum PieceOwner {
     LastBox,
 }
 
-/// What a piece is made of.
+/// The materials of a piece.
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialAssignment {
     /// One material all over; `None` when the part names none.
@@ -43,7 +43,7 @@ pub(crate) enum MaterialAssignment {
 pub(crate) struct CollisionPiece {
     pub(crate) owner: PieceOwner,
     pub(crate) shape: SharedShape,
-    /// Where the shape stands on its body, or in the world for a static piece.
+    /// Pose of the shape on its body, or in the world for a static piece.
     pub(crate) place: RapierPose,
     /// kg/m³; 0 for a static piece.
     pub(crate) density_kg_m3: f32,
@@ -61,7 +61,7 @@ pub(crate) struct BodyPlan {
     pub(crate) joint: Option<JointId>,
     /// Mass of each part without overrides, kg. Shape (part,).
     pub(crate) part_mass_kg: Vec<f32>,
-    /// Whether some of its parts state mass, centre of mass and inertia; their pieces then have no density.
+    /// Set if some of its parts state mass, centre of mass and inertia; their pieces then have no density.
     pub(crate) states_inertia: bool,
 }
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::ColliderHandle;
 
-/// How fast the side of a cylinder goes round from where on it rolls, m/s.
+/// Surface speed of a cylinder's side above which it counts as rolling, m/s.
 const ROLLS_M_S: f32 = 0.01;
 
 /// A cylinder of a body that may move.

@@ -1,7 +1,7 @@
-//! What the convex pieces of a part of several materials are made of: what is seen at them.
+//! Materials of the convex pieces of a part with several materials, from the faces that are seen.
 //!
-//! A house says of which material each face of a part is, and which convex pieces collide, but not which belongs to which. A
-//! face belongs to the piece that it lies on; a piece is of the material of which most of the faces on it are.
+//! A house gives the material of each face of a part, and the convex pieces that collide, but not which belongs to which. A
+//! face belongs to the piece that it lies on; a piece has the material of most of the faces on it.
 
 use super::plan::{CollisionPiece, MaterialAssignment};
 use super::shapes;
@@ -11,7 +11,7 @@ use glam::Vec3;
 /// The most faces that are looked at, the largest first; of so many or fewer four points each, else the middle.
 const MOST_FACES: usize = 512;
 const FEW_FACES: usize = 128;
-/// How much further from one piece than from another a face may be and belong to both, m.
+/// Difference of distances to two pieces up to which a face belongs to both, m.
 const ALIKE_M: f32 = 1e-4;
 
 /// A point of a face, with the area that it stands for.

@@ -1,4 +1,4 @@
-//! What the leaves of joints pass through.
+//! Collision exclusions of joints' leaves.
 
 use super::overlap::depth;
 use super::{CLEARANCE_M, StartResolver};
@@ -13,7 +13,7 @@ use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// How near to a leaf something stands that it passes through, m.
+/// Distance from a leaf within which a thing may be one that it passes through, m.
 const LEAF_MARGIN_M: f32 = 0.01;
 
 impl StartResolver<'_> {
@@ -185,7 +185,7 @@ impl ObjectPieces {
     }
 }
 
-/// What a body hangs on by a joint: another body, or what never moves (`None`); `None` where it hangs on nothing.
+/// The parent of a body by a joint: another body, or fixed structure (`Some(None)`); `None` where it has no joint.
 #[expect(
     clippy::option_option,
     reason = "hanging on nothing is not hanging on what stands"

@@ -23,7 +23,7 @@ const DISTANCES: usize = 8;
 const DIRECTIONS: usize = 12;
 /// Pushes that are tried from each.
 const MOST_PUSHES_BESIDE: usize = 3;
-/// How far below a floor is looked for, m.
+/// Depth of the search for a floor below, m.
 const FLOOR_M: f32 = 100.0;
 
 impl StartResolver<'_> {

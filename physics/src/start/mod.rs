@@ -32,7 +32,7 @@ pub(crate) struct StartResolver<'a> {
     pub(crate) settings: &'a ResolvedConfig,
 }
 
-/// Where a body ends up.
+/// The resolved pose of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ResolvedBody {
     pub(crate) place: RapierPose,
@@ -118,7 +118,7 @@ impl StartResolver<'_> {
             .is_some()
     }
 
-    /// What became of the bodies that overlapped something.
+    /// Reports the bodies that overlapped something.
     fn tell(
         &self,
         deepest: &BTreeMap<usize, Penetration>,

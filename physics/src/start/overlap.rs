@@ -1,4 +1,4 @@
-//! How deep a body is in others.
+//! Penetration depths.
 
 use super::StartResolver;
 use super::placed_bodies::{PlacedBodies, PlacedBody};

@@ -12,7 +12,7 @@ pub(super) struct PlacedBody {
     pub(super) body: u32,
     pub(super) bounds: Aabb,
     pub(super) place: RapierPose,
-    /// Who came first comes first.
+    /// Order of placement.
     rank: u32,
 }
 

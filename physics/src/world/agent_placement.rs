@@ -14,7 +14,7 @@ const FURTHEST_M: f32 = 32_768.0;
 /// The fastest that one turns, rad/s.
 const FASTEST_TURN_RAD_S: f32 = 100.0;
 
-/// Where an agent is put, and how it moves there.
+/// The pose of an agent, and its velocities.
 ///
 /// What a body does by its own will is for its controls: an agent on legs that is given a velocity slides on (feet brake it) or
 /// flies on, and its rate of turn is what its gyro reads in this moment. The wheels of a differential drive turn as its speed
@@ -26,15 +26,15 @@ pub struct AgentPlacement {
     pub agent: AgentId,
     /// The point between its feet, m.
     pub position: Vec3,
-    /// Where it faces, rad, positive to the left.
+    /// Heading, rad, positive to the left.
     pub yaw_rad: f32,
-    /// Where it looks, rad, positive up; -1.5 to 1.5.
+    /// Pitch of the view, rad, positive up; -1.5 to 1.5.
     pub pitch_rad: f32,
     /// m/s; at most 30 along each axis.
     pub velocity: Vec3,
     /// rad/s, positive to the left; at most 100 either way.
     pub yaw_rate_rad_s: f32,
-    /// How much lower than its body's height it is, m: more than 0 while it crouches. Only on legs.
+    /// Reduction of its body's height, m: more than 0 while it crouches. Only on legs.
     pub crouched_by_m: f32,
     /// Speeds of the left and right wheel of a differential drive, rad/s, instead of a level velocity and a rate of turn.
     pub wheel_rad_s: Option<[f32; 2]>,

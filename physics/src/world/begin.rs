@@ -1,4 +1,4 @@
-//! How a world begins: what overlaps is resolved, joints are hung, doors are shut.
+//! Construction of a world: resolves overlaps, attaches joints, latches doors.
 
 use super::PhysicsWorld;
 use crate::body;

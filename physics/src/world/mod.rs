@@ -53,7 +53,7 @@ pub struct PhysicsWorld {
     contacts: ContactRecord,
     /// The overrides that are in force.
     applied: BTreeMap<Address, f64>,
-    /// What the last step tells of what takes time.
+    /// Outcomes in the last step of operations that take time.
     notices: Vec<DelayedOutcome>,
 }
 

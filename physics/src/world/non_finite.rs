@@ -1,4 +1,4 @@
-//! What the solver loses: bodies whose place or speed is no longer a number.
+//! Recovery of bodies that the solver loses: those whose position or velocity is no longer finite.
 //!
 //! rapier takes such a body out of its world for good, where it last was. Here it is put back there, at rest, and a notice says so:
 //! nothing falls out of a world for the rest of an episode.

@@ -11,10 +11,10 @@ use dwell_scene::{Id, JointId, JointKind, PartId, Pose, State, Velocity};
 const FASTEST: f32 = 1000.0;
 /// The furthest that anything is put, m: coordinates are exact to some millimetres there.
 const FURTHEST_M: f32 = 32_768.0;
-/// How far beyond a stop a joint's position may be said to be, rad or m: rounding.
+/// Rounding tolerance of a joint's position beyond a stop, rad or m.
 const AT_STOP: f32 = 1e-5;
 
-/// Where a part that moves freely is put, and how it moves there.
+/// The pose and velocities of a part that moves freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
     /// A part of the body: a free object's, or the base of a robot that stands free.
@@ -25,7 +25,7 @@ pub struct BodyState {
     pub velocity: Velocity,
 }
 
-/// Where a joint is put, and how it moves there.
+/// The position and velocity of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointState {
     /// The joint.

@@ -33,13 +33,13 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What a snapshot begins with, and what a moment begins with, which is not packed.
+/// The header of a snapshot, and of a light snapshot, which is not packed.
 const MAGIC: &[u8; 4] = b"dwph";
 const MAGIC_OF_MOMENTS: &[u8; 4] = b"dwpm";
 const VERSION: u32 = 13;
 const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 
-/// What this crate remembers between steps.
+/// State of this crate between steps.
 #[derive(Clone, Serialize, Deserialize)]
 struct WorldMemory {
     tick: u64,
@@ -56,7 +56,7 @@ struct WorldMemory {
     laws: Vec<Vec<f32>>,
 }
 
-/// What rapier remembers between steps.
+/// State of rapier between steps.
 #[derive(Serialize, Deserialize)]
 struct SnapshotData<'a> {
     memory: WorldMemory,

@@ -1,4 +1,4 @@
-//! What is meant: by id, by ray, by gaze; and everything that means nothing.
+//! Targets by id, by ray and by gaze; and those that resolve to nothing.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{HandAction, OutcomeCode, Target, actions};

@@ -1,7 +1,7 @@
-//! Agents' bodies at the start of a world: too large for the house is refused, in the way is put aside.
+//! Agents' bodies at the start of a world: one too large for the house is refused, one in the way is moved aside.
 //!
-//! What used to happen: a body that was too large was refused only when it grew in a running world; one that began so stood in
-//! walls and ceiling.
+//! Regression: a body that was too large was refused only when it grew in a running world; one that began so stood in walls
+//! and ceiling.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{PhysicsConfig, PhysicsWorld};

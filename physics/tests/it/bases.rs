@@ -242,7 +242,7 @@ fn a_holonomic_base_goes_sideways_and_turns_on_the_way() {
     }
 }
 
-/// What is true of a base can differ from what it believes: the override moves the body, odometry keeps to nominal
+/// A base's true parameters can differ from its nominal ones: the override moves the body, odometry keeps to nominal
 /// numbers. A base wider by one percent turns one percent less.
 #[test]
 fn a_measured_wheel_base_changes_the_way_and_not_the_odometry() {

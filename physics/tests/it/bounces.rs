@@ -284,7 +284,7 @@ fn a_leaf_at_rest_takes_the_momentum_of_what_strikes_it() {
     }
 }
 
-/// What hits a door's leaf bounces off it and pushes it open.
+/// A ball that hits a door's leaf bounces off it and pushes it open.
 #[test]
 fn a_ball_bounces_off_a_leaf_that_gives_way() {
     let mut build = Build::room([6.0, 4.0, 4.0]);

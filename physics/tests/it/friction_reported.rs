@@ -1,4 +1,4 @@
-//! How much friction events tell, against closed forms.
+//! Friction impulses of events, against closed forms.
 
 use crate::common::{Build, Piece, gravity, pair};
 use dwell_physics::{ContactFriction, ContactKind, PhysicsConfig};

@@ -20,11 +20,11 @@ struct Gantry {
     lift: JointId,
     shift: JointId,
     fingers: [JointId; 2],
-    /// Whether the right finger only follows.
+    /// Set if the right finger is a mimic joint.
     follows: bool,
-    /// Where the lift stands with the fingers at the floor, m.
+    /// Position of the lift with the fingers at the floor, m.
     floor: f32,
-    /// How far a closing finger is told to go, m.
+    /// Commanded position of a closing finger, m.
     closed: f32,
 }
 
@@ -146,9 +146,10 @@ impl Gantry {
     }
 }
 
-/// What two fingers hold by friction: `2 mu F`, against `m g`. A tenth (a quarter, for motors told a place) above it the cube is lifted by 20 cm, stays for 10 s where it
-/// is held, within 1 mm, is carried aside, set down and let go; as much below it slips. With both fingers on one motor (URDF) and with one
-/// motor each (MJCF), on a base that is bolted down and on one that stands.
+/// Two fingers hold by friction `2 mu F`, against `m g`. A tenth (a quarter, for position-controlled motors) above it the
+/// cube is lifted by 20 cm, stays for 10 s where it is held, within 1 mm, is carried aside, set down and released; as much
+/// below it slips. With both fingers on one motor (URDF) and with one motor each (MJCF), on a base that is bolted down and
+/// on one that stands.
 #[test]
 fn a_gripper_holds_what_friction_carries_and_no_more() {
     let mass_kg = 0.5;

@@ -15,7 +15,7 @@ fn ball_kg() -> f64 {
     f64::from(DENSITY) * 4.0 / 3.0 * std::f64::consts::PI * f64::from(RADIUS).powi(3)
 }
 
-/// How a blow is made.
+/// An impact between a ball and a leaf.
 #[derive(Clone, Copy, Debug)]
 struct Blow {
     kind: JointKind,
@@ -23,10 +23,10 @@ struct Blow {
     times: f32,
     restitution: f64,
     friction: f64,
-    /// How the ball goes and where it begins.
+    /// Initial velocity of the ball, and its position.
     throw: Vec3,
     from: Vec3,
-    /// How the leaf moves along its joint.
+    /// Velocity of the leaf along its joint.
     leaf: f32,
     sleeping: bool,
 }
@@ -44,13 +44,13 @@ struct Seen {
     turning: f64,
 }
 
-/// Where ball and leaf meet.
+/// The impact point of ball and leaf.
 struct Meeting {
     /// The place of the ball's middle against the hinge, m.
     at: DVec3,
     /// Of the leaf.
     normal: DVec3,
-    /// How fast the leaf goes against it there for each unit of the joint's speed.
+    /// Speed of the leaf at the point for each unit of the joint's speed.
     lever: f64,
 }
 

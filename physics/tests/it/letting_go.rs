@@ -8,7 +8,7 @@ use glam::Vec3;
 use std::sync::Arc;
 
 const LIFT: JointId = JointId(0);
-/// Where the motor holds it, m.
+/// Position at which the motor holds it, m.
 const HELD_M: f32 = 0.4;
 
 /// A weight of about 8 kg on an upright slide with a motor.

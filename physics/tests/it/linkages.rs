@@ -72,8 +72,8 @@ fn a_linkage_that_was_set_apart_comes_together() {
     assert!(left.abs() < 2e-4, "{left}");
 }
 
-/// What a follower's stops do not let it reach, a linkage does not press for: it stands at the stop, and its leader where its
-/// motor holds it. Where the arm meets itself on the way, it is pressed, but not shot away.
+/// A mimic joint whose stops keep it from its position does not press for it: it stands at the stop, and its leader where
+/// its motor holds it. Where the arm meets itself on the way, it is pressed, but not shot away.
 #[test]
 fn a_linkage_that_asks_for_the_impossible_rests_at_the_stop() {
     for (stop, offset) in [(1.0_f32, 34.0), (-1.0, -34.0), (3.0, 34.0)] {

@@ -35,7 +35,7 @@ fn get(run: &Run, address: &str) -> f64 {
     there.unwrap().value
 }
 
-/// What used to happen: each of the limits, and each of the moments, was refused as long as the others were the old ones.
+/// Regression: each of the limits, and each of the moments, was refused as long as the others were the old ones.
 #[test]
 fn limits_and_moments_are_set_together() {
     let mut build = Build::room([4.0, 3.0, 4.0]);
@@ -404,7 +404,7 @@ fn a_number_that_stands_there_anyway_is_not_kept() {
     assert_eq!(run.state.overridden_fov_deg(agent), None);
 }
 
-/// What used to happen: a hand that had become too weak, and one whose thing had become too heavy, went on holding.
+/// Regression: a hand that had become too weak, and one whose object had become too heavy, went on holding.
 #[test]
 fn what_is_too_heavy_now_falls_from_the_hand() {
     let mut build = Build::room([6.0, 3.0, 6.0]);

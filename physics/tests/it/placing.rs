@@ -7,7 +7,7 @@ use glam::{Quat, Vec3};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// How far and how much a thing that was put down may move in two seconds.
+/// Largest displacement, m, and rotation of an object in the two seconds after it was put down.
 const MOVES_M: f32 = 0.01;
 const TURNS_DEG: f32 = 5.0;
 

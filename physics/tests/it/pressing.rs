@@ -1,7 +1,7 @@
 //! A robot that presses on itself.
 //!
-//! What a link carried of its own robot was once taken for ground under it, and of such a pair only the half that pushes down was
-//! felt. A motor that pressed on its own body from above reckoned that nothing stopped it.
+//! Regression: contacts between links of one robot were once taken for ground, and of such a pair only the half that pushes
+//! down was felt. A motor that pressed on its own body from above then computed that nothing stopped it.
 
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run};

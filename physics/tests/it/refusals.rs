@@ -6,7 +6,7 @@ use dwell_scene::{AgentId, EntityId, Mobility, ObjectId};
 use glam::Vec3;
 use std::collections::BTreeSet;
 
-/// What was told, and what it must say.
+/// An outcome, and the code and text that it must have.
 struct Case(ActionOutcome, OutcomeCode, &'static str);
 
 /// A room with an agent at (3, 0, 3) that looks towards -Z.

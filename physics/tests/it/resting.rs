@@ -1,4 +1,4 @@
-//! What rests: no more pairs than stand near each other, and the same bits after a restore at any moment of falling asleep.
+//! Bodies at rest: only pairs that are near each other, and the same bits after a restore at any moment of falling asleep.
 
 use crate::common::{Build, Piece, Run};
 use dwell_scene::random::{RandomKey, RandomStream};
@@ -6,7 +6,7 @@ use dwell_scene::{Aabb, Pose, Velocity};
 use glam::Vec3;
 
 const HALF: Vec3 = Vec3::new(0.2, 0.015, 0.03);
-/// How near to each other things are said to touch, and what rounding adds, m.
+/// Distance at which bodies are reported to touch, and the rounding on it, m.
 const NEAR_M: f32 = 0.01;
 
 /// 120 slats in the air of a room.
@@ -55,7 +55,7 @@ fn near_by_hand(run: &Run) -> usize {
     pairs.sum()
 }
 
-/// What touches is still told, of things that stand near each other only.
+/// Contacts of sleeping bodies are still reported, of bodies near each other only.
 #[test]
 fn what_fell_asleep_keeps_no_pairs() {
     let mut run = slats();

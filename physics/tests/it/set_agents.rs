@@ -299,7 +299,7 @@ fn a_slide_goes_on_from_the_very_numbers_it_is_put_to() {
     assert!(coarse > 1e-6, "{coarse}");
 }
 
-/// What is thrown with a velocity follows its parabola until it lands, whatever its legs are told then.
+/// An agent thrown with a velocity follows its parabola until it lands, whatever its legs are commanded then.
 #[test]
 fn a_thrown_agent_flies() {
     let mut run = Build::room([20.0, 12.0, 6.0]).run();

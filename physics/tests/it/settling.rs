@@ -35,7 +35,7 @@ fn what_was_dropped_lies_and_time_begins_then() {
     assert_eq!(run.state.part_pose, before.part_pose);
 }
 
-/// What is given no time falls when the world runs, and what is given too little still does.
+/// An object without time to settle falls when the world runs, and one with too little still does.
 #[test]
 fn it_takes_no_longer_than_it_may() {
     let mut run = dropped_box();

@@ -1,5 +1,5 @@
-//! What lies still is laid aside, and nobody can tell: what it carries falls when it is taken away, what hits it meets a free
-//! thing, and what touches what is told as before.
+//! The sleeping-island cache is invisible: a body falls when its support is taken away, an impact meets a free body, and
+//! contacts are reported as before.
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::{BodyState, PhysicsConfig};
@@ -44,7 +44,7 @@ fn put(run: &mut Run, object: ObjectId, at: Vec3) {
     run.world.set_bodies(&mut run.state, &[body]).unwrap();
 }
 
-/// Who carries whom, from the bottom up.
+/// The pairs of supporting and supported body, from the bottom up.
 #[test]
 fn contacts_are_told_of_what_is_laid_aside() {
     let (build, objects) = tower(3);

@@ -116,8 +116,8 @@ fn a_robot_that_stands_on_its_legs_holds_its_pose() {
     assert!(sunk.length() < 1e-3 && now.rotation.dot(from.rotation).abs() > 1.0 - 1e-6);
 }
 
-/// What motors do inside a falling robot does not change its fall: its centre of mass gains g t and nothing aside. Landed,
-/// it comes to rest on its legs.
+/// Motors inside a falling robot do not change its fall: its centre of mass gains g t and nothing aside. Landed, it comes
+/// to rest on its legs.
 #[test]
 fn a_falling_robot_falls_as_a_stone_and_comes_to_rest() {
     let (mut build, pose) = four_legs(STRONG);

@@ -178,7 +178,7 @@ fn an_empty_house_and_things_without_shape_make_a_world() {
     );
 }
 
-/// What leaves the house comes to rest below it instead of falling for ever.
+/// An object that leaves the house comes to rest below it instead of falling for ever.
 #[test]
 fn nothing_falls_for_ever() {
     let mut build = Build::room([6.0, 3.0, 6.0]);
@@ -221,7 +221,7 @@ fn what_stands_around_makes_way() {
     assert!(apart(left, middle) > 0.197 && apart(middle, right) > 0.197);
 }
 
-/// What is stuck in a ceiling comes down, and what a wall is too near to goes beside, but never behind the wall.
+/// An object stuck in a ceiling comes down, and one too near to a wall is moved beside it, but never behind it.
 #[test]
 fn what_is_stuck_comes_down_or_aside_but_through_no_wall() {
     let mut build = Build::room([6.0, 3.0, 6.0]);

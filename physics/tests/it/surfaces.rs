@@ -1,6 +1,6 @@
-//! Each piece of a thing is of its own material.
+//! Each piece of an object has its own material.
 //!
-//! What used to happen: all pieces of a part had the part's first material.
+//! Regression: all pieces of a part had the part's first material.
 
 use crate::common::{Build, Piece, Run, gravity, pair};
 use dwell_physics::{ContactEntity, ContactKind, PhysicsConfig};

@@ -62,8 +62,8 @@ fn a_block_slides_down_a_slope_with_the_acceleration_that_friction_leaves() {
 /// Name, how it is made, share of the acceleration, and seconds for which it is watched.
 type Shape<'a> = (&'a str, &'a dyn Fn(Vec3) -> Piece, f32, u32);
 
-/// What rolls without slipping goes down a slope with `g sin t / (1 + k)`, `I = k m r^2`: 2/3 of `g sin t` for a cylinder, 5/7
-/// for a ball; and `v = w r` all the way. Within 1 %.
+/// A body that rolls without slipping goes down a slope with `g sin t / (1 + k)`, `I = k m r^2`: 2/3 of `g sin t` for a
+/// cylinder, 5/7 for a ball; and `v = w r` all the way. Within 1 %.
 #[test]
 fn balls_and_cylinders_roll_down_a_slope_as_their_inertia_says() {
     let (radius, angle) = (0.1_f32, 0.15_f32);

@@ -19,10 +19,10 @@ const NEIGHBOURS: usize = 6;
 /// Directions within this of each other share their weight: the cosine of 10 degrees.
 const CLOSE_COSINE: f64 = 0.984_807_753;
 
-/// What a sphere has in common with a head.
+/// A sphere fitted to a measured head.
 pub(super) struct SphereFit {
     pub(super) radius_m: f64,
-    /// How much later all responses are than at the sphere, s.
+    /// Delay common to all responses, re the sphere, s.
     pub(super) late_s: f64,
     /// The part of the sphere that each direction stands for, up to a factor.
     weights: Vec<f64>,

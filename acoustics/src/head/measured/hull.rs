@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-/// How far points are moved off the sphere, so that no four lie in one plane: rings of equal height would.
+/// Displacement of points off the sphere, so that no four lie in one plane: rings of equal height would.
 const JITTER: f64 = 1e-8;
 /// Start places for the search: cells along the edge of a cube's side.
 const CELLS: usize = 16;

@@ -15,12 +15,12 @@ const MOST_NUMBERS: usize = 1 << 28;
 /// Directions nearer than this are one, as chords: 0.05 degrees.
 pub(super) const SAME: f64 = 8.7e-4;
 
-/// Impulse responses from places around a head to its ears, in an anechoic room: what [`Head::measured`](super::super::Head::measured)
-/// is made from.
+/// Impulse responses from places around a head to its ears, in an anechoic room; the input of
+/// [`Head::measured`](super::super::Head::measured).
 ///
-/// Only directions count: a head is heard as from far away. Of places in one direction the farthest is taken.
+/// Only directions count: sources are taken as distant. Of places in one direction the farthest is used.
 ///
-/// How it is heard:
+/// Processing:
 /// - **Level**: one gain for both ears and all directions, such that from 200 to 500 Hz, where a head is small, the energy over
 ///   all directions is that at a sphere. So a source of 1 Pa at 1 m gives at an ear what it gives at the head's centre without the
 ///   head, times what the head does; the gain of the measurement's loudspeaker and microphones drops out. Their response remains,
@@ -36,7 +36,7 @@ pub(super) const SAME: f64 = 8.7e-4;
 /// - **Above half of its sample rate** modulus and phase stay as they are at 0.46 of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HrirMeasurement {
-    /// Where the sources were in head space (forward -Z, left -X, up +Y), m. Shape (direction,); 4 to 20,000.
+    /// Positions of the sources in head space (forward -Z, left -X, up +Y), m. Shape (direction,); 4 to 20,000.
     pub sources: Vec<DVec3>,
     /// The responses, Pa. Shape (direction, ear, sample), flat; 16 to 65,536 samples.
     pub responses: Vec<f32>,
@@ -46,7 +46,7 @@ pub struct HrirMeasurement {
     pub rate_hz: f64,
 }
 
-/// What stands in a measurement of one direction.
+/// The responses measured from one direction.
 pub(super) struct MeasuredDirection<'a> {
     /// Unit length.
     pub(super) direction: DVec3,

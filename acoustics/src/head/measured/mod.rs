@@ -23,7 +23,7 @@ use onset::OnsetDetector;
 use serde::Serialize;
 use std::sync::Arc;
 
-/// How long a head rings after its onset, s; what is later is the room's.
+/// Length of a head's response after its onset, s; later sound is the room's.
 const RINGING_S: f64 = 0.011;
 /// The end of the ringing over which it fades, s.
 const FADE_S: f64 = 0.001;
@@ -32,7 +32,7 @@ const GAP_COSINE: f64 = 0.906_307_787;
 /// Directions that are looked at for gaps.
 const FILLERS: usize = 240;
 
-/// What was found in a measurement.
+/// A summary of a head's measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeadSummary {
     /// Different directions.
@@ -43,7 +43,7 @@ pub struct HeadSummary {
     pub radius_m: f64,
     /// The gain by which all responses were changed, dB.
     pub gain_db: f64,
-    /// What was taken off all delays, s: the way from the measurement's loudspeaker, and its own delay.
+    /// Delay removed from all responses, s: the distance from the measurement's loudspeaker, and its own delay.
     pub removed_delay_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What is heard from any direction.
+//! Filters of a measured head for any direction.
 
 use super::HeadResponses;
 use super::fit::{WeightedDirections, cosine, response_of, undelayed};
@@ -29,12 +29,12 @@ pub(crate) struct MeasuredHead {
     rows: Vec<[DirectionRow; 2]>,
 }
 
-/// What an ear hears from a direction of the table.
+/// The filter of one ear for a direction of the table.
 #[derive(Debug)]
 struct DirectionRow {
     /// Against the head's centre, s.
     delay_s: f64,
-    /// What the delay leaves over. Shape (bin,).
+    /// The spectrum without the delay. Shape (bin,).
     rest: Vec<Complex<f32>>,
     /// Gain of amplitude and whole delay (s) in each band.
     gain: BandValues,

@@ -16,7 +16,7 @@ use crate::bounds::Aabb;
 pub struct Instance {
     /// Shared by all copies.
     pub mesh: Arc<TriangleBvh>,
-    /// Where it stands; may scale and mirror. One that is not finite or flattens hides the instance.
+    /// Its transform; may scale and mirror. One that is not finite or flattens hides the instance.
     pub world_from_mesh: Affine3A,
     /// Reported by hits, and decides among coincident surfaces: the lower id wins.
     pub id: i32,

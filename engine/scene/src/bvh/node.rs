@@ -8,7 +8,7 @@ use crate::bounds::Aabb;
 /// Children of a node, and triangles of a block.
 pub(super) const WIDTH: usize = 4;
 
-/// What a node's child, or the top of a tree, is.
+/// A link to a node's child, or to the top of a tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NodeLink(u32);
 

@@ -16,7 +16,7 @@ pub struct RayPacket<const N: usize> {
     pub near_m: [f32; N],
     /// Furthest distances that count, m; below `near_m` for a ray that is not used.
     pub far_m: [f32; N],
-    /// Where they start, m.
+    /// Common origin, m.
     pub origin: Vec3,
 }
 
@@ -81,7 +81,7 @@ impl<const N: usize> RayPacket<N> {
     }
 }
 
-/// Where the rays of a packet end; see [`Hit`](super::Hit).
+/// The hits of a packet's rays; see [`Hit`](super::Hit).
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct PacketHits<const N: usize> {

@@ -39,9 +39,9 @@ impl RayMask {
 /// meets nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, m.
+    /// Origin, m.
     pub origin: Vec3,
-    /// Where it goes; unit length.
+    /// Direction; unit length.
     pub direction: Vec3,
     /// Nearest distance that counts, m; at least 0. A ray that leaves a surface starts a little way off it.
     pub near_m: f32,
@@ -91,7 +91,7 @@ impl Ray {
     }
 }
 
-/// Where a ray ends.
+/// The closest hit of a ray.
 ///
 /// Surfaces coincide where a farther one's plane lies within 10 µm plus a millionth of the distance of the nearest hit
 /// (along the ray at most 32 times as much, so that it holds at grazing angles, too). They count as one, and the lowest id is seen.

@@ -19,9 +19,9 @@ use crate::simd_dispatch::SimdLevel;
 /// lower triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneBvh<'a> {
-    /// What never moves.
+    /// The static triangles.
     pub fixed: &'a TriangleBvh,
-    /// What does.
+    /// The moving instances.
     pub moving: &'a InstanceSet,
 }
 

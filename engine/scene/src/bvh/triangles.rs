@@ -12,7 +12,7 @@ use crate::bounds::Aabb;
 /// Coordinates beyond this are no house's, m; such triangles are left out.
 const FURTHEST_M: f32 = 1e12;
 
-/// What a triangle carries besides its corners.
+/// The attributes of a triangle besides its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TriangleTag {
     /// Reported by hits, and decides among coincident surfaces: the lower id wins.

@@ -1,4 +1,4 @@
-//! How the floats of a column lie.
+//! Layouts of a column's floats.
 
 use super::{ColumnsError, FLOAT, FloatLayout, push_varint, read_varint, take};
 use std::collections::HashMap;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 const FEW: usize = 64;
 /// Floats that come back this often on the mean are left whole, and so are rows told by how far back they were.
 const SELDOM: usize = 2;
-/// How far the square of a unit row's length may be from 1.
+/// Largest deviation of the square of a unit row's length from 1.
 const UNIT: f32 = 1e-5;
 /// By how many steps of a float the last part of a unit row may differ from what the others say.
 const STEPS: i32 = 15;

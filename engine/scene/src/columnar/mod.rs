@@ -19,7 +19,7 @@ use std::fmt::Display;
 
 /// Bytes of a float.
 const FLOAT: usize = size_of::<f32>();
-/// How the floats of a column lie.
+/// The layout of a column's floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FloatLayout {
     /// The first bytes of all, then the second ones: signs and exponents, which are much alike, lie apart from the last digits.
@@ -71,13 +71,13 @@ pub enum ColumnsError {
     OutOfRange {
         /// The number.
         found: u64,
-        /// What it should have been.
+        /// The expected item.
         place: &'static str,
     },
     /// Data that does not say beforehand how long it is, or is read by asking what it is.
     #[error("{0} cannot be held in columns")]
     Unsupported(&'static str),
-    /// What the type itself says.
+    /// An error of the type itself.
     #[error("{0}")]
     Custom(String),
 }
@@ -102,7 +102,7 @@ struct ColumnIndex {
     recent: Vec<Option<(NamePointers, usize)>>,
 }
 
-/// Where two names lie in memory.
+/// The memory addresses of two names.
 type NamePointers = [(usize, usize); 2];
 
 /// Entries of [`ColumnIndex::recent`], a power of two: more than there are fields.

@@ -49,11 +49,11 @@ fn length(bytes: &mut &[u8]) -> Result<usize, ColumnsError> {
     usize::try_from(found).map_err(|_| ColumnsError::OutOfRange { found, place })
 }
 
-/// What stands under one name.
+/// The column of one name.
 struct Column<'de> {
     /// The bits of floats.
     floats: Vec<u32>,
-    /// How many floats were read.
+    /// Number of floats read.
     read: usize,
     rest: &'de [u8],
 }

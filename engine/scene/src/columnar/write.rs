@@ -18,7 +18,7 @@ pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError
     Ok(writer.bytes())
 }
 
-/// What stands under one name.
+/// The column of one name.
 #[derive(Default)]
 struct Column {
     /// The bits of floats.

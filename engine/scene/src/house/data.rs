@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub struct HouseData {
     /// The name: the source's id or the file's name.
     pub name: String,
-    /// Where it comes from: format and version, such as `"suncg@1.0.0"`.
+    /// Its source: format and version, such as `"suncg@1.0.0"`.
     pub source: String,
     /// Storeys, from the lowest.
     pub levels: IdVec<LevelId, Level>,
@@ -54,17 +54,17 @@ pub struct HouseData {
     /// Sound files that emitters name, shared between them.
     #[serde(default, skip_serializing_if = "IdVec::is_empty")]
     pub sound_files: IdVec<SoundFileId, Arc<SoundFile>>,
-    /// Where agents start, the first agent first; agents beyond them start in the first room.
+    /// Start poses of agents, the first agent first; agents beyond them start in the first room.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub agent_starts: Vec<AgentStart>,
 }
 
-/// Where an agent starts.
+/// The start pose of an agent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AgentStart {
-    /// Where its feet are, m.
+    /// Position of its feet, m.
     pub position: Vec3,
-    /// Where it faces, rad to the left of -Z.
+    /// Heading, rad to the left of -Z.
     pub yaw_rad: f32,
 }
 
@@ -89,7 +89,7 @@ pub struct Room {
     pub name: String,
     /// The storey.
     pub level: LevelId,
-    /// What people call it, in plain lower-case words (`"living room"`), most fitting first; may be empty.
+    /// Kinds of room, in plain lower-case words (`"living room"`), most fitting first; may be empty.
     pub kinds: Vec<String>,
     /// The floor seen from above as triangles of (x, z), m; they may overlap those of other rooms, but not each other.
     pub footprint: Vec<[Vec2; 3]>,
@@ -106,7 +106,7 @@ impl Room {
     pub const MOST: usize = 500;
 }
 
-/// What a structure piece is.
+/// The kind of a structure piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum StructureKind {
@@ -127,7 +127,7 @@ pub enum StructureKind {
 pub struct Structure {
     /// The name, unique in the house, such as `"WallInside#0_0_0"`.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: StructureKind,
     /// The room it borders, if one is known.
     pub room: Option<RoomId>,
@@ -139,7 +139,7 @@ pub struct Structure {
     pub materials: Vec<MaterialId>,
 }
 
-/// What kind of thing an object is, in several vocabularies; empty where unknown.
+/// The category of an object, in several vocabularies; empty where unknown.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Category {
     /// The finest name: `"coffee_table"`.
@@ -150,7 +150,7 @@ pub struct Category {
     pub nyu40: String,
 }
 
-/// How an object can move.
+/// The mobility of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mobility {
@@ -171,17 +171,17 @@ pub struct Object {
     pub source_id: String,
     /// The model it is an instance of.
     pub model: String,
-    /// What kind of thing it is.
+    /// Its category.
     pub category: Category,
     /// The storey it starts on.
     pub level: LevelId,
     /// The room it starts in.
     pub room: Option<RoomId>,
-    /// How it can move.
+    /// Its mobility.
     pub mobility: Mobility,
-    /// Whether a hand can take it, as far as shape and use say; weight and size are judged by physics.
+    /// True if a hand can take it by its shape and use; physics judges weight and size.
     pub pickable: bool,
-    /// Whether it starts switched on; `None` when it has no switch.
+    /// True if it starts switched on; `None` when it has no switch.
     pub switch: Option<bool>,
     /// Its first part. The parts of an object stand together; the first is its root.
     pub first_part: PartId,
@@ -203,11 +203,11 @@ pub struct Part {
     pub object: ObjectId,
     /// The name, unique in its object: `"leaf"`, `"seat"`.
     pub name: String,
-    /// Whether it never moves; such parts are baked into the static geometry.
+    /// True for a part that never moves; such parts are baked into the static geometry.
     pub fixed: bool,
-    /// Where it stands at the start.
+    /// Its pose at the start.
     pub world_from_part: Pose,
-    /// What it looks like.
+    /// Its mesh.
     pub mesh: MeshId,
     /// Scale, mirror and offset of the mesh on the part.
     pub part_from_mesh: Affine3A,
@@ -225,7 +225,7 @@ pub struct Part {
     pub inertial: Option<Inertial>,
 }
 
-/// Where a part's mass sits.
+/// The mass, centre of mass and inertia of a part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inertial {
     /// The centre of mass with the principal axes, on the part.

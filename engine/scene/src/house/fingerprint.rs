@@ -1,4 +1,4 @@
-//! What tells one house from another.
+//! Fingerprint of a house.
 
 use super::HouseData;
 use crate::ids::IdVec;

@@ -8,7 +8,7 @@ use crate::mesh::Mesh;
 use glam::{Affine3A, Mat3A, Vec3};
 use std::sync::Arc;
 
-/// What a surface belongs to.
+/// The owner of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SurfaceOwner {
     /// A wall, floor or ceiling piece.
@@ -20,19 +20,19 @@ pub enum SurfaceOwner {
 /// One mesh that stands in the house: a structure piece or a part.
 #[derive(Clone, Debug)]
 pub struct PlacedMesh {
-    /// What it belongs to.
+    /// Its owner.
     pub owner: SurfaceOwner,
     /// The sensors' id.
     pub entity: EntityId,
     /// Its mesh.
     pub mesh: MeshId,
-    /// Where it stands; for parts that move: where they stand at the start.
+    /// Its transform; for parts that move, that at the start.
     pub world_from_mesh: Affine3A,
     /// `world_from_part` is rigid: this is the rest of the way, for parts that move.
     pub part_from_mesh: Affine3A,
 }
 
-/// Where a static triangle comes from.
+/// The origin of a static triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct StaticTriangle {
     /// Position in [`Geometry::placed`].
@@ -46,7 +46,7 @@ pub struct StaticTriangle {
 pub struct Geometry {
     /// All triangles that never move.
     pub static_bvh: Arc<TriangleBvh>,
-    /// Where each static triangle comes from. Shape (static triangle,).
+    /// The origin of each static triangle. Shape (static triangle,).
     pub static_triangles: Vec<StaticTriangle>,
     /// Structure pieces in order, then parts in order.
     pub placed: Vec<PlacedMesh>,
@@ -136,12 +136,12 @@ impl Geometry {
     }
 }
 
-/// What a ray met.
+/// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
     /// The sensors' id.
     pub entity: EntityId,
-    /// What it belongs to.
+    /// Its owner.
     pub owner: SurfaceOwner,
     /// The material of the triangle's slot.
     pub material: MaterialId,

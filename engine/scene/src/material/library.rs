@@ -28,8 +28,7 @@ pub struct Substance {
     pub scattering: Bands,
     pub surface_density_kg_m2: f32,
     pub transmission_loss_db: Bands,
-    /// Where the values come from, by group (`density`, `contact`, `surface`, `absorption`, `scattering`,
-    /// `transmission`).
+    /// Sources of the values, by group (`density`, `contact`, `surface`, `absorption`, `scattering`, `transmission`).
     pub sources: BTreeMap<String, String>,
 }
 

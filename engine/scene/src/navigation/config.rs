@@ -1,10 +1,10 @@
-//! Who walks, how finely that is looked at, and how doors count.
+//! Settings of navigation: the walking agent, the grid, and the treatment of doors.
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 
-/// How doors count that stand in the way of a walker: joints whose shut leaf stands where one could walk without it. All
-/// other joints (drawers, cupboards) stand as the state has them.
+/// The treatment of doors in the way of a walking agent: joints whose closed leaf blocks an otherwise walkable place. All
+/// other joints (drawers, cupboards) are taken as they are in the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DoorPolicy {
@@ -17,7 +17,7 @@ pub enum DoorPolicy {
     Priced,
 }
 
-/// Who walks, and how finely that is looked at.
+/// The walking agent and the resolution of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NavConfig {
@@ -31,9 +31,9 @@ pub struct NavConfig {
     pub step_m: f32,
     /// The steepest slope it walks on, rad; 0 to 1.5, default 0.785.
     pub max_slope_rad: f32,
-    /// How doors count.
+    /// Treatment of doors.
     pub doors: DoorPolicy,
-    /// What opening a door adds to a way under [`DoorPolicy::Priced`], m; 0 to 1000, default 2.
+    /// Length added to a path for opening a door under [`DoorPolicy::Priced`], m; 0 to 1000, default 2.
     pub door_price_m: f32,
 }
 

@@ -10,9 +10,9 @@ use crate::ids::JointId;
 pub struct NavDoor {
     /// Its joint.
     pub joint: JointId,
-    /// How far it was open when the grid was last updated, 0 to 1.
+    /// Openness when the grid was last updated, 0 to 1.
     pub openness: f32,
-    /// Whether it stands open far enough to pass (0.8 and more).
+    /// True if it is open far enough to pass (0.8 and more).
     pub is_open: bool,
     /// The walkable cells on which its leaf stands when it is shut; none while the leaf or something else blocks them.
     pub cells: Vec<NavCell>,

@@ -18,23 +18,23 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NavCell(pub u32);
 
-/// Where an agent can walk in a house, as it stands in one state: surfaces above each other in the columns of a grid over
-/// all storeys, joined by floors, steps, stairs and slopes.
+/// The walkable surfaces of a house in one state: surfaces above each other in the columns of a grid over all storeys,
+/// joined by floors, steps, stairs and slopes.
 #[derive(Clone, Debug)]
 pub struct NavGrid {
     pub(super) config: NavConfig,
     pub(super) ground: Arc<StaticGrid>,
     obstacles: Obstacles,
-    /// What fills the columns in which something that moves stands; `None`: the ground alone.
+    /// Height spans of the columns that moving parts occupy; `None`: the static spans alone.
     mixed: Vec<Option<Box<[HeightSpan]>>>,
     pub(super) layers: Layers,
     /// Shape (cell,); [`NOWHERE`] where nobody can stand.
     island: Vec<u32>,
-    /// How far each passage is open.
+    /// Openness of each passage.
     pub(super) openness: Vec<f32>,
 }
 
-/// What [`NavGrid::update`] did.
+/// The changes made by [`NavGrid::update`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NavGridUpdate {
     /// Parts that stand elsewhere than before.

@@ -12,7 +12,7 @@ const TOUCHING_M: f32 = 1e-3;
 /// Columns between looks at whether the grid is still wanted.
 const COLUMNS_PER_CHECK: usize = 1 << 12;
 
-/// What fills a column between two heights.
+/// A solid span of a column between two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct HeightSpan {
     pub(super) low: f32,
@@ -66,7 +66,7 @@ pub(super) struct GridFrame {
     pub(super) width: usize,
     /// Columns along z.
     pub(super) depth: usize,
-    /// What lies wholly below or above is left out, m.
+    /// The range of heights, m; geometry wholly below or above it is left out.
     heights: [f32; 2],
     /// Cosine of the steepest slope to walk on.
     flat: f32,
@@ -160,7 +160,7 @@ impl GridFrame {
 /// The spans of all columns, one column after the other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Heightfield {
-    /// Where each column begins, and the end. Shape (column + 1,).
+    /// Offset of each column, and the end. Shape (column + 1,).
     first: Vec<u32>,
     spans: Vec<HeightSpan>,
 }

@@ -31,7 +31,7 @@ pub(super) const NORTH: usize = 3;
 /// surface is `layer * columns + column`, so that a column that changes renumbers no other.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Layers {
-    /// How many columns.
+    /// Number of columns.
     pub(super) columns: usize,
     /// m; NaN where a column has no such layer. Shape (cell,).
     pub(super) height: Vec<f32>,
@@ -39,7 +39,7 @@ pub(super) struct Layers {
     pub(super) flags: Vec<u8>,
     /// The free surfaces one step away in the four directions, [`NOWHERE`] without one. Links are mutual.
     pub(super) links: Vec<[u32; 4]>,
-    /// How many surfaces each layer has.
+    /// Number of surfaces in each layer.
     used: Vec<usize>,
 }
 

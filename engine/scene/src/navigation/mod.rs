@@ -1,4 +1,4 @@
-//! Where an agent can walk: surfaces by storey from the real geometry, shortest ways, doors, reachable points.
+//! Navigation of walking agents: walkable surfaces by storey from the real geometry, shortest paths, doors, reachable points.
 //!
 //! Every triangle is clipped against the columns of a grid, so that thin legs and wall edges are never missed (the method
 //! of Recast's height fields). A surface of a column is walkable where it is flat enough, has the agent's height free above

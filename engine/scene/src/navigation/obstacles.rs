@@ -1,4 +1,4 @@
-//! What moves: the parts of things, and the columns that each of them fills where it stands.
+//! Moving obstacles: parts of objects, and the columns that each of them occupies.
 
 use super::config::{DoorPolicy, NavConfig};
 use super::heightfield::{GridFrame, HeightSpan, join};
@@ -20,7 +20,7 @@ const TRIANGLES_PER_CHECK: usize = 64;
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Obstacle {
     pub(super) part: PartId,
-    /// Where it stands; `None` while someone holds it.
+    /// Its transform; `None` while an agent holds it.
     world_from_part: Option<Affine3A>,
     /// The columns that it fills, in order.
     columns: Vec<(u32, HeightSpan)>,
@@ -34,9 +34,9 @@ pub(super) struct Obstacles {
     filled: BTreeMap<u32, Vec<(u32, HeightSpan)>>,
 }
 
-/// What [`Obstacles::follow`] found.
+/// The changes found by [`Obstacles::follow`].
 pub(super) struct ObstacleChanges {
-    /// How many parts stand elsewhere.
+    /// Number of parts that moved.
     pub(super) parts: usize,
     /// The columns they left or came to, in order, each once.
     pub(super) columns: Vec<u32>,

@@ -4,11 +4,11 @@ use super::grid::{NavCell, NavGrid};
 use crate::ids::JointId;
 use glam::Vec3;
 
-/// How far ahead on a way straight pieces are looked for, in its cells: some 20 m in cells of 0.1 m.
+/// Look-ahead on a path for straight pieces, in its cells: some 20 m in cells of 0.1 m.
 const LOOK_AHEAD: usize = 64;
-/// How often all corners are moved before it is good enough; a few rounds suffice in houses.
+/// Most passes over all corners; a few suffice in houses.
 const MOST_ROUNDS: usize = 32;
-/// How close a point must be to a cell to be on the grid, m.
+/// Largest distance of a point from a cell to be on the grid, m.
 const NEAR_M: f32 = 0.5;
 
 /// A way through a house, pulled tight.

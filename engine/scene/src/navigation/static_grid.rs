@@ -1,4 +1,4 @@
-//! What never moves: the columns of walls, floors and fixed things, and the doors that walkers pass.
+//! The static part of the grid: the columns of walls, floors and fixed objects, and the doors that agents pass.
 
 use super::config::{NavConfig, range};
 use super::heightfield::{GridFrame, HeightSpan, Heightfield};

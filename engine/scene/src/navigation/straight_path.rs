@@ -8,9 +8,9 @@ use super::layers::{DOORWAY, EAST, NORTH, NOWHERE, SOUTH, WEST};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StraightPath {
     pub(super) to: NavCell,
-    /// How often the way comes into or goes out of the doorway of a shut door.
+    /// Number of times that the path enters or leaves the doorway of a closed door.
     pub(super) door_crossings: u32,
-    /// Whether no step on the way is higher or lower.
+    /// True if no step on the path is higher or lower.
     pub(super) level: bool,
     /// Its length over the ground, m.
     pub(super) length_m: f64,
@@ -125,7 +125,7 @@ impl NavGrid {
 struct ElevationProfile {
     plan_m: f64,
     strides: f64,
-    /// How far the last stride ended, as a share of the way, and how high.
+    /// End of the last stride, as a share of the path, and its height.
     last: [f64; 2],
     sum_m: f64,
 }

@@ -10,7 +10,7 @@ use crate::error::SceneError;
 use crate::interrupt;
 pub use thread_count::{available_cores, machine_threads, variable};
 
-/// How many threads a call may use; at least one.
+/// The number of threads that a call may use; at least one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threads(usize);
 

@@ -1,4 +1,4 @@
-//! How many threads: the one place that counts.
+//! The default number of threads; the one place that determines it.
 
 use super::Threads;
 use crate::error::SceneError;

@@ -1,4 +1,4 @@
-//! How bright the sky is in each direction.
+//! Sky luminance by direction.
 
 use super::{Sky, Weather};
 use crate::math;

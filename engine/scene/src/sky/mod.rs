@@ -11,16 +11,16 @@ use crate::space;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Where its numbers stand, for errors.
+/// Path of its numbers, for errors.
 const AT: &str = "sky";
 
-/// What the sky is like.
+/// The weather, which determines the sky's luminance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Weather {
     /// No clouds.
     Clear {
-        /// How hazy the air is: 2 (very clear) to 10 (haze).
+        /// Turbidity of the air: 2 (very clear) to 10 (haze).
         turbidity: f32,
     },
     /// Clouds all over: no sun, grey, three times as bright overhead as at the horizon.
@@ -43,7 +43,7 @@ pub struct Sky {
     pub sun_lx: [f32; 3],
     /// Illuminance by the sky alone on open level ground, lx.
     pub diffuse_lx: f32,
-    /// How the light is spread over the sky.
+    /// The distribution of light over the sky.
     pub weather: Weather,
 }
 

@@ -1,4 +1,4 @@
-//! Where the sun stands, and how much light reaches the ground.
+//! Position of the sun, and its illuminance at the ground.
 
 use super::Weather;
 use crate::math;

@@ -6,19 +6,19 @@ use crate::space::{Pose, rotation_from_yaw_pitch};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What a base's wheels do, and what the base makes of it.
+/// The state of a base: its wheels and its odometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BaseState {
     /// Speeds of the left and right wheel, rad/s; 0 without wheels.
     pub wheel_rad_s: [f32; 2],
-    /// How far the left and right wheel have turned since the agent was placed, rad, as their encoders count.
+    /// Rotation of the left and right wheel since the agent was placed, rad, as their encoders count.
     pub wheel_turned_rad: [f64; 2],
-    /// How the wheels would move it: m/s forward, m/s to the left, rad/s to the left.
+    /// Twist that its wheels would give it without slip: m/s forward, m/s to the left, rad/s to the left.
     pub twist: [f32; 3],
-    /// Where it believes to be, from its wheels and nominal geometry: m forward and m to the left of where it was
-    /// placed, and rad to the left.
+    /// Odometry from its wheels and nominal geometry: m forward and m to the left of its initial position, and rad to the
+    /// left.
     pub odometry: [f64; 3],
-    /// What rounding has kept back of its way so far: m along X and Z, rad.
+    /// Rounding remainder of its motion so far: m along X and Z, rad.
     pub kept_back: [f32; 3],
 }
 
@@ -29,19 +29,19 @@ pub struct AgentState {
     pub body: AgentBody,
     /// The point between its feet, m.
     pub position: Vec3,
-    /// Where it faces, rad, positive to the left.
+    /// Heading, rad, positive to the left.
     pub yaw_rad: f32,
-    /// Where it looks, rad, positive up.
+    /// Pitch of the view, rad, positive up.
     pub pitch_rad: f32,
     /// m/s.
     pub velocity: Vec3,
-    /// Whether it stood on something at the end of the last step.
+    /// True if it stood on something at the end of the last step.
     pub grounded: bool,
-    /// Whether its movement was cut short in the last step.
+    /// True if its movement was cut short in the last step.
     pub collided: bool,
-    /// What it holds.
+    /// The held object.
     pub holding: Option<ObjectId>,
-    /// How much lower than its body's height it is now, m: more than 0 while it crouches.
+    /// Present reduction of its body's height, m: more than 0 while it crouches.
     pub crouched_by_m: f32,
     /// The rate of its turn to the left as its gyro reads it, rad/s: the mean over the last control step.
     pub gyro_rad_s: f32,

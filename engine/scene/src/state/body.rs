@@ -23,7 +23,7 @@ pub struct AgentBody {
     pub max_slope_rad: f32,
     /// The heaviest thing it lifts, kg; 0 to 500. What weighs more falls from its hand with the next step.
     pub lift_kg: f32,
-    /// How far from its eye its hand reaches, m; 0.1 to 5.
+    /// Reach of its hand from its eye, m; 0.1 to 5.
     pub reach_m: f32,
     /// The force with which it pushes what is in its way and what its hand pushes and pulls, N; 0 to 10,000.
     pub push_force_n: f32,
@@ -34,7 +34,7 @@ pub struct AgentBody {
     /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
     /// In a world it is what `agent/N/camera/fov_deg` reads until that is set.
     pub camera_fov_deg: f32,
-    /// How it gets about; default: it walks.
+    /// Its locomotion; default: it walks.
     pub locomotion: Locomotion,
 }
 

@@ -1,4 +1,4 @@
-//! Where the things of a house reach in a state.
+//! Bounds of a house's objects in a state.
 
 use super::State;
 use crate::bounds::Aabb;

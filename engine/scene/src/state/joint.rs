@@ -1,4 +1,4 @@
-//! What is in force at a joint: the house's values with the state's overrides.
+//! Joint parameters in force: the house's values with the state's overrides.
 
 use super::{Address, State};
 use crate::articulation::{Articulation, JointKind, Mimic, Servo, motion_along};
@@ -11,7 +11,7 @@ use glam::Vec3;
 /// The shortest axis that says a direction.
 const SHORTEST_AXIS: f32 = 1e-3;
 
-/// What is in force at a joint.
+/// The parameters in force at a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointParameters {
     /// Turning or sliding.
@@ -31,7 +31,7 @@ pub struct JointParameters {
     /// The share of what hangs on the joint whose weight the motor's controller carries besides; 1 in a house whose motor
     /// has [`Servo::feed_forward`].
     pub feed_forward: f32,
-    /// How it follows another joint, if it does.
+    /// Its coupling to another joint, if it is a mimic joint.
     pub mimic: Option<Mimic>,
     /// Lowest and highest position, rad or m; `None`: it turns or slides without end.
     pub limits: Option<[f32; 2]>,

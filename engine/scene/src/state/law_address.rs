@@ -11,7 +11,7 @@ use crate::house::House;
 use crate::law::{LawInfo, LawSpec, ParamInfo};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What an address names.
+/// The law and parameter that an address names.
 struct LawParameterRef<'a> {
     info: &'a LawInfo,
     param: &'a ParamInfo,
@@ -413,7 +413,7 @@ mod tests {
         assert_eq!(state.law_addresses(known).len(), 4);
     }
 
-    /// What used to happen: an address of more than five words was left out of the list without a word.
+    /// Regression: an address of more than five words was silently left out of the list.
     #[test]
     fn no_installed_law_is_missing_from_the_list() {
         let mut state = empty();

@@ -1,5 +1,5 @@
-//! How an agent gets about: on legs, or on the wheels of a base. Its numbers are nominal; an override at
-//! `agent/N/base/FIELD` says what is true in a world.
+//! Locomotion of agents: on legs, or on the wheels of a base. Its numbers are nominal; an override at `agent/N/base/FIELD`
+//! gives the true value in a world.
 
 use super::Parameter;
 use super::numeric_field::{NumericField, number, parameters, set};
@@ -7,7 +7,7 @@ use crate::error::SceneError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How an agent gets about.
+/// The locomotion of an agent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Locomotion {
@@ -25,7 +25,7 @@ impl Default for Locomotion {
     }
 }
 
-/// How an agent walks, runs and crouches.
+/// The parameters of walking, running and crouching.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeggedLocomotion {
@@ -60,7 +60,7 @@ pub struct DifferentialDrive {
     pub right_wheel_radius_m: f32,
     /// The fastest a wheel turns, rad/s; 0 to 1,000, default 20 (1 m/s).
     pub max_wheel_speed_rad_s: f32,
-    /// How fast a wheel changes its speed, rad/s²; 0.01 to 1,000,000, default 40 (2 m/s²).
+    /// Largest acceleration of a wheel, rad/s²; 0.01 to 1,000,000, default 40 (2 m/s²).
     pub max_wheel_acceleration_rad_s2: f32,
 }
 

@@ -1,4 +1,4 @@
-//! What changes while a world runs: plain data, one per world.
+//! The state of a running world: plain data, one per world.
 
 mod address;
 mod agent;
@@ -57,15 +57,15 @@ pub struct State {
     pub joint_position: IdVec<JointId, f32>,
     /// Velocity of every joint, rad/s or m/s. Shape (joint,).
     pub joint_velocity: IdVec<JointId, f32>,
-    /// What each joint's motor, or the hand on it, is told. Shape (joint,).
+    /// The command to each joint's motor, or to the hand on it. Shape (joint,).
     pub joint_command: IdVec<JointId, JointCommand>,
     /// The agents.
     pub agents: IdVec<AgentId, AgentState>,
 
     // ---- set by actions
-    /// Whether each object is switched on; objects without a switch stay `false`. Shape (object,).
+    /// True for objects that are switched on; objects without a switch stay `false`. Shape (object,).
     pub switched_on: IdVec<ObjectId, bool>,
-    /// Who holds each object. Shape (object,).
+    /// The agent that holds each object. Shape (object,).
     pub held_by: IdVec<ObjectId, Option<AgentId>>,
 
     // ---- set from outside

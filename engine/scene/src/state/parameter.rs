@@ -1,4 +1,4 @@
-//! What stands at an address, and setting it.
+//! The parameter at an address, and setting it.
 //!
 //! An override in [`State::overrides`](super::State) goes before the house's value, per world, without rebuilding the
 //! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin. An agent's body belongs to no house: its
@@ -14,7 +14,7 @@ use crate::material::{Material, library};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// What stands at an address.
+/// The parameter at an address.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Parameter {
     /// The value in force: the override, else the house's.
@@ -312,7 +312,7 @@ mod tests {
         assert!((state.gravity_m_s2() - 1.62).abs() < 1e-6);
     }
 
-    /// What used to happen: a body could not shrink or grow as a whole, because each number alone did not fit the others.
+    /// Regression: a body could not shrink or grow as a whole, because each number alone did not fit the others.
     #[test]
     fn numbers_that_bound_each_other_are_set_together_or_not_at_all() {
         use crate::{AgentBody, AgentState};

@@ -1,4 +1,4 @@
-//! What is in force at a part that states where its mass sits: the house's values with the state's overrides.
+//! Inertial parameters in force at a part that states them: the house's values with the state's overrides.
 
 use super::{Address, Parameter, State};
 use crate::error::SceneError;
@@ -15,7 +15,7 @@ pub(super) const INERTIAL_FIELDS: [&str; 6] = [
     "moment_3_kg_m2",
 ];
 
-/// How far a centre of mass may be from its part's origin along each axis, m.
+/// Largest offset of a centre of mass from its part's origin along each axis, m.
 const FURTHEST_M: f64 = 100.0;
 /// The smallest and largest moment of inertia, kg·m².
 const MOMENTS_KG_M2: [f64; 2] = [1e-12, 1e6];

@@ -1,5 +1,5 @@
-//! What rests on what, and what lies in what: derived from contacts, places and geometry. The one definition of "in";
-//! engines and words ask here.
+//! Support and containment relations, derived from contacts, poses and geometry. The one definition of "in"; engines and
+//! language use it.
 
 use super::State;
 use crate::bounds::Aabb;
@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 
 /// The share of a thing's box that must lie in the container's.
 const INSIDE_SHARE: f32 = 0.8;
-/// How far a thing may stick out of a container's box, m.
+/// Largest height by which an object may stick out of a container's box, m.
 const BRIM_M: f32 = 0.02;
-/// How far the middle of a thing may lie outside a marked space, m.
+/// Largest distance of an object's middle from a marked space, m.
 const SPACE_MARGIN_M: f32 = 0.01;
 /// Of the rays from a thing's middle to the four sides and down, how many must meet what is around it.
 const WALLS: usize = 4;

@@ -1,4 +1,4 @@
-//! What can be walked on in one room.
+//! Walkable surfaces in one room.
 
 use crate::support::{ROOM, add_mesh, clearance, furnished, grid_of, house, room, scattered};
 use dwell_scene::bvh::{Ray, RayMask};

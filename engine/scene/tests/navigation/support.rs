@@ -221,7 +221,7 @@ pub(crate) fn length_m(grid: &NavGrid, cells: &[NavCell]) -> f64 {
     cells.windows(2).map(piece).sum()
 }
 
-/// What two grids answer to, bit for bit: places, islands, and ways from every island's first cell.
+/// Asserts that two grids agree bit for bit: places, islands, and paths from every island's first cell.
 pub(crate) fn assert_same(a: &NavGrid, b: &NavGrid) {
     let places = |grid: &NavGrid| -> Vec<(NavCell, [u32; 3], Option<u32>)> {
         let place = |cell: NavCell| {

@@ -51,12 +51,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     install,
 };
 
-/// What is remembered of a motor.
+/// The backlash state of a motor.
 #[derive(Clone, Copy, Debug, Default)]
 struct BacklashState {
-    /// Where the motor drives the joint when it is told a position, rad or m.
+    /// Position of the motor's output under a position command, rad or m.
     output: f32,
-    /// How far it is ahead of the joint, within the play, rad or m.
+    /// Lead of the motor over the joint, within the play, rad or m.
     gap: f32,
     /// Its velocity seen at the joint, rad/s or m/s.
     velocity: f32,

@@ -48,12 +48,12 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     install,
 };
 
-/// How the spring of a joint stands.
+/// The state of a joint's hysteresis spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HysteresisSpring {
     /// `-F` of the equation, N·m or N.
     effort: f32,
-    /// Where the joint had this effort, rad or m.
+    /// Joint position at this effort, rad or m.
     position: f32,
 }
 

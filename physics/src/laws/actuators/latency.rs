@@ -35,9 +35,9 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     install,
 };
 
-/// What a joint was told in past physics steps, the newest first: as many as the delay reaches back; at the start what it is
-/// told when the law begins. When the delay grows
-/// at run time, the oldest command that is known stays until newer ones arrive; when it shrinks, those between are lost.
+/// The commands of a joint in past physics steps, newest first: as many as the delay reaches back, initially the command at
+/// installation. When the delay grows at run time, the oldest known command stays until newer ones arrive; when it shrinks,
+/// those between are lost.
 #[derive(Clone, Debug, Default)]
 struct CommandDelayLine(VecDeque<JointCommand>);
 

@@ -87,7 +87,7 @@ impl TargetJoints {
     }
 }
 
-/// What motors follow instead of what they are told: one command for each, which comes after the told one.
+/// The filtered command of each motor, which replaces the given one.
 #[derive(Clone, Debug)]
 struct FilteredCommands(BTreeMap<JointId, JointCommand>);
 

@@ -8,7 +8,7 @@ pub(super) mod wheel_slip;
 use crate::error::PhysicsError;
 use dwell_scene::{AgentId, Id, LawInfo, LawSpec, Locomotion, State};
 
-/// How an agent must get about so that a law can act on it.
+/// The locomotion that an agent must have for a law to act on it.
 #[derive(Clone, Copy, Debug)]
 enum RequiredBase {
     /// A left and a right wheel.

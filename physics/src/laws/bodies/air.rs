@@ -1,4 +1,4 @@
-//! What laws of air have in common: the air's density, and the cross-section that a body turns to it.
+//! Shared parts of the air laws: the air's density, and a body's cross-section.
 
 use super::size::cross_section_m2;
 use crate::error::PhysicsError;

@@ -11,7 +11,7 @@ use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
 use std::sync::Arc;
 
-/// How far aside a body's centre of mass may be, as a share of its box's edges.
+/// Largest offset of a body's centre of mass, as a share of its box's edges.
 const FARTHEST: f32 = 0.75;
 
 const fn offset(name: &'static str) -> ParamInfo {

@@ -1,4 +1,4 @@
-//! How large a body is.
+//! Sizes of bodies.
 
 use crate::model::BodyPlan;
 use rapier3d::geometry::{SharedShape, TypedShape};

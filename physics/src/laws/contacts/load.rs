@@ -1,4 +1,4 @@
-//! What contacts carried in the last step, and torques between the two that touch.
+//! Contact loads of the last step, and torques between the two bodies.
 
 use crate::contact::{ColliderEntry, ContactScope, ContactSide, entry_index};
 use crate::laws::LawContext;

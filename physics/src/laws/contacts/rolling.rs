@@ -1,4 +1,4 @@
-//! What brings a rolling thing to rest.
+//! Rolling friction.
 
 use super::load::loads;
 use crate::contact::ContactScope;

@@ -397,7 +397,7 @@ fn a_soft_stack_stands() {
     }
 }
 
-/// What is led, as an agent's body is, goes the same way in the same time when contacts take several runs a step.
+/// A kinematic body such as an agent's goes the same way in the same time when contacts take several runs a step.
 #[test]
 fn a_soft_world_leads_agents_at_their_own_speed() {
     let pushed = |laws: Vec<LawSpec>| {

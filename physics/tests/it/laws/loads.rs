@@ -1,4 +1,4 @@
-//! What loads a joint's gear besides weight: friction in proportion to it holds what would slip without.
+//! Loads on a joint's gear besides weight: friction in proportion to them holds what would slip without.
 //!
 //! Under `K_c + K_l |m - e|` a joint without a motor's effort stays while `|e| <= K_c / (1 - K_l)`. Once only weight counted as e,
 //! and everything else slipped beyond `K_c`.

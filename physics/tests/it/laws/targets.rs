@@ -12,7 +12,7 @@ fn known() -> Vec<&'static LawInfo> {
     laws::all().iter().collect()
 }
 
-/// What used to happen: a joint named by number and by name got the law twice, and twice its delay.
+/// Regression: a joint named by number and by name got the law twice, and twice its delay.
 #[test]
 fn a_joint_in_three_spellings_has_a_law_once() {
     let house = tower().house();
@@ -77,7 +77,7 @@ fn a_law_on_one_thing_under_two_names_is_refused() {
     }
 }
 
-/// What used to happen: a name that several joints have, beside another name of one of them, was two laws on that joint.
+/// Regression: a name that several joints have, beside another name of one of them, was two laws on that joint.
 #[test]
 fn a_name_of_several_joints_is_refused_beside_one_of_them() {
     let mut build = Build::room([6.0, 3.0, 6.0]);

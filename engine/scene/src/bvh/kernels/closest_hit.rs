@@ -30,7 +30,7 @@ pub(in super::super) fn horizon(distance: f32) -> f32 {
     (distance + GRAZING * TOLERANCE_M) * (1.0 + 2.0 * GRAZING * TOLERANCE_PER_M)
 }
 
-/// Where a hit is: `source` 0 for static geometry, else the instance plus 1; `slot` the triangle's place in its tree.
+/// The triangle of a hit: `source` 0 for static geometry, else the instance plus 1; `slot` the triangle's place in its tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) struct HitIndex {
     pub(in super::super) source: u32,
@@ -44,7 +44,7 @@ impl HitIndex {
     };
 }
 
-/// What decides among coincident hits.
+/// The order among coincident hits.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct TieBreak {
     /// See [`reach`].

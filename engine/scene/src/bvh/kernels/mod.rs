@@ -1,6 +1,6 @@
-//! How rays walk the trees. One ray: `tree_ray` and `scene_ray`; many from one point: `tree_packet` and `scene_packet`, by `dispatch`. Both are compiled
-//! for several instruction levels. All compute the same distances bit for bit and judge them by the one rule of `closest_hit`; boxes
-//! are only ever passed over when nothing in them could count.
+//! Traversal of the trees by rays. One ray: `tree_ray` and `scene_ray`; many from one point: `tree_packet` and
+//! `scene_packet`, by `dispatch`. Both are compiled for several instruction levels. All compute the same distances bit for
+//! bit and judge them by the one rule of `closest_hit`; boxes are only ever skipped when nothing in them could count.
 
 pub(super) mod closest_hit;
 pub(super) mod dispatch;
@@ -23,7 +23,7 @@ fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
     [f(0), f(1), f(2)]
 }
 
-/// What a query sees.
+/// The surfaces that a query can hit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HitFilter {
     mask: RayMask,

@@ -51,7 +51,7 @@ fn probe(ray: &Ray, bounds: &Aabb) -> PreparedRay {
     PreparedRay::new(bounds, origin, direction, (ray.near_m, ray.far_m), 1.0)
 }
 
-/// What moves.
+/// The moving instances.
 struct InstanceLeafVisitor<'a, H> {
     set: &'a InstanceSet,
     probe: &'a PreparedRay,

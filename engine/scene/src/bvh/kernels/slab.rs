@@ -41,8 +41,8 @@ pub(in super::super) fn inverse(component: f32) -> f32 {
     }
 }
 
-/// What a ray, or a packet with one origin, subtracts from every box: its origin moved outwards by the margin, for lower
-/// corners and for upper corners.
+/// The value that a ray, or a packet with one origin, subtracts from every box: its origin moved outwards by the margin,
+/// for lower corners and for upper corners.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct PaddedOrigin(pub(super) [f32; 6]);
 

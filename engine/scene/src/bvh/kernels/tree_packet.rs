@@ -9,7 +9,7 @@ use super::prepared_packet::PreparedPacket;
 use super::slab::least;
 use super::triangle::{EdgePlanes, OriginTriangles};
 
-/// What happens at the leaves of a tree. A trait, not a closure: closures cannot be made to compile inline, and what is not
+/// A visitor of a tree's leaves. A trait, not a closure: closures cannot be made to compile inline, and code that is not
 /// inline does not use the instructions of the function around it.
 pub(in super::super) trait PacketLeafVisitor<const N: usize> {
     /// May lower limits; returns whether to stop.
@@ -150,7 +150,7 @@ pub(in super::super) struct ClosestLeafVisitor<'a, const N: usize, C> {
     pub(in super::super) source: u32,
     pub(in super::super) filter: HitFilter,
     pub(in super::super) answers: &'a mut PacketClosestHits<N>,
-    /// What decides among coincident hits, by lane.
+    /// The order among coincident hits, by lane.
     pub(in super::super) claim: C,
 }
 

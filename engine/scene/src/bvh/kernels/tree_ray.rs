@@ -93,7 +93,7 @@ impl PreparedRay {
     }
 }
 
-/// What is done at the leaves of a tree.
+/// A visitor of a tree's leaves.
 pub(super) trait RayLeafVisitor {
     /// Looks into a leaf; may lower the limit beyond which nothing matters. `true`: that is enough.
     fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
@@ -140,7 +140,7 @@ pub(super) fn traverse(
     }
 }
 
-/// What is done with hits.
+/// A visitor of hits.
 pub(in super::super) trait HitVisitor {
     /// Takes one. `true`: that is enough.
     fn found(&mut self, place: HitIndex, distance: f32) -> bool;
