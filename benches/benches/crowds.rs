@@ -1,4 +1,4 @@
-//! How the cost of a world grows with the things in it: made, stepped while all is awake and after all has come to rest, reset and
+//! Growth of a world's cost with the number of its things: made, stepped while all is awake and after all has come to rest, reset and
 //! saved. Things are apart on a floor, or in one pile, each a little in its neighbours.
 //!
 //! `cargo bench --profile dev -p dwell-benches --bench crowds`.

@@ -1,4 +1,4 @@
-//! How cost grows with the number of things: words, a plan's edits and resets, at 100, 1,000 and 10,000 things of twelve kinds
+//! Growth of cost with the number of things: words, a plan's edits and resets, at 100, 1,000 and 10,000 things of twelve kinds
 //! of the catalogue, spread over a floor, or in a heap, all at one place.
 //!
 //! `cargo bench --profile dev -p dwell-benches --bench growth_words -- spread heap 10000`: shapes, or parts of their rows' names, and
@@ -43,7 +43,7 @@ const KINDS: [&str; 12] = [
 /// A thing has so much floor where things are spread, m.
 const APART_M: f32 = 1.5;
 
-/// How things lie.
+/// The arrangement of things.
 #[derive(Clone, Copy, PartialEq)]
 enum Shape {
     Spread,
@@ -258,7 +258,7 @@ fn measure(rows: &mut Rows, shape: Shape, count: usize) {
     plans(rows, shape, &house);
 }
 
-/// What can be said.
+/// Measures the cost of sentences about things.
 fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
     let count = house.objects.len();
     let semantics = Semantics::new(house);

@@ -1,4 +1,4 @@
-//! How the cost of a view grows with the house: generated houses side by side, of about 50 thousand, 500 thousand and
+//! Growth of a view's cost with the house: generated houses side by side, of about 50 thousand, 500 thousand and
 //! 5 million triangles, seen from inside rooms by the `cpu` back end on one thread.
 //!
 //! `cargo bench --profile dev -p dwell-benches --bench large_houses`; without `--bench` the smallest alone, once.
@@ -60,7 +60,7 @@ struct Town {
     houses: usize,
 }
 
-/// Where the tables of a house that all its copies share start in those of the town.
+/// Offsets of the tables that all copies of a house share in those of the town.
 struct Shared {
     house: House,
     mesh: u32,

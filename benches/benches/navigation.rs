@@ -1,4 +1,4 @@
-//! Where one can walk: building a grid, following a door, ways and distance fields. One thread; cells of 0.1 m.
+//! Navigation: building a grid, following a door, paths and distance fields. One thread; cells of 0.1 m.
 //!
 //! Houses: the built-in apartment, and the SUNCG sample house where `../shared` lies beside the repository.
 

@@ -52,7 +52,7 @@ static CASES: LazyLock<Vec<Case>> = LazyLock::new(|| {
     cases
 });
 
-/// What stays where it is in the peers' scripts.
+/// Objects that stay fixed in the peers' scripts.
 const STANDING: [&str; 20] = [
     "door",
     "window",

@@ -17,7 +17,7 @@ const PILED_M: f32 = 2.0 * HALF_M - 0.005;
 /// From one joint to the next in a chain, m.
 const LINK_M: f32 = 0.05;
 
-/// How many things stand.
+/// The arrangement of things.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crowd {
     /// Apart, on one floor.

@@ -1,4 +1,4 @@
-//! What can go wrong in calibration.
+//! Errors of calibration.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ pub enum CalibrationError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// A file that cannot be written.
@@ -19,7 +19,7 @@ pub enum CalibrationError {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: std::io::Error,
     },
     /// Text that is no JSON, CSV or WAV.
@@ -27,7 +27,7 @@ pub enum CalibrationError {
     Syntax {
         /// File and line.
         at: String,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// A field with a value that is not allowed.
@@ -37,9 +37,9 @@ pub enum CalibrationError {
         at: String,
         /// The field's name.
         field: String,
-        /// What was found.
+        /// The found value.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// A bundle that lacks something.
@@ -47,9 +47,9 @@ pub enum CalibrationError {
     Missing {
         /// File and line, or the folder.
         at: String,
-        /// What is missing.
+        /// The missing content.
         what: String,
-        /// What must be there.
+        /// The required content.
         needed: String,
     },
     /// More than this build takes in.
@@ -57,11 +57,11 @@ pub enum CalibrationError {
     TooLarge {
         /// The file.
         at: String,
-        /// What is counted, with its unit.
+        /// The counted quantity, with its unit.
         what: &'static str,
-        /// How much was found.
+        /// The found amount.
         found: u64,
-        /// How much is allowed.
+        /// The allowed amount.
         limit: u64,
     },
     /// Too little data for any verdict.
@@ -69,11 +69,11 @@ pub enum CalibrationError {
     TooFew {
         /// The bundle.
         at: String,
-        /// What is counted.
+        /// The counted quantity.
         what: &'static str,
-        /// How many there are.
+        /// The found number.
         found: usize,
-        /// How many are needed.
+        /// The required number.
         needed: usize,
     },
     /// A simulation that could not be made or left the world of numbers.
@@ -81,7 +81,7 @@ pub enum CalibrationError {
     Simulation {
         /// The episode or the scene.
         at: String,
-        /// What the engine says.
+        /// The engine's message.
         what: String,
     },
     /// The caller asked to stop.

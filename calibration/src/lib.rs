@@ -59,14 +59,14 @@ pub fn calibrate(
     explain(&bundle::read(path)?, options, &progress)
 }
 
-/// What comes of a bundle, by its kind.
+/// The outcome of a calibration, by the bundle's kind.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CalibrationOutcome {
-    /// What the simulation lacks.
+    /// The causes that the simulation lacks.
     Causes(Box<CalibrationReport>),
-    /// How well roll-outs of tosses predict, with contact parameters by cross-validation.
+    /// Prediction errors of roll-outs of tosses, with contact parameters by cross-validation.
     RollOuts(Box<rollout::study::StudyReport>),
-    /// How well roll-outs of drives predict, with parameters of the base by cross-validation.
+    /// Prediction errors of roll-outs of drives, with parameters of the base by cross-validation.
     Series(Box<rollout::series::SeriesReport>),
 }
 

@@ -1,4 +1,4 @@
-//! How calibration judges.
+//! Options of calibration.
 
 use crate::error::CalibrationError;
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ pub struct Options {
     pub threads: Option<usize>,
     /// Share of the groups of episodes that are held out from all fitting; 0.1 to 0.6, default 1/3.
     pub held_out_share: f64,
-    /// How much the information criterion must fall before a cause counts; 0 to 1,000, default 10.
+    /// Smallest fall of the information criterion with which a cause counts; 0 to 1,000, default 10.
     pub min_delta_bic: f64,
     /// Causes within this distance of the best one in the information criterion cannot be told apart; 0 to 100, default 6.
     pub rival_delta_bic: f64,
@@ -23,7 +23,7 @@ pub struct Options {
     pub min_gain_share: f64,
     /// Draws of the bootstrap; 100 to 100,000, default 2,000.
     pub bootstrap_draws: usize,
-    /// Whether samples far from the rest count less (Huber's loss from three robust standard deviations on); default true.
+    /// True if samples far from the rest count less (Huber's loss from three robust standard deviations on); default true.
     pub robust: bool,
     /// Physics steps per second in the simulation twin, Hz; 60 to 1,000, default 240.
     pub physics_rate_hz: f64,

@@ -1,4 +1,4 @@
-//! How far the work is, and whether it shall stop.
+//! Progress of the work, and its cancellation.
 
 use crate::error::CalibrationError;
 use std::cell::RefCell;

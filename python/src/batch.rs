@@ -103,7 +103,7 @@ impl PyBatch {
     }
 }
 
-/// What somebody else than the task says of a step.
+/// A verdict on a step from outside of the task.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ExternalVerdict {

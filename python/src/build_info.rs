@@ -1,4 +1,4 @@
-//! What this build knows: actions, tasks, sensors, laws, words, and the machine it runs on.
+//! Contents of this build: actions, tasks, sensors, laws, words, and the machine it runs on.
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;

@@ -10,9 +10,9 @@ use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 thread_local! {
-    /// What a handler of signals raised while an engine worked.
+    /// The exception that a handler of signals raised while an engine worked.
     static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
-    /// Whether this thread is in the middle of a call and runs handlers.
+    /// True while this thread is in the middle of a call and runs handlers.
     static IS_ASKING: Cell<bool> = const { Cell::new(false) };
 }
 

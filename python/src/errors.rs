@@ -22,7 +22,7 @@ create_exception!(
     "The base of every error of dwell."
 );
 
-/// What went wrong, with the exception it becomes.
+/// A fault, by the exception that it becomes.
 #[derive(Debug)]
 pub(crate) enum PyFault {
     Scene(String),

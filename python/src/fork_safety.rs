@@ -1,4 +1,4 @@
-//! What `fork()` must know: which calls of engines run, and which thread is Python's main one.
+//! Safety of `fork()`: the calls of engines that run, and the identity of Python's main thread.
 //!
 //! A child has one thread, the one that forked; locks that others held stay locked in it for ever. So a fork waits until
 //! no other thread is in a call of the engines, and meanwhile no call begins. It holds the GIL from then on, and calls begin
@@ -10,7 +10,7 @@ use std::cell::Cell;
 use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// How long a fork waits for other threads' calls at most.
+/// Longest time that a fork waits for other threads' calls.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Between looks at whether one can go on.
 const PAUSE: Duration = Duration::from_micros(500);
@@ -25,7 +25,7 @@ static GENERATION: AtomicU32 = AtomicU32::new(0);
 thread_local! {
     /// Calls of this thread, one within the other.
     static OWN: Cell<usize> = const { Cell::new(0) };
-    /// Whether this is the main thread, and of which generation.
+    /// `true` in the main thread, with its generation.
     static MAIN: Cell<Option<(u32, bool)>> = const { Cell::new(None) };
 }
 

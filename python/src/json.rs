@@ -1,4 +1,4 @@
-//! How large a JSON text becomes, before Python makes objects of it.
+//! Size of a JSON text's objects, before Python makes them.
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;

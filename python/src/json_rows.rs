@@ -1,4 +1,4 @@
-//! What Python says as JSON about things, agents and sounds of a world.
+//! JSON rows for Python about things, agents and sounds of a world.
 
 use dwell::SoundName;
 

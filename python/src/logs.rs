@@ -1,4 +1,4 @@
-//! What the engines log, in Python's `logging`.
+//! Log events of the engines, in Python's `logging`.
 //!
 //! An event of `tracing` in the module `dwell_houses::formats` is a record of the logger `dwell.houses.formats`. Engine
 //! threads never take the GIL for it: records wait in a queue until the engine call has it again, at the end of a call and,

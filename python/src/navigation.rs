@@ -1,4 +1,4 @@
-//! Where one can walk, for Python.
+//! Navigation for Python.
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
@@ -15,12 +15,12 @@ use pyo3::types::PyBytes;
 use serde_json::json;
 use std::sync::{Arc, Mutex, MutexGuard};
 
-/// How close a point must be to a place to stand, m.
+/// Largest distance of a point from a walkable place, m.
 const NEAR_M: f32 = 0.5;
 /// The most samples at a time.
 const MOST_SAMPLES: usize = 10_000_000;
 
-/// Where one can walk in a house as it stands at one moment.
+/// The navigation grid of a house as it stands at one moment.
 #[pyclass(name = "Navigation", module = "dwell._native", frozen)]
 pub(crate) struct PyNavigation {
     house: Arc<House>,
@@ -30,7 +30,7 @@ pub(crate) struct PyNavigation {
 /// A house as it stands: the grid, which others may have too until this one follows something.
 struct GridAtState {
     grid: Arc<NavGrid>,
-    /// Where everything stands; `None`: as the house starts.
+    /// The state of the house; `None`: as the house starts.
     state: Option<State>,
 }
 

@@ -6,7 +6,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, P
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
 
-/// How deep lists and mappings lie in each other at most.
+/// Largest nesting depth of lists and mappings.
 const DEEPEST: usize = 100;
 
 /// An argument of mappings, lists, text and numbers.

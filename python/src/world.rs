@@ -30,7 +30,7 @@ pub(crate) struct PyWorld {
     guide: Mutex<ActiveGuide>,
 }
 
-/// Where a world lives.
+/// The owner of a world.
 enum WorldSource {
     Own(Box<Mutex<World>>),
     /// In an environment of a batch, which goes on stepping it.

@@ -6,17 +6,17 @@ use dwell_physics::ActionOutcome;
 use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
 use serde_json::json;
 
-/// How many names an error lists, the nearest first.
+/// Number of names that an error lists, the nearest first.
 const NAMES: usize = 12;
 
 /// A guide, and the bits of the goal that it leads to.
 pub(crate) type ActiveGuide = Option<([u32; 3], ShortestPathFollower)>;
 
-/// What a `World` of Python works on: a world of its own, or that of an environment.
+/// The world that a `World` of Python works on: one of its own, or that of an environment.
 pub(crate) struct WorldAccess<'a> {
     pub(crate) world: &'a mut World,
     pub(crate) guide: &'a mut ActiveGuide,
-    /// How far discrete actions go.
+    /// Step sizes of discrete actions.
     pub(crate) stride: StepSizes,
 }
 

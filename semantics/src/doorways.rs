@@ -1,4 +1,4 @@
-//! Where doors lead.
+//! Doorways: the rooms that doors connect.
 
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math;
@@ -6,9 +6,9 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, ObjectId, RoomId, State, SurfaceOwner};
 use glam::Vec3;
 
-/// How far beyond a door's box its other side is looked for, m.
+/// Distance beyond a door's box at which its other side is looked up, m.
 const DOORSTEP_M: f32 = 0.35;
-/// How much further somebody stands who looks for the open air, clear of thick walls, m.
+/// Further distance from which the open air is looked for, clear of thick walls, m.
 const CLEAR_M: f32 = 0.25;
 /// The height above the door's foot at which they look, m.
 const EYES_M: f32 = 1.3;
@@ -16,12 +16,12 @@ const EYES_M: f32 = 1.3;
 const LOOKS: [f32; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 const TURN_RAD: f32 = std::f32::consts::FRAC_PI_6;
 
-/// What a door or archway stands between.
+/// The sides of a door or archway.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoomDoorway {
     /// The rooms on its sides, rising: two as a rule; one where it leads outside, or stands within a room.
     pub rooms: Vec<RoomId>,
-    /// Whether one of its sides is in the open air, outside of every room.
+    /// True if one of its sides is in the open air, outside of every room.
     pub outside: bool,
 }
 

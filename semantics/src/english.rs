@@ -1,6 +1,6 @@
 //! English: articles, counts, plurals, adjectives before nouns, lists.
 
-/// What is worn or held by two and has no singular of its own: "a pair of scissors".
+/// Nouns of pairs without a singular of their own: "a pair of scissors".
 const PAIRS: [&str; 34] = [
     "binoculars",
     "boots",
@@ -39,7 +39,7 @@ const PAIRS: [&str; 34] = [
 ];
 /// Nouns that end like a plural and are none.
 const SINGULAR_IN_S: [&str; 5] = ["atlas", "canvas", "christmas", "gas", "lens"];
-/// What counts or gathers things: colour and substance are those of what follows "of".
+/// Nouns that count or gather things: colour and substance are those of what follows "of".
 const GATHERING: [&str; 8] = [
     "bunch", "pair", "piece", "roll", "row", "set", "sheet", "stack",
 ];

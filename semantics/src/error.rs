@@ -1,4 +1,4 @@
-//! What can go wrong when speaking.
+//! Errors of semantics.
 
 /// A fault of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -7,9 +7,9 @@ pub enum SemanticsError {
     /// A name that no predicate has.
     #[error("no predicate {name:?}; there are {known:?}")]
     UnknownPredicate {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The known names.
         known: Vec<&'static str>,
     },
     /// A house in which nothing of the wanted kind can be asked for.
@@ -19,7 +19,7 @@ pub enum SemanticsError {
         house: String,
         /// The kind wanted.
         kind: &'static str,
-        /// What is missing.
+        /// The missing part.
         why: &'static str,
     },
     /// A word outside the vocabulary.
@@ -49,7 +49,7 @@ pub enum SemanticsError {
         file: &'static str,
         /// Counted from 1, head included.
         line: usize,
-        /// What was found and what is allowed.
+        /// The found and the allowed value.
         what: String,
     },
 }

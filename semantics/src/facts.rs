@@ -1,4 +1,4 @@
-//! What is true of an object in every state: kind, colours, substances, size.
+//! State-independent facts about an object: kind, colours, substances, size.
 
 use crate::category::{SemanticCategory, categories};
 use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
@@ -30,7 +30,7 @@ pub struct ObjectFacts {
     pub substances: Vec<(&'static Substance, f32)>,
     /// Edges of the box around it in the axes of its root part, m.
     pub extents_m: Vec3,
-    /// How large it is for its kind.
+    /// Its size for its kind.
     pub size: SizeClass,
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Of how many things left and right are told: each has a side of each other.
 const MOST_IN_FRONT: usize = 1000;
 
-/// What is where. Ids are those of sensors; rooms are counted from 0.
+/// A scene graph. Ids are those of sensors; rooms are counted from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneGraph {
     /// Rooms in order.
@@ -55,9 +55,9 @@ pub struct ObjectNode {
     pub center: [f32; 3],
     /// The edges of its box, m.
     pub extents: [f32; 3],
-    /// How far it is open, 0 to 1; nothing for what does not open.
+    /// Openness, 0 to 1; `None` for an object that does not open.
     pub openness: Option<f32>,
-    /// Whether it is switched on; nothing for what has no switch.
+    /// True if it is switched on; `None` for an object without a switch.
     pub switched_on: Option<bool>,
     /// The agent that holds it, counted from 0.
     pub held_by: Option<u32>,

@@ -1,4 +1,4 @@
-//! Whether somebody sees a thing.
+//! Lines of sight from somebody to a thing.
 
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::ObjectId;
@@ -6,7 +6,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
-/// Where rays are aimed in a thing's box: its middle, and points 60 % of the way to its corners.
+/// Distance of the aims of rays from the middle of a thing's box towards its corners, a share of the way; the middle is aimed at too.
 const AIM: f32 = 0.6;
 
 /// Returns whether a straight line from the viewer meets `object` before anything else, at most `half_angle_rad` away from where

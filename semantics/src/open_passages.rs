@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 /// Distance between the places along a room's border that are tried, m.
 const STEP_M: f32 = 0.1;
-/// How far within the room a try begins, and how far beyond its border it ends, m: walls are thinner.
+/// Distance within the room at which a try begins, and beyond its border at which it ends, m: walls are thinner.
 const BEFORE_M: f32 = 0.1;
 const BEYOND_M: f32 = 0.5;
 /// Heights above the floor at which nothing may stand in the way, m; the middle one tells the room beyond.

@@ -16,7 +16,7 @@ pub struct RoomCategory {
     pub plural: &'static str,
     /// Other spoken words.
     pub synonyms: Vec<&'static str>,
-    /// Whether it has walls all round.
+    /// True if it has walls all round.
     pub indoor: bool,
     /// The word before it that says where one is: "in" the kitchen, "on" the balcony.
     pub preposition: &'static str,

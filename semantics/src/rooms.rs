@@ -1,4 +1,4 @@
-//! What is true of a room in every state.
+//! State-independent facts about a room.
 
 use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
 use crate::english;
@@ -12,7 +12,7 @@ use dwell_scene::{Aabb, House, IdVec, MaterialId, RoomId, StructureKind, Surface
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// How many points of its floor stand for a room.
+/// Number of sample points of a room's floor.
 const POINTS: usize = 256;
 /// From how many of them its walls are looked at.
 const LOOKS: usize = 12;

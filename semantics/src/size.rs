@@ -14,7 +14,7 @@ fn has_no_usual_size(row: &SemanticCategory) -> bool {
         || ["blanket", "umbrella"].contains(&row.name)
 }
 
-/// How large a thing is beside a usual specimen of its category.
+/// The size of a thing relative to a usual specimen of its category.
 ///
 /// With A the product of the two longest edges of its box (in the axes of its own root part) and A0 that of the usual
 /// specimen in `assets/categories.csv`, z = log2(A / A0): sizes of a kind of thing spread by ratios, and the face that a

@@ -1,4 +1,4 @@
-//! What of things is seen: their surfaces as they show where the things stand at the start.
+//! Visible areas: the surfaces of things that are seen where the things stand at the start.
 
 use dwell_scene::bvh::{BoxTree, Ray, RayMask};
 use dwell_scene::math;
@@ -9,17 +9,17 @@ use glam::Vec3;
 
 /// From how many sides a thing is looked at.
 const SIDES: usize = 8;
-/// How many parallel rays look from each side.
+/// Number of parallel rays from each side.
 const RAYS: usize = 32;
-/// How far before the thing's box they start, m: what lies closer to a wall on one side is not seen from there.
+/// Distance before the thing's box at which they start, m: what lies closer to a wall on one side is not seen from there.
 const START_M: f32 = 0.3;
-/// How steeply they look down (or up, at what hangs): rise over run.
+/// Slope of the rays downwards (or upwards, at what hangs): rise over run.
 const SLOPE: f32 = 0.35;
 /// The height of eyes above the floor, m. Things whose middle is higher are seen from below.
 const EYES_M: f32 = 1.7;
-/// How many rays must meet a thing for it to count as seen.
+/// Number of rays that must meet a thing for it to count as seen.
 const LEAST_HITS: usize = 12;
-/// What lies in the boxes of more others lies in a heap.
+/// Number of other boxes beyond which a thing that lies in them lies in a heap.
 const MOST_AROUND: usize = 64;
 
 /// For each object the area that shows of each of its materials, summed over the sides, m²; nothing for what is hidden, as a

@@ -178,7 +178,7 @@ fn every_thing_is_mentioned_once() {
     assert!(checked >= 15, "{checked}");
 }
 
-/// What stands in a space that its furniture marks as holding things stands on or in that furniture by our predicates,
+/// A thing in a space that its furniture marks as holding things stands on or in that furniture by our predicates,
 /// or on or in something that does.
 #[test]
 fn things_in_marked_places_rest_on_their_furniture() {

@@ -356,7 +356,7 @@ fn a_thing_in_a_wall_keeps_the_room_of_its_file_until_it_moves() {
     assert_eq!(semantics.scene(&state).room_of(window), None);
 }
 
-/// What a relation leads to is found without asking for each pair; it is what asking for each pair finds.
+/// The things that a relation leads to are found without asking for each pair, and are those that asking for each pair finds.
 #[test]
 fn what_is_related_is_what_holds() {
     let small = small_house();

@@ -152,7 +152,7 @@ fn descriptions_read_aloud() {
     );
 }
 
-/// What stands in the room says the colour, not what is behind a front or before a wall.
+/// The colour is that of the surfaces that the room sees, not of those behind a front or before a wall.
 #[test]
 fn the_colour_is_that_of_what_is_seen() {
     let mut b = common::Builder::new("fronts");

@@ -1,4 +1,4 @@
-//! How sentences sound: for each rule of wording a house where it says its words, and one where it must not.
+//! Wording of sentences: for each rule a house where it says its words, and one where it must not.
 
 mod common;
 

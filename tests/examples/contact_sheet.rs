@@ -21,7 +21,7 @@ const WIDTH_PX: u32 = 256;
 const HEIGHT_PX: u32 = 192;
 /// Pictures are drawn this much larger and then made smaller.
 const FINER: u32 = 2;
-/// What is seen from above ends this high over the floor, m.
+/// Height over the floor at which the view from above is cut, m.
 const CUT_M: f32 = 2.2;
 const EYE_M: f32 = 1.55;
 

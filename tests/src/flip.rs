@@ -1,4 +1,4 @@
-//! How different two pictures look to a person who flips between them.
+//! Perceived difference of two pictures to a person who flips between them.
 //!
 //! # Source
 //! P. Andersson, J. Nilsson, T. Akenine-Möller, M. Oskarsson, K. Åström and M. D. Fairchild, "FLIP: A Difference Evaluator for

@@ -1,4 +1,4 @@
-//! What crosses engines is tested here; this crate holds what those tests share.
+//! Tests that cross engines; this crate holds what they share.
 
 pub mod flip;
 pub mod golden;

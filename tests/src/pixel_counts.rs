@@ -1,4 +1,4 @@
-//! What batches see, by whatever renders.
+//! Pixel counts of batches, for any renderer.
 
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, WorldError};

@@ -223,7 +223,7 @@ fn colours_agree_within_a_bound_of_flip() {
     }
 }
 
-/// What a fault does: to the world, to the view, or to the finished picture.
+/// A fault: in the world, in the view, or in the finished picture.
 struct Fault {
     name: &'static str,
     state: fn(&House, &mut State),

@@ -11,7 +11,7 @@ use calibration_support::{Files, Random, runge_kutta, table};
 use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
 use std::f64::consts::TAU;
 
-/// What acts on the ball besides gravity.
+/// The forces on the ball besides gravity.
 #[derive(Clone, Copy)]
 struct World {
     gravity: f64,

@@ -16,7 +16,7 @@ const SIZE: [f64; 3] = [5.2, 2.7, 4.1];
 const RATE_HZ: u32 = 16_000;
 const DURATION_S: f64 = 0.25;
 const SIDES: [&str; 6] = ["west", "east", "floor", "ceiling", "north", "south"];
-/// What the manifest says, in the order of `SIDES`.
+/// The absorption that the manifest states, in the order of `SIDES`.
 const TOLD: [f64; 6] = [0.12, 0.1, 0.2, 0.15, 0.08, 0.12];
 const POSITIONS: usize = 12;
 

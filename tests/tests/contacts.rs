@@ -1,4 +1,4 @@
-//! What touches, swings and walks is heard.
+//! Sounds of contacts, swinging joints and footsteps.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -153,7 +153,7 @@ fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
     assert!(creaking > 0.0);
 }
 
-/// What is thrown along the floor strikes, scrapes and comes to rest: loud, then silent.
+/// A body thrown along the floor strikes, scrapes and comes to rest: loud, then silent.
 #[test]
 fn what_slides_over_the_floor_scrapes_until_it_rests() {
     let near = somewhere();

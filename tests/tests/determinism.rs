@@ -16,7 +16,7 @@ use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
 const STEPS: usize = 500;
-/// What is compared step by step where the whole episode would take too long.
+/// Number of steps that are compared one by one where the whole episode would take too long.
 const FIRST_STEPS: usize = 60;
 const SEED: u64 = 2024;
 /// Set for a process that plays again, to where its digests go.
@@ -103,7 +103,7 @@ fn whole_episode(threads: usize) -> Vec<u64> {
     play(&mut batch, 0, &actions())
 }
 
-/// Where two episodes part.
+/// Asserts that two episodes are equal, or names the step at which they part.
 fn assert_same(found: &[u64], expected: &[u64], what: &str) {
     let apart = found.iter().zip(expected).position(|(a, b)| a != b);
     assert_eq!(apart, None, "{what}: the step at which bits differ");

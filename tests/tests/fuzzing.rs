@@ -82,7 +82,7 @@ fn every_sample_opens_as_it_is() {
     }
 }
 
-/// What cargo-fuzz begins with: undamaged inputs, whose first byte tells which file they are.
+/// Every target of cargo-fuzz has undamaged seed inputs, whose first byte tells which file they are.
 #[test]
 fn every_fuzz_target_has_seeds_and_an_entry() {
     let manifest = include_str!("../../fuzz/Cargo.toml");

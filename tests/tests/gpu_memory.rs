@@ -1,4 +1,4 @@
-//! What a batch takes from the heap: after the first ones of a kind no more than its lists, and nothing that grows.
+//! Heap memory of a batch: after the first ones of a kind no more than its lists, and nothing that grows.
 
 use dwell_render::{
     BatchLimits, Camera, CpuRenderer, Frame, Gpu, GpuRenderer, ImageChannels, Preset, RenderJob,

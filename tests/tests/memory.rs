@@ -1,4 +1,4 @@
-//! What worlds keep in memory: a further one over a loaded house, and one that is reset over and over.
+//! Memory of worlds: a further one over a loaded house, and one that is reset over and over.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![expect(clippy::print_stdout, reason = "it tells its figures")]

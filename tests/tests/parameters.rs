@@ -134,7 +134,7 @@ fn laws_that_cannot_act_are_refused_and_change_nothing() {
     }
 }
 
-/// What used to happen: a body that was too large was refused only when it grew while the world ran.
+/// A regression test: a body that was too large was refused only when it grew while the world ran.
 #[test]
 fn a_body_that_begins_too_large_is_refused_and_one_in_the_way_put_aside() {
     let house = House::shoebox([4.0, 2.5, 2.0], &ShoeboxMaterials::default()).unwrap();
@@ -301,7 +301,7 @@ fn a_field_of_view_set_at_run_time_is_what_the_camera_sees() {
     assert!(off[off.len() * 98 / 100] < 1e-4, "{:?}", off.last());
 }
 
-/// What used to happen: the address read 90 whatever the agent's sensor had.
+/// A regression test: the address read 90 whatever the agent's sensor had.
 #[test]
 fn the_field_of_view_that_is_read_is_the_sensors_and_setting_it_changes_the_picture() {
     let rgb = serde_json::json!({"width": 24, "height": 16, "fov_deg": 60.0, "preset": "flat"});

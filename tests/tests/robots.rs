@@ -123,7 +123,7 @@ fn both_fingers_close_together() {
     assert!(refused.to_string().contains("follows"), "{refused}");
 }
 
-/// What cannot be told or set is refused with its reason, and changes nothing.
+/// An impossible command or joint position is refused with its reason, and changes nothing.
 #[test]
 fn wrong_commands_and_poses_of_joints_are_refused() {
     let mut world = world();

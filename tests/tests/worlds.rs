@@ -229,7 +229,7 @@ fn gathering(agents: usize) -> World {
     world
 }
 
-/// What an agent hears does not depend on who else listens, nor on how often it is asked.
+/// An agent's hearing does not depend on who else listens, nor on how often it is asked.
 #[test]
 fn listening_changes_nothing() {
     let run = |ears: &[(AgentId, usize)], asks: usize| {
@@ -250,7 +250,7 @@ fn listening_changes_nothing() {
     assert_eq!(run(&[(AgentId(1), 4000), (AGENT, 4000)], 1), alone);
 }
 
-/// Who asks for a longer window keeps what was heard, and who opens the ears late hears what sounds then, not before.
+/// An agent with a longer window keeps what was heard, and one that opens its ears late hears what sounds then, not before.
 #[test]
 fn windows_grow_backwards_and_time_goes_on_without_ears() {
     let mut world = gathering(1);

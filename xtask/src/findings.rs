@@ -1,4 +1,4 @@
-//! What a check found out.
+//! Findings of a check.
 
 use std::fmt::Write;
 

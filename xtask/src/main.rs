@@ -1,4 +1,4 @@
-//! What the project checks about itself. `cargo xtask` lists the commands.
+//! Checks of the project about itself. `cargo xtask` lists the commands.
 #![expect(clippy::print_stdout, reason = "a command's report is its output")]
 
 mod bits;

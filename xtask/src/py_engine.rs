@@ -25,7 +25,7 @@ const EXEMPT: &[(&str, &str, &str)] = &[
     ("house.rs", "name", "reads a field"),
 ];
 
-/// What calls engines: the method itself, and those of this crate that do nothing before it.
+/// Methods that call engines: the method itself, and those of this crate that do nothing before it.
 const WAYS: &[&str] = &[
     ".engine(",
     ".with(py",

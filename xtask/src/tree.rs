@@ -14,7 +14,7 @@ pub(crate) struct DependencyPackage {
     pub licence: String,
     /// Each set of features it is built with; two where host and target differ.
     pub features: BTreeSet<String>,
-    /// Where a package comes from that is not from a registry: a folder or the address of a repository.
+    /// The source of a package that is not from a registry: a folder or the address of a repository.
     pub source: Option<String>,
     /// Runs in the compiler; nothing of it is linked.
     pub proc_macro: bool,

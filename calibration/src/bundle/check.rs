@@ -1,4 +1,4 @@
-//! Whether a bundle says what it must, in ranges that make sense.
+//! Checks of a bundle's manifest: required fields, and ranges that make sense.
 
 use super::file::{BodyManifest, BundleKind, Manifest, SurfaceManifest, VERSION};
 use super::{Bundle, limits, odometry, poses, unit_checks};

@@ -15,18 +15,18 @@ pub const VERSION: u32 = 3;
 pub struct Manifest {
     /// The version of the form, [`VERSION`].
     pub version: u32,
-    /// What was measured, in a line.
+    /// The measurement, in a line.
     pub title: String,
     /// The licence of the data.
     pub licence: String,
-    /// What kind of measurement it is.
+    /// The kind of measurement.
     pub kind: BundleKind,
     /// The situation.
     pub scene: SceneManifest,
-    /// What the numbers of `trajectory.csv` mean.
+    /// The meaning of the numbers of `trajectory.csv`.
     #[serde(default)]
     pub channels: Vec<ChannelManifest>,
-    /// What the numbers of `poses.csv` and `starts.csv` mean (kind `pose_trajectory`).
+    /// The meaning of the numbers of `poses.csv` and `starts.csv` (kind `pose_trajectory`).
     #[serde(default)]
     pub poses: Option<PoseForm>,
     /// Anything else.
@@ -34,7 +34,7 @@ pub struct Manifest {
     pub notes: String,
 }
 
-/// What kind of measurement a bundle holds.
+/// The kind of measurement that a bundle holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum BundleKind {
@@ -50,7 +50,7 @@ pub enum BundleKind {
     Drive,
 }
 
-/// What the numbers of `poses.csv` mean.
+/// The meaning of the numbers of `poses.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoseForm {
@@ -58,7 +58,7 @@ pub struct PoseForm {
     pub rate_hz: f64,
     /// The frame of `wx, wy, wz`.
     pub angular_velocity: AngularFrame,
-    /// What was done to the numbers before (`"median 3"`, `"none"`); empty: unknown.
+    /// The filtering of the numbers before (`"median 3"`, `"none"`); empty: unknown.
     #[serde(default)]
     pub filtering: String,
 }
@@ -181,7 +181,7 @@ pub struct RoomManifest {
     pub surfaces: BTreeMap<String, SurfaceManifest>,
 }
 
-/// What is known about a surface of the room.
+/// The known properties of a surface of the room.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SurfaceManifest {
@@ -203,7 +203,7 @@ pub struct BandTable {
     pub values: Vec<f64>,
 }
 
-/// What the numbers of a channel mean.
+/// The meaning of the numbers of a channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChannelManifest {
@@ -224,7 +224,7 @@ pub struct EpisodeRow {
     pub episode: String,
     /// Episodes of one group (session, object, room) are held out together.
     pub split_group: String,
-    /// What was special, in words.
+    /// The special conditions, in words.
     pub conditions: String,
 }
 
@@ -252,7 +252,7 @@ pub struct CommandRow {
     pub t_s: f64,
     /// The joint.
     pub actuator: String,
-    /// What is commanded: `position`.
+    /// The commanded quantity: `position`.
     pub kind: String,
     /// The target, rad.
     pub value: f64,
@@ -321,7 +321,7 @@ pub struct DriveRow {
     pub x: f64,
     pub y: f64,
     pub heading: f64,
-    /// How far the left wheel turned since the sample before, rad; forward is positive.
+    /// Rotation of the left wheel since the sample before, rad; forward is positive.
     pub left_rad: f64,
     /// The right wheel likewise.
     pub right_rad: f64,

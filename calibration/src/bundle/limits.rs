@@ -1,4 +1,4 @@
-//! How much is read at most: bundles come from strangers.
+//! Limits of what is read: bundles come from strangers.
 
 /// Bytes of `manifest.json`.
 pub(super) const MANIFEST_BYTES: u64 = 1 << 20;

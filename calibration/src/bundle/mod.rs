@@ -45,7 +45,7 @@ pub(crate) struct MeasuredEpisode {
     pub(crate) name: String,
     /// Episodes of one group are held out together.
     pub(crate) group: String,
-    /// What was special.
+    /// The special conditions.
     pub(crate) conditions: String,
     /// By entity, then channel, each by time.
     pub(crate) samples: Vec<MeasuredSample>,
@@ -70,7 +70,7 @@ pub(crate) struct PoseSample {
     pub(crate) position: DVec3,
     /// World from body, unit length.
     pub(crate) rotation: DQuat,
-    /// Where the tracker gives them.
+    /// Velocities, if the tracker gives them.
     pub(crate) rates: Option<PoseRates>,
 }
 

@@ -81,7 +81,7 @@ pub(super) fn complete(
     ways.judge(&format!("{name}/drive.csv"))
 }
 
-/// How far robots went and turned, by the wheels and as the tracker saw it, m and rad.
+/// Lengths and turns of robots' paths, by the wheels and by the tracker, m and rad.
 #[derive(Default)]
 struct WheelAndTrackerPaths {
     wheels_m: f64,

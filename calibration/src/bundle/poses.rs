@@ -9,7 +9,7 @@ use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// How far a quaternion's length may be from one.
+/// Largest deviation of a quaternion's length from one.
 const UNIT_TOLERANCE: f64 = 1e-3;
 /// Share of the turning speed, or of the speed, that a test of the velocities must leave unexplained before it speaks.
 const WRONG_SHARE: f64 = 0.5;

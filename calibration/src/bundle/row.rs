@@ -1,4 +1,4 @@
-//! What is wrong with a row of a table, in its own words.
+//! Faults of a row of a table, in plain words.
 
 use crate::error::CalibrationError;
 use csv::{DeserializeErrorKind, ErrorKind, StringRecord};

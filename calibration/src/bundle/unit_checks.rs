@@ -1,4 +1,4 @@
-//! What people get wrong most often about measured data, found by what cannot be otherwise, and told with what to change.
+//! Checks for the commonest mistakes in measured data, found by what cannot be otherwise, and reported with the remedy.
 
 use super::MeasuredEpisode;
 use super::file::{BundleKind, Manifest};
@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 
 type UnitCheck = Result<(), CalibrationError>;
 
-/// How far a sample's time may be from its place in an even row, as a share of the spacing.
+/// Largest deviation of a sample's time from its place in an even row, as a share of the spacing.
 const SPACING_TOLERANCE: f64 = 0.05;
-/// How far a factor may be off the one that explains it.
+/// Largest deviation of a factor from the one that explains it.
 const FACTOR_TOLERANCE: f64 = 0.3;
 /// Samples further apart than this show no motion, s.
 const LONGEST_STEP_S: f64 = 0.5;
@@ -216,7 +216,7 @@ pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisod
     Ok(())
 }
 
-/// What may be wrong with axes: along which one falls, whether upwards, and in what unit.
+/// A guess at wrong axes: along which one things fall, whether upwards, and in what unit.
 type AxisGuess = (usize, f64, Option<UnitScale>);
 
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.

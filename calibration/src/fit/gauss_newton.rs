@@ -21,7 +21,7 @@ pub(crate) struct CauseSet {
     pub(crate) causes: Vec<usize>,
 }
 
-/// What a fit works on.
+/// The inputs of a fit.
 pub(crate) struct FitTask<'a> {
     pub(crate) twin: &'a dyn Twin,
     /// The episodes, by position.
@@ -31,7 +31,7 @@ pub(crate) struct FitTask<'a> {
     pub(crate) progress: &'a dyn ProgressReporter,
 }
 
-/// Where a fit ended.
+/// The end point of a fit.
 #[derive(Clone, Debug)]
 pub(crate) struct FitResult {
     pub(crate) point: ParameterVector,

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// What one episode brings to the normal equations: blocks of `JᵀWJ` and `JᵀWr`, own nuisances first.
+/// One episode's share of the normal equations: blocks of `JᵀWJ` and `JᵀWr`, own nuisances first.
 #[derive(Clone, Debug)]
 pub(super) struct NormalBlock {
     own: DMatrix<f64>,
@@ -17,7 +17,7 @@ pub(super) struct ParameterStep {
     pub(super) global: DVector<f64>,
     /// Shape (episode, nuisance).
     pub(super) own: Vec<DVector<f64>>,
-    /// How much the loss would fall if the model were linear.
+    /// The fall of the loss that a linear model would have.
     pub(super) predicted: f64,
 }
 

@@ -9,7 +9,7 @@ const TURN: f64 = 3.0;
 /// P. J. Huber, Ann. Math. Stat. 35, 73 (1964).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HuberLoss {
-    /// Where the square turns into a line; infinite: never.
+    /// The residual at which the square turns into a line; infinite: never.
     turn: f64,
 }
 

@@ -17,7 +17,7 @@ pub enum CalibrationVerdict {
         law: String,
         /// All of them, the strongest first.
         effects: Vec<NamedEffect>,
-        /// What they gain together on held-out episodes.
+        /// Their common gain on held-out episodes.
         gain: HeldOutGain,
     },
     /// Some cause acts, but these cannot be told apart with this data.
@@ -29,7 +29,7 @@ pub enum CalibrationVerdict {
     },
     /// Something is missing that is not in the library.
     Unexplained {
-        /// What is known about it.
+        /// A description of what is missing.
         reason: String,
     },
 }
@@ -54,13 +54,13 @@ pub struct FittedParameter {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// What was fitted.
+    /// The fitted value.
     pub value: f64,
     /// 95 % interval.
     pub interval: [f64; 2],
-    /// What the simulation had before.
+    /// The value that the simulation had before.
     pub default: f64,
-    /// What a physicist finds plausible.
+    /// The range that a physicist finds plausible.
     pub plausible: [f64; 2],
 }
 
@@ -79,7 +79,7 @@ pub struct CandidateCause {
     pub delta_bic: f64,
     /// Gain on held-out episodes against nuisances alone.
     pub gain: HeldOutGain,
-    /// Whether both speak for it.
+    /// True if both speak for it.
     pub passes: bool,
     /// Why it is not plausible; `null` where it is.
     pub implausible: Option<String>,
@@ -90,7 +90,7 @@ pub struct CandidateCause {
 /// A nuisance that all episodes share: fitted always, never reported as an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NuisanceParameter {
-    /// What it is.
+    /// Its name in words.
     pub name: String,
     /// Its unit.
     pub unit: String,
@@ -100,7 +100,7 @@ pub struct NuisanceParameter {
     pub sd: f64,
 }
 
-/// What goes into the simulator: the content of `found.json`.
+/// The effects to install in the simulator: the content of `found.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FoundEffects {
     /// Laws to install.
@@ -109,16 +109,16 @@ pub struct FoundEffects {
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// What is left over time, before and after, thinned out for a picture.
+/// The residuals over time, before and after, thinned out for a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResidualPlot {
     /// The channel.
     pub title: String,
-    /// The unit of what is left.
+    /// The unit of the residuals.
     pub unit: String,
-    /// (time, what is left with nuisances alone).
+    /// (time, residual with nuisances alone).
     pub before: Vec<[f64; 2]>,
-    /// (time, what is left with the cause found); empty where none was.
+    /// (time, residual with the cause found); empty where none was.
     pub after: Vec<[f64; 2]>,
     /// Standard deviation of the noise.
     pub noise_sd: f64,
@@ -143,25 +143,25 @@ pub struct CalibrationReport {
     pub fitted_episodes: Vec<String>,
     /// See `fitted_episodes`.
     pub held_out_episodes: Vec<String>,
-    /// What is left with nuisances alone, on all episodes.
+    /// The residuals with nuisances alone, on all episodes.
     pub residuals_before: Vec<ChannelResidual>,
-    /// What is left with what was found.
+    /// The residuals with the found effects.
     pub residuals_after: Vec<ChannelResidual>,
-    /// Whether that is more than noise, before.
+    /// The test of whether they are more than noise, before.
     pub remainder_before: UnexplainedResidual,
     /// And after.
     pub remainder_after: UnexplainedResidual,
-    /// Whether the cause has one size where it is weak and where it is strong; `null` where that was not asked.
+    /// The agreement of the cause's size where it is weak and where it is strong; `null` where that was not tested.
     pub agreement: Option<Agreement>,
     /// All causes that were tried.
     pub candidates: Vec<CandidateCause>,
     /// Nuisances that all episodes share.
     pub nuisances: Vec<NuisanceParameter>,
-    /// What goes into the simulator.
+    /// The effects to install in the simulator.
     pub found: FoundEffects,
-    /// What is left over time.
+    /// The residuals over time.
     pub plots: Vec<ResidualPlot>,
-    /// What a reader must know.
+    /// Notes for the reader.
     pub notes: Vec<String>,
 }
 

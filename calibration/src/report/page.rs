@@ -1,4 +1,4 @@
-//! What every report's page is made of.
+//! Parts of every report's page.
 
 use super::html::STYLE;
 use super::svg;

@@ -1,4 +1,4 @@
-//! What is left over time, thinned out.
+//! Residuals over time, thinned out.
 
 use super::data::ResidualPlot;
 use crate::twin::Twin;

@@ -18,11 +18,11 @@ const BODY: PartId = PartId(0);
 #[derive(Clone)]
 pub struct BoardRig {
     stage: TestWorld,
-    /// What turns the inertia of a solid body into the one that was measured.
+    /// The law that turns the inertia of a solid body into the measured one.
     inertia: LawSpec,
 }
 
-/// What a rig is set to.
+/// The settings of a rig.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RigSettings {
     /// Coulomb friction of the pair.

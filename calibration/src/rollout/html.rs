@@ -7,7 +7,7 @@ use crate::format_number::number;
 use crate::report::page;
 use std::fmt::Write as _;
 
-/// What windows of a model deviate by.
+/// Writes the deviations of a model's windows.
 pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
     let _ = write!(
         out,

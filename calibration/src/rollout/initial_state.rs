@@ -113,7 +113,7 @@ pub fn window_start(
     }
 }
 
-/// How far accelerations stray from what is expected over a sample: in flight, in a blow, in contact, at rest. m/s².
+/// Standard deviation of accelerations about their expected value over a sample: in flight, in a blow, in contact, at rest. m/s².
 const LINEAR_M_S2: [f64; 4] = [0.1, 150.0, 5.0, 0.3];
 /// The same for angular accelerations, rad/s².
 const ANGULAR_RAD_S2: [f64; 4] = [1.0, 1500.0, 100.0, 5.0];

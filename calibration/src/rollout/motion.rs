@@ -1,4 +1,4 @@
-//! Where a body is and how it moves, and how far two of these lie apart.
+//! A body's pose and velocity, and the deviation of two of these.
 
 use glam::{DQuat, DVec3};
 
@@ -15,7 +15,7 @@ pub struct MeasuredMotion {
     pub angular: DVec3,
 }
 
-/// How far a prediction lies from what was measured.
+/// The deviation of a prediction from the measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Deviation {
     /// Distance of the origins, m.

@@ -12,7 +12,7 @@ use dwell_scene::random::RandomKey;
 use glam::DVec3;
 use std::path::Path;
 
-/// What was measured of a body above a board.
+/// The measured motion of a body above a board.
 #[derive(Clone, Debug)]
 pub struct PoseTracks {
     /// The bundle's title.
@@ -62,9 +62,9 @@ pub struct PoseTrack {
     pub name: String,
     /// Episodes of one group are held out together.
     pub group: String,
-    /// What was measured. Shape (sample,).
+    /// The measured motion. Shape (sample,).
     pub motions: Vec<MeasuredMotion>,
-    /// What the body did at each sample. Shape (sample,).
+    /// The regime at each sample. Shape (sample,).
     pub regimes: Vec<Regime>,
     /// The sample that whole roll-outs start from.
     pub start: usize,

@@ -7,7 +7,7 @@ use crate::fit::median;
 use crate::format_number::number;
 use serde::Serialize;
 
-/// How many steps of the finer simulation make one of the other.
+/// Number of steps of the finer simulation that make one of the other.
 pub const FINER: u32 = 4;
 /// A median residual that a finer step changes by more than this share is named an artefact of the solver.
 const ARTEFACT_SHARE: f64 = 0.1;
@@ -16,14 +16,14 @@ const LEAST_CHANGE: [f64; 2] = [0.01, 0.01];
 /// Windows below which a median says nothing.
 const FEWEST: usize = 20;
 
-/// What a finer step changes in windows of one horizon and regime. Windows that diverge are left out.
+/// The effect of a finer step in windows of one horizon and regime. Windows that diverge are left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Refinement {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end; `null`: all windows.
     pub regime: Option<Regime>,
-    /// How many windows.
+    /// Number of windows.
     pub count: usize,
     /// Median distance from what was measured with the step and with a quarter of it, mm.
     pub position_median_mm: [f64; 2],
@@ -33,7 +33,7 @@ pub struct Refinement {
     pub apart_mm: f64,
     /// Median angle between them, degrees.
     pub apart_deg: f64,
-    /// Whether the residual changes with the step: then that part of it is the solver's, not the model's.
+    /// True if the residual changes with the step: then that part of it is the solver's, not the model's.
     pub artefact: bool,
 }
 

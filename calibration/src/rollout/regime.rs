@@ -1,11 +1,11 @@
-//! What a body does at a sample, as the measured poses show it.
+//! Regimes of a toss: a body's contact state at a sample, by the measured poses.
 
 use super::motion::MeasuredMotion;
 use super::pose_tracks::TrackedBody;
 use glam::DVec3;
 use serde::Serialize;
 
-/// What a body does.
+/// The contact state of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {

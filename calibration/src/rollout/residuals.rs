@@ -1,4 +1,4 @@
-//! How residuals spread: by regime, by speed, by kind of episode, for several models beside each other.
+//! Distributions of residuals: by regime, by speed, by kind of episode, for several models beside each other.
 
 use super::regime::Regime;
 use super::windows::WindowEnd;
@@ -32,7 +32,7 @@ impl Residual {
 pub struct ResidualGroups {
     /// The name of the picture's file, without its ending.
     pub name: String,
-    /// What it shows.
+    /// The title of the picture.
     pub title: String,
     /// Unit of the residuals.
     pub unit: &'static str,
@@ -43,15 +43,15 @@ pub struct ResidualGroups {
 /// Residuals of one group of windows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResidualGroup {
-    /// What the windows have in common.
+    /// The common property of the windows.
     pub label: String,
-    /// How many there are.
+    /// Number of windows.
     pub count: usize,
     /// For each model.
     pub models: Vec<Quantiles>,
 }
 
-/// Where 5, 25, 50, 75 and 95 percent of the residuals lie.
+/// The 5, 25, 50, 75 and 95 percent quantiles of the residuals.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantiles {
     /// The model.

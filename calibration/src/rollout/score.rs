@@ -74,7 +74,7 @@ pub fn scores(
     threads.map(which.len(), one).into_iter().collect()
 }
 
-/// How often the chaos guard starts an episode once more.
+/// Number of times that the chaos guard starts an episode once more.
 const NUDGES: u64 = 4;
 
 /// Returns whether each of the episodes `which` ends elsewhere ([`RolloutSubject::divergence`]) when its start is drawn from within the

@@ -1,4 +1,4 @@
-//! What can be rolled out: measured motions, and a simulation that predicts them.
+//! Subjects of roll-outs: measured motions, and a simulation that predicts them.
 
 use super::motion::{Deviation, MeasuredMotion};
 use super::regime::Regime;

@@ -35,7 +35,7 @@ const PREDICTED_E_Q: f64 = 0.05;
 /// Scores of many episodes in one row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ScoreSummary {
-    /// How many episodes.
+    /// Number of episodes.
     pub count: usize,
     /// Distance, as a share of the body's width.
     pub position_widths: EpisodeSpread,

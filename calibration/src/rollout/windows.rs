@@ -9,12 +9,12 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
 
-/// How many samples ahead windows look.
+/// Horizons of windows, samples.
 pub const HORIZONS: [usize; 5] = [1, 5, 10, 20, 40];
-/// How often the chaos guard starts a window once more, from within the uncertainty of its start.
+/// Number of times that the chaos guard starts a window once more, from within the uncertainty of its start.
 const NUDGES: u64 = 4;
 
-/// Where windows start, and what is done with them.
+/// The starts of windows, and their evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowOptions {
     /// They start at every so many samples.
@@ -36,25 +36,25 @@ pub struct WindowEnd {
     pub regime: Regime,
     /// Measured speed at the start, m/s.
     pub speed_m_s: f64,
-    /// What was predicted.
+    /// The prediction.
     pub predicted: MeasuredMotion,
-    /// How far that is from what was measured.
+    /// Its deviation from the measurement.
     pub deviation: Deviation,
-    /// Whether starts within the uncertainty of this one end elsewhere: what comes out is chance, and says little about
+    /// True if starts within the uncertainty of this one end elsewhere: the result is chance, and says little about
     /// the model.
     pub diverges: bool,
 }
 
-/// What windows of one horizon and regime deviate by.
+/// The deviations in windows of one horizon and regime.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WindowScore {
     /// Samples ahead.
     pub horizon: usize,
     /// The worst that the body does between start and end; `null`: all windows.
     pub regime: Option<Regime>,
-    /// Whether these are the windows that the chaos guard marked, which are in no other row.
+    /// True for the windows that the chaos guard marked, which are in no other row.
     pub diverging: bool,
-    /// How many windows.
+    /// Number of windows.
     pub count: usize,
     /// Root mean square distance, mm.
     pub position_rms_mm: f64,

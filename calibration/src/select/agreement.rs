@@ -1,4 +1,4 @@
-//! Whether a cause has one size wherever it is strong or weak: a name that fits one regime and not another is refuted.
+//! Agreement of a cause's size wherever it is strong or weak: a name that fits one regime and not another is refuted.
 
 use super::compare::{CauseComparison, Estimate, ScoredModel, estimates};
 use super::residual::effective_count;

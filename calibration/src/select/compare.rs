@@ -11,7 +11,7 @@ use crate::twin::{ParameterIndex, ParameterVector, ResidualStructure, Twin, rang
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
-/// What comparisons share.
+/// The inputs that all comparisons share.
 pub(crate) struct CauseComparison<'a> {
     pub(crate) twin: &'a dyn Twin,
     pub(crate) split: &'a EpisodeSplit,

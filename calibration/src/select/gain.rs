@@ -1,4 +1,4 @@
-//! What a cause gains on episodes that no fit has seen.
+//! Gain of a cause on episodes that no fit has seen.
 
 use dwell_scene::random::RandomKey;
 use serde::Serialize;

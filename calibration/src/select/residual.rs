@@ -1,20 +1,20 @@
-//! What is left between measurement and simulation.
+//! Residuals between measurement and simulation.
 
 use crate::fit::median;
 use crate::twin::{ResidualStructure, Twin};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What is left in one channel.
+/// The residuals of one channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelResidual {
     /// The channel.
     pub channel: String,
     /// Its unit.
     pub unit: String,
-    /// How many numbers.
+    /// Number of residuals.
     pub count: usize,
-    /// How many independent numbers they are worth, by the autocorrelation of what is left.
+    /// Effective number of independent residuals, by their autocorrelation.
     pub effective_count: f64,
     /// Correlation of what is left with itself one sample later.
     pub autocorrelation: f64,
@@ -24,7 +24,7 @@ pub struct ChannelResidual {
     pub rms: f64,
     /// Standard deviation of the noise, in the unit: declared, or estimated from differences of neighbours.
     pub noise_sd: f64,
-    /// Whether the bundle (or theory) says the noise.
+    /// True if the bundle (or theory) states the noise.
     pub noise_known: bool,
     /// Mean square over the noise's: 1 for noise alone.
     pub chi2_per_count: f64,
@@ -186,7 +186,7 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
     }
 }
 
-/// Whether something is left that is no noise.
+/// A test for residuals beyond noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct UnexplainedResidual {
     /// Mean square of what is left over that of its noise: 1 for noise alone.

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 pub(crate) struct EpisodeSplit {
     pub(crate) train: Vec<usize>,
     pub(crate) held_out: Vec<usize>,
-    /// Whether whole groups are held out; else there is one group only, or groups too unequal for that, and episodes are.
+    /// True if whole groups are held out; else there is one group only, or groups too unequal for that, and episodes are.
     pub(crate) by_group: bool,
 }
 

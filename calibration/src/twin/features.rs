@@ -12,7 +12,7 @@ pub(super) const EDGES_S: [f64; 10] = [
 pub(super) const WINDOWS: usize = EDGES_S.len() - 1;
 /// The lowest band whose filter is short enough for the windows: 250 Hz.
 pub(super) const FIRST_BAND: usize = 2;
-/// How the filters cross, as `power_shares` means it.
+/// Overlap of the filters, as `power_shares` means it.
 const OVERLAP: f64 = 1.0;
 /// Length of the filters' smear that is followed, to each side, s.
 const SMEAR_S: f64 = 0.03;
@@ -86,7 +86,7 @@ fn decibels(energies: &[f64]) -> impl Iterator<Item = f64> {
     energies.iter().map(move |e| 10.0 * (e + floor).log10())
 }
 
-/// How the filters of the bands smear an impulse: the share of its energy that has come until a time.
+/// The smear of an impulse by the filters of the bands: the share of its energy that has come until a time.
 pub(super) struct Smear {
     rate_hz: u32,
     /// From -`SMEAR_S` on, a value a sample. Shape (band, sample).

@@ -382,7 +382,7 @@ mod tests {
         FlightTwin::new(&bundle, &Options::default()).unwrap()
     }
 
-    /// What the engine flies, against closed forms: a parabola under any gravity, and Stokes' fall.
+    /// Flights of the engine match closed forms: a parabola under any gravity, and Stokes' fall.
     #[test]
     fn flights_meet_their_closed_forms() {
         let twin = twin();

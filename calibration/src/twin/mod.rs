@@ -31,16 +31,16 @@ pub(crate) struct EpisodeData {
     pub(crate) sd: Vec<f64>,
 }
 
-/// What a channel means.
+/// The meaning of a channel.
 #[derive(Clone, Debug)]
 pub(crate) struct ChannelInfo {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
-    /// Whether the bundle, or theory, says how large the noise is.
+    /// True if the bundle, or theory, says how large the noise is.
     pub(crate) noise_known: bool,
 }
 
-/// How noise is told from what the model lacks.
+/// The structure by which model error is distinguished from noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ResidualStructure {
     /// Samples follow each other in time: what the model lacks is smoother than noise.
@@ -49,7 +49,7 @@ pub(crate) enum ResidualStructure {
     ByCell,
 }
 
-/// Where a model stands: a value for each parameter.
+/// A point of the parameter space: a value for each parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ParameterVector {
     /// Of all causes, one after the other, as in [`Twin::causes`].

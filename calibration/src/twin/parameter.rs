@@ -11,7 +11,7 @@ pub(crate) struct FitParameter {
     pub(crate) default: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// What a physicist finds plausible.
+    /// The range that a physicist finds plausible.
     pub(crate) plausible: [f64; 2],
     /// Step of a finite difference.
     pub(crate) step: f64,
@@ -53,7 +53,7 @@ impl FitParameter {
     }
 }
 
-/// How a cause becomes part of a simulation that others run.
+/// The installation of a cause in a simulation that others run.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Installation {
     /// It is a law of an engine.

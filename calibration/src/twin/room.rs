@@ -26,7 +26,7 @@ use std::sync::Arc;
 const ABSORPTION_STEP: f64 = 0.04;
 /// Materials of a house that are looked at, those with the largest area.
 const MOST_MATERIALS: usize = 8;
-/// What chance and the ray count leave at least, dB.
+/// Floor of the standard deviation from chance and the ray count, dB.
 const LEAST_SD_DB: f64 = 0.4;
 
 /// Impulse responses of a room.

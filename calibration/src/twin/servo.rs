@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 /// Edge of the box around the servo, m.
 const ROOM_M: f32 = 4.0;
-/// How far the two clocks may be apart, s.
+/// Largest offset between the two clocks, s.
 const MOST_OFFSET_S: f64 = 0.2;
 
 /// A joint that is driven by a position servo.

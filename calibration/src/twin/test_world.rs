@@ -12,13 +12,13 @@ use std::sync::Arc;
 
 /// Half the edge of the box that stands for all that a servo turns, m.
 const ARM_HALF_EDGE_M: f32 = 0.1;
-/// What everything that is tracked is made of here.
+/// Substance of all tracked things.
 pub(crate) const THING_SUBSTANCE: &str = "rubber";
-/// What the board is made of here; its contact values with the thing are overridden.
+/// Substance of the board; its contact values with the thing are overridden.
 pub(crate) const BOARD_SUBSTANCE: &str = "plywood";
 /// Half the board's edge, m.
 const BOARD_HALF_EDGE_M: f32 = 4.0;
-/// Where a thing waits above the board until it is put somewhere, m.
+/// Height at which a thing waits above the board until it is placed, m.
 const WAITING_HEIGHT_M: f32 = 2.0;
 
 /// A physics world at its start, to be copied for every simulation.
@@ -29,14 +29,14 @@ pub(crate) struct TestWorld {
     pub(crate) state: State,
 }
 
-/// What is simulated.
+/// The simulated object.
 pub(crate) struct TestObject {
     pub(crate) name: String,
     pub(crate) mass_kg: f32,
     pub(crate) collider: Collider,
     /// The servo and Coulomb friction of its hinge; `None`: it is free.
     pub(crate) hinge: Option<(Servo, f32)>,
-    /// Whether it lies in wait above a board, the plane y = 0.
+    /// True if it waits above a board, the plane y = 0.
     pub(crate) board: bool,
 }
 

@@ -39,9 +39,9 @@ pub enum HousesError {
     Spec {
         /// The field.
         field: String,
-        /// What it holds.
+        /// The found value.
         found: String,
-        /// What is possible.
+        /// The possible values.
         possible: String,
     },
     /// A folder that holds no house, or more than one.
@@ -57,7 +57,7 @@ pub enum HousesError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// A size or a count beyond what is read; checked before memory is taken.
@@ -65,7 +65,7 @@ pub enum HousesError {
     TooLarge {
         /// The file and place.
         at: FileLocation,
-        /// What was counted, with its unit.
+        /// The quantity, with its unit.
         what: &'static str,
         /// The number found.
         found: u64,
@@ -77,7 +77,7 @@ pub enum HousesError {
     Syntax {
         /// The file and place.
         at: FileLocation,
-        /// What was found and what was expected.
+        /// The found and the expected value.
         message: String,
     },
     /// A field without which nothing can be built.
@@ -85,9 +85,9 @@ pub enum HousesError {
     Field {
         /// The file and field.
         at: FileLocation,
-        /// What the field must hold.
+        /// The value that the field must hold.
         expected: &'static str,
-        /// What it holds.
+        /// The found value.
         found: String,
     },
     /// A file that belongs to a version of the format this program does not read.
@@ -115,7 +115,7 @@ pub enum HousesError {
     Empty {
         /// The file.
         at: FileLocation,
-        /// How many warnings there are, and the first of them: they say why.
+        /// The number of warnings, and the first of them, which say why.
         report: String,
     },
     /// The converted house breaks a rule of the scene.
@@ -131,7 +131,7 @@ pub enum HousesError {
     Unwritable {
         /// The file or folder to be written.
         path: PathBuf,
-        /// What stands in the way.
+        /// The reason.
         message: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What a foreign format cannot hold.
+//! Losses of an export: what the foreign format cannot hold.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Something that a written file does not hold.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ExportLoss {
-    /// What is lost, and what stands in its place.
+    /// The lost content, and its replacement.
     pub what: String,
     /// For how many things.
     pub count: usize,

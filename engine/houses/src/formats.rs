@@ -15,9 +15,9 @@ use crate::report::LoadReport;
 pub struct Format {
     /// The format's name.
     pub name: &'static str,
-    /// What a HOUSE string of this format looks like.
+    /// The form of a HOUSE string of this format.
     pub spelling: &'static str,
-    /// Whether a HOUSE string means this format.
+    /// Returns whether a HOUSE string means this format.
     pub recognizes: fn(&str) -> bool,
     /// Opens it.
     pub open: fn(&str, Threads) -> Opened,

@@ -13,7 +13,7 @@ pub(crate) fn without_mark(text: &[u8]) -> &[u8] {
 /// The value of a JSON text in UTF-8.
 ///
 /// # Errors
-/// What the reader says.
+/// Those of the JSON reader.
 pub(crate) fn from_slice<T: DeserializeOwned>(text: &[u8]) -> serde_json::Result<T> {
     serde_json::from_slice(without_mark(text))
 }

@@ -1,4 +1,4 @@
-//! Where houses come from: one folder a format, the built-in house, textures, [`open`].
+//! Sources of houses: one folder a format, the built-in house, textures, [`open`].
 
 mod atomic;
 pub mod authoring;

@@ -13,7 +13,7 @@ use crate::formats::{FORMATS, Format, open_by};
 use crate::opened::Opened;
 use crate::report::LoadReport;
 
-/// How many formats are tried before plans.
+/// Number of formats that are tried before plans.
 const BEFORE_PLANS: usize = 2;
 
 /// All formats, in the order in which they are tried.

@@ -1,4 +1,4 @@
-//! What readers of houses return.
+//! Results of readers of houses.
 
 use crate::error::HousesError;
 use crate::report::LoadReport;

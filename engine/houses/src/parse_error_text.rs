@@ -1,4 +1,4 @@
-//! What readers of JSON, TOML and CSV say, in people's words: names of Rust's types say nothing to who wrote a file.
+//! Errors of readers of JSON, TOML and CSV in plain words: names of Rust's types mean nothing to the author of a file.
 
 use std::fmt::Display;
 

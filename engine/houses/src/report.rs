@@ -74,9 +74,9 @@ impl fmt::Display for FileLocation {
 pub struct Warning {
     /// The first place it was seen.
     pub at: FileLocation,
-    /// What was wrong.
+    /// The kind of damage.
     pub damage: WarningKind,
-    /// How often; at least 1.
+    /// Number of occurrences; at least 1.
     pub count: u64,
 }
 

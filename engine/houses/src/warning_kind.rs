@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// What was wrong, and what was done about it.
+/// The kind of a warning: what was wrong, and what was done about it.
 #[derive(
     Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, thiserror::Error,
 )]
@@ -14,7 +14,7 @@ pub enum WarningKind {
     /// Something that a generated house should have had and has not.
     #[error("given up: {what}")]
     GivenUp {
-        /// What.
+        /// The omitted thing.
         what: String,
     },
     /// A thing that was put outside of every room; it stays there.
@@ -107,7 +107,7 @@ pub enum WarningKind {
     /// A face that cannot be a polygon; left out.
     #[error("a face is left out: {reason}")]
     BadFace {
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// A statement of the file that is not understood; ignored.
@@ -121,19 +121,19 @@ pub enum WarningKind {
     BadField {
         /// The value, shortened.
         found: String,
-        /// What the reader said it expects.
+        /// The value that the reader expects.
         expected: String,
     },
     /// A field that is missing although needed.
     #[error("missing; {consequence}")]
     MissingField {
-        /// What follows from it.
+        /// The consequence.
         consequence: String,
     },
     /// A matrix that places nothing.
     #[error("no usable transform ({reason}); the node is left out")]
     BadTransform {
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
     /// A matrix that shears: held by the mesh instead of the pose.
@@ -210,7 +210,7 @@ pub enum WarningKind {
     MissingTable {
         /// Relative to the data root.
         path: String,
-        /// What is not known because of it.
+        /// The consequence.
         consequence: String,
     },
     /// A metadata row that could not be read.
@@ -224,13 +224,13 @@ pub enum WarningKind {
     UnknownPiece {
         /// The group's name.
         found: String,
-        /// What it was taken for.
+        /// The interpretation.
         taken_for: String,
     },
     /// A name our tables do not know; the thing exists, its meaning is open.
     #[error("{what} {name:?} is unknown to our tables")]
     Unmapped {
-        /// What kind of name.
+        /// The kind of name.
         what: UnmappedKind,
         /// The name.
         name: String,
@@ -238,12 +238,12 @@ pub enum WarningKind {
     /// Something the source cannot state exactly, or that we hold in a simpler form.
     #[error("{what}")]
     Simplified {
-        /// What was simplified, and how.
+        /// The simplified feature, and its replacement.
         what: String,
     },
 }
 
-/// What kind of name stayed unmapped.
+/// The kind of an unmapped name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

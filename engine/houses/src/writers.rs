@@ -20,10 +20,10 @@ pub struct HouseWriter {
     pub finish: fn(&Path) -> Result<(), HousesError>,
 }
 
-/// What a form does not hold.
+/// The losses of an export.
 pub type WriteResult = Result<Vec<ExportLoss>, HousesError>;
 
-/// Where a house is, and what the form does not hold.
+/// The path of a written house, and the losses of the export.
 pub type FolderWriteResult = Result<(PathBuf, Vec<ExportLoss>), HousesError>;
 
 /// All forms. A new one is one entry here.

@@ -82,7 +82,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
     Ok(())
 }
 
-/// What stands between `<` and `>`; `>` in quotes ends nothing.
+/// The text between `<` and `>`; `>` in quotes ends nothing.
 #[derive(Default)]
 struct Tag {
     /// Its bytes; none for a tag without an end.

@@ -150,7 +150,7 @@ fn edited(
     open(&path.to_string_lossy()).unwrap()
 }
 
-/// What somebody moved in an editor goes with its joints; what was scaled has none, and what cannot be is a foreign file.
+/// An object that was moved in an editor keeps its joints; a scaled one has none, and an impossible one makes the file foreign.
 #[test]
 fn edited_objects_take_along_what_they_can() {
     let (house, _) = open("builtin:apartment").unwrap();

@@ -129,7 +129,7 @@ fn what_is_no_regular_file_is_no_house() {
     assert_eq!(message(&file), format!("{}: {told}", file.display()));
 }
 
-/// What stands there but is no file is not told to be missing.
+/// A path that exists but is no file is not reported as missing.
 #[cfg(unix)]
 #[test]
 fn a_pipe_that_a_mesh_names_is_told_as_one() {

@@ -1,4 +1,4 @@
-//! Who renders: the processor, or a graphics adapter.
+//! Rendering back ends: the processor, or a graphics adapter.
 
 use crate::cpu::{CpuRenderer, RenderJob};
 use crate::error::RenderError;
@@ -8,7 +8,7 @@ use dwell_scene::parallel::Threads;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Who renders, as files and people say it: `cpu`; `gpu` for the likely quickest adapter that is not software; or
+/// A rendering back end, as spelled in files and by people: `cpu`; `gpu` for the likely quickest adapter that is not software; or
 /// `gpu:NAME` for the first whose name or place on the bus holds `NAME` (`gpu:vulkan/NAME` among those of one interface). `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
 /// [`VisibilityPath`]; otherwise the one that a short measurement finds quicker is taken.
 ///
@@ -28,9 +28,9 @@ pub enum BackEnd {
     Cpu,
     /// A graphics adapter.
     Gpu {
-        /// What its name holds; nothing for the likely quickest that is not software.
+        /// A part of its name; `None` for the likely quickest that is not software.
         name: Option<String>,
-        /// How it finds what pixels see first; nothing for the quicker way.
+        /// The method by which it finds what pixels see first; `None` for the quicker one.
         path: Option<VisibilityPath>,
     },
 }

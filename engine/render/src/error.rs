@@ -1,4 +1,4 @@
-//! What can be wrong with a request for a picture.
+//! Errors of requests for pictures.
 
 /// A camera, frame or scene that does not fit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -9,9 +9,9 @@ pub enum RenderError {
     Camera {
         /// The field's name.
         field: &'static str,
-        /// What was found.
+        /// The found value.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// A view whose pose is not finite or not a rotation.
@@ -21,7 +21,7 @@ pub enum RenderError {
     Pose {
         /// The position in the list of views or jobs.
         view: usize,
-        /// What was found.
+        /// The found value.
         found: String,
     },
     /// A buffer of the wrong length.
@@ -57,7 +57,7 @@ pub enum RenderError {
         view: usize,
         /// The channel's name.
         channel: &'static str,
-        /// Whether it was announced.
+        /// True if it was announced.
         was_wanted: bool,
     },
     /// A batch that another renderer was given.
@@ -72,9 +72,9 @@ pub enum RenderError {
     /// A storey that the house does not have.
     #[error("no storey {found}; the house has {count}")]
     Level {
-        /// What was asked for.
+        /// The requested level.
         found: usize,
-        /// How many there are.
+        /// The number of levels.
         count: usize,
     },
     /// A back end that there is not.
@@ -82,7 +82,7 @@ pub enum RenderError {
         "no back end {found:?}; there are cpu, gpu and gpu:NAME (with a part of an adapter's name), and gpu+compute and gpu+raster"
     )]
     BackEnd {
-        /// What was asked for.
+        /// The requested back end.
         found: String,
     },
     /// No graphics adapter that may be used.
@@ -90,7 +90,7 @@ pub enum RenderError {
         "no graphics adapter {wanted}; found: {found}. Software adapters are taken by name only; `cpu` needs none"
     )]
     NoAdapter {
-        /// What was asked for.
+        /// The requested adapter.
         wanted: String,
         /// The adapters that there are.
         found: String,
@@ -100,7 +100,7 @@ pub enum RenderError {
         "{what} needs {needed} {unit}; {adapter} allows {allowed}. The `cpu` back end has no such limit"
     )]
     TooLarge {
-        /// What is too large, with the house or batch that it belongs to.
+        /// The picture that is too large, with the house or batch that it belongs to.
         what: String,
         /// Its size.
         needed: u64,
@@ -126,7 +126,7 @@ pub enum RenderError {
     Forked {
         /// The adapter or the interface.
         what: String,
-        /// What to do.
+        /// The remedy.
         instead: &'static str,
     },
     /// A graphics driver that failed.
@@ -134,9 +134,9 @@ pub enum RenderError {
     Driver {
         /// The adapter.
         adapter: String,
-        /// What was being done.
+        /// The operation that failed.
         doing: &'static str,
-        /// What the driver said.
+        /// The driver's message.
         message: String,
     },
     /// A law of cameras on an agent that there is not.
@@ -144,9 +144,9 @@ pub enum RenderError {
     LawTarget {
         /// The law's id.
         law: String,
-        /// What it names.
+        /// The target that it names.
         found: String,
-        /// How many agents there are.
+        /// The number of agents.
         agents: usize,
     },
 }

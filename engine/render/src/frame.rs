@@ -1,4 +1,4 @@
-//! What is asked of a renderer, and where it writes.
+//! Requests to a renderer, and the buffers that it writes into.
 
 use crate::camera::Camera;
 use crate::error::RenderError;
@@ -6,7 +6,7 @@ use dwell_scene::{EntityId, PartId, Pose};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How much light there is in a picture.
+/// The amount of light transport in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Preset {
@@ -44,7 +44,7 @@ impl Preset {
 pub struct View {
     /// The camera.
     pub camera: Camera,
-    /// Where the camera stands; it looks along -Z with +X to the right.
+    /// The camera's pose; it looks along -Z with +X to the right.
     pub world_from_camera: Pose,
     /// The light.
     pub preset: Preset,
@@ -81,7 +81,7 @@ pub struct ImageChannels {
     pub normals: bool,
     /// Reflectance of surfaces.
     pub albedo: bool,
-    /// How surfaces have moved in the image.
+    /// Motion of surfaces in the image.
     pub flow: bool,
 }
 
@@ -134,14 +134,14 @@ impl Default for ImageChannels {
     }
 }
 
-/// Where camera and things were a while ago, for [`FrameMut::flow`].
+/// Earlier poses of camera and parts, for [`FrameMut::flow`].
 #[derive(Clone, Copy, Debug)]
 pub struct PreviousFrame<'a> {
-    /// Where the camera stood.
+    /// The camera's earlier pose.
     pub world_from_camera: Pose,
-    /// Where parts were that have moved since, by part; the others stood where they stand.
+    /// Earlier poses of the parts that have moved since, by part; the others have not moved.
     pub moved: &'a [(PartId, Pose)],
-    /// Where the agents' feet were, m. Shape (agent,); those beyond its end stood where they stand.
+    /// Earlier positions of the agents' feet, m. Shape (agent,); those beyond its end have not moved.
     pub agents: &'a [Vec3],
 }
 
@@ -161,7 +161,7 @@ pub struct FrameMut<'a> {
     pub normals: Option<&'a mut [f32]>,
     /// Reflectance of the surface, linear, 0 to 1; zeros for nothing. Shape (height, width, 3).
     pub albedo: Option<&'a mut [f32]>,
-    /// How the seen point has moved in the image since [`PreviousFrame`], pixels to the right and down; zeros where it was not seen
+    /// Motion of the seen point in the image since [`PreviousFrame`], pixels to the right and down; zeros where it was not seen
     /// by the camera. Shape (height, width, 2).
     pub flow: Option<&'a mut [f32]>,
 }

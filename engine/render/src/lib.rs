@@ -1,4 +1,4 @@
-//! What a camera sees: by the `cpu` back end, and by graphics cards.
+//! Cameras: images by the `cpu` back end, and by graphics cards.
 //!
 //! A [`CpuRenderer`] is made once for a house and renders [`View`]s of any world over it into memory of the caller:
 //! colour, depth, ids of things, ids of their classes. [`StoreyMap`] is a storey from above, [`Dollhouse`] one from outside.

@@ -20,7 +20,7 @@ pub(crate) struct ShadingMaterial {
     pub(crate) base: [f32; 3],
     /// Position of the image, or [`NONE`].
     texture: u32,
-    /// What does not pass straight through; multiplies the texture's alpha.
+    /// The share of light that does not pass straight through; multiplies the texture's alpha.
     pub(crate) opacity: f32,
     /// Light of its own, in units of display white.
     pub(crate) emission: [f32; 3],
@@ -28,13 +28,13 @@ pub(crate) struct ShadingMaterial {
     pub(crate) texels: f32,
     /// The bytes of an opaque colour without texture.
     plain: Option<[u8; 3]>,
-    /// Whether light may pass.
+    /// True if light may pass.
     pub(crate) clear: bool,
     /// Perceptual roughness, 0 to 1.
     pub(crate) roughness: f32,
     /// 0 (no metal) to 1 (metal).
     pub(crate) metallic: f32,
-    /// Whether lit pictures show what it reflects.
+    /// True if lit pictures show its reflections.
     pub(crate) mirror: bool,
 }
 

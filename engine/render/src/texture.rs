@@ -21,7 +21,7 @@ pub(crate) struct Textures {
     /// R, G, B and alpha, all linear, in steps of 1 / [`FULL`]: four numbers that one instruction turns into `f32`, where
     /// sRGB bytes would ask a table for each. Shape (texel,).
     texels: Vec<[u16; 4]>,
-    /// Where each level starts. Shape (image and level,).
+    /// Offset of each level. Shape (image and level,).
     offsets: Vec<u32>,
     /// Shape (image,).
     images: Vec<MipImage>,
@@ -37,7 +37,7 @@ pub(crate) struct MipImage {
     height: u32,
     /// The one colour of all its texels.
     uniform: Option<[u8; 4]>,
-    /// Whether some texel lets light through.
+    /// True if some texel lets light through.
     clear: bool,
 }
 

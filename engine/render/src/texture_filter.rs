@@ -1,4 +1,4 @@
-//! What a pixel covers of an image that is seen at an angle, and how it is averaged.
+//! Anisotropic texture filtering: a pixel's footprint on an image that is seen at an angle, and its average.
 
 use crate::texture::{Textures, level_of};
 use crate::triangle_table::PosedTriangle;
@@ -12,14 +12,14 @@ pub(crate) const MOST_TAPS: f32 = 8.0;
 /// Below this sine a surface is seen straight on.
 const STRAIGHT: f32 = 1e-3;
 
-/// What a pixel covers of an image: a strip of samples, each about as wide as long.
+/// A pixel's footprint on an image: a strip of samples, each about as wide as long.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextureFootprint {
     /// Samples, at least 1.
     taps: u32,
     /// From one to the next, in texture coordinates.
     step: Vec2,
-    /// What one covers, texels of the largest level.
+    /// Width of one sample, texels of the largest level.
     texels: f32,
 }
 

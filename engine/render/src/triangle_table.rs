@@ -1,4 +1,4 @@
-//! What each triangle of a house looks like, in the order in which hits name triangles.
+//! Shading data of each triangle of a house, in the order in which hits name triangles.
 
 use crate::material::ShadingMaterial;
 use dwell_scene::bvh::flat::PackedRow;

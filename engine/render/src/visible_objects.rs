@@ -1,4 +1,4 @@
-//! What an instance image shows: things with their pixels, and the boxes around them.
+//! Contents of an instance image: things with their pixels, and the boxes around them.
 
 use crate::cpu::CpuRenderer;
 use dwell_scene::{Aabb, Entity, EntityId, Id, PartId, Pose, State};
@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// A thing in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VisibleObject {
-    /// What it is.
+    /// The visible entity.
     pub entity: EntityId,
     /// Pixels that show it.
     pub pixels: u32,

@@ -1,4 +1,4 @@
-//! What cameras of every kind see of rooms whose pictures can be worked out.
+//! Cameras of every kind in rooms whose pictures can be worked out.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! How textures are filtered that are seen at grazing angles, against the mean of many rays a pixel.
+//! Texture filtering at grazing angles, against the mean of many rays a pixel.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use dwell_render::{Camera, CpuRenderer, Frame, ImageChannels, Preset, View};

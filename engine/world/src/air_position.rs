@@ -1,6 +1,6 @@
 //! Sounds come from the air around a thing, not from within it.
 //!
-//! What touches does so on surfaces, and a point on a surface, or a hundredth of a millimetre behind it, would send half of its sound
+//! Contacts lie on surfaces, and a point on a surface, or a hundredth of a millimetre behind it, would send half of its sound
 //! or all of it into the ground.
 
 use dwell_scene::bvh::{Ray, RayMask};
@@ -11,9 +11,9 @@ use glam::Vec3;
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-/// How far a sound is moved at most: in turn as little as will do, m.
+/// Distances by which a sound may be moved, of which the least that suffices is taken, m.
 const STEPS_M: [f32; 4] = [0.03, 0.08, 0.16, 0.32];
-/// Where to: upwards first, since most things lie on something.
+/// Directions in which it may be moved: upwards first, since most things lie on something.
 const WAYS: [Vec3; 6] = [
     Vec3::Y,
     Vec3::X,

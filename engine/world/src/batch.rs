@@ -16,9 +16,9 @@ use std::collections::BTreeSet;
 pub struct Batch {
     envs: Vec<Env>,
     threads: Threads,
-    /// Whether pictures are taken while other worlds step.
+    /// True if pictures are taken while other worlds step.
     overlaps: bool,
-    /// What is being taken, or what went wrong when it was to be started.
+    /// Pictures under way, or the error at their start.
     under_way: Vec<Result<PendingPictures, WorldError>>,
     /// Whose pictures are under way and still show the world as it is. Shape (environment,).
     is_started: Vec<bool>,

@@ -1,4 +1,4 @@
-//! How a world runs.
+//! Settings of a world.
 
 use crate::error::WorldError;
 use dwell_acoustics::{AcousticConfig, HeadId};

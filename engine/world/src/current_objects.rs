@@ -34,19 +34,19 @@ pub struct ObjectState {
     pub size: [f32; 3],
     /// The room that holds its middle.
     pub room: Option<String>,
-    /// Whether a hand can take it, as far as shape and use say.
+    /// True if a hand can take it, as far as shape and use say.
     pub pickable: bool,
     /// The agent that holds it.
     pub held_by: Option<u32>,
-    /// Whether it is switched on; `None` without a switch.
+    /// True if it is switched on; `None` without a switch.
     pub on: Option<bool>,
-    /// How far it is open, 0 to 1; `None` without a joint.
+    /// Openness, 0 to 1; `None` without a joint.
     pub openness: Option<f32>,
     /// The names of the objects that it rests on; `"building"` for floors and walls. Empty for what never moves.
     pub rests_on: Vec<String>,
     /// The names of the objects that it lies in; only for what a hand can take.
     pub lies_in: Vec<String>,
-    /// Whether it makes a sound of its own, such as a radio's, while it is switched on or has no switch.
+    /// True if it makes a sound of its own, such as a radio's, while it is switched on or has no switch.
     pub sounds: bool,
 }
 
@@ -69,7 +69,7 @@ pub fn object_state(world: &World, id: ObjectId) -> ObjectState {
     SharedQueries::of(world).tell(id)
 }
 
-/// What each object is told beside: found once for all of them.
+/// Queries about all objects, answered once for all of them.
 struct SharedQueries<'a> {
     world: &'a World,
     /// Shape (object,).

@@ -1,4 +1,4 @@
-//! What all worlds over one house share: the house, and each engine's view of it, made at first use.
+//! The part of a house's worlds that they share: the house, and each engine's view of it, made at first use.
 
 use crate::air_position::emitter_places;
 use crate::config::WorldConfig;

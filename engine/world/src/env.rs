@@ -17,11 +17,11 @@ use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How long things come to rest before an environment's world begins, s. Else each episode's first second would cost ten times what
-/// the others do.
+/// Time for which things come to rest before an environment's world begins, s. Else each episode's first second would cost ten
+/// times what the others do.
 const SETTLE_S: f64 = 2.0;
 
-/// What an environment is made of. Every field has a default; unknown fields are refused.
+/// The settings of an environment. Every field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct EnvConfig {
@@ -33,7 +33,7 @@ pub struct EnvConfig {
     pub world: WorldConfig,
     /// The agent whom the task is about, and who acts; default 0.
     pub agent: u32,
-    /// How far movement actions go.
+    /// Step sizes of movement actions.
     pub stride: StepSizes,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
@@ -78,7 +78,7 @@ pub struct Env {
     pub(crate) episode: Option<Episode>,
     pub(crate) seed: u64,
     episode_key: RandomKey,
-    /// Whether the world is as it was made.
+    /// True while the world is as it was made.
     is_new: bool,
     /// Steps of the episode.
     pub(crate) steps: u64,

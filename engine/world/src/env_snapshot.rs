@@ -6,7 +6,7 @@ use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
-/// What [`Env::snapshot`] begins with: its kind and version.
+/// Header of [`Env::snapshot`]: its kind and version.
 const MAGIC: &[u8] = b"dwenv4";
 
 /// An episode at one moment. Its goal comes from the seed again.

@@ -1,19 +1,19 @@
-//! What an episode asks for, how its steps are judged, and what they report.
+//! Episodes: their goals, the verdicts on their steps, and the reports of these.
 
 use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::Serialize;
 
-/// What an episode asks for, and how far it has come.
+/// The goal of an episode, and its progress.
 #[derive(Clone, Debug)]
 pub struct Episode {
     /// The instruction as text.
     pub instruction: String,
     /// The instruction as tokens, padded with 0.
     pub tokens: Vec<i32>,
-    /// Whom it is about.
+    /// The agent that it is about.
     pub agent: AgentId,
-    /// Where each agent started.
+    /// Each agent's pose at the start.
     pub starts: IdVec<AgentId, Pose>,
     /// Distance, path, collisions.
     pub progress: NavigationMetrics,
@@ -26,30 +26,30 @@ impl Episode {
     }
 }
 
-/// How a step is judged.
+/// The task's verdict on a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Verdict {
     /// The reward of the step.
     pub reward: f64,
-    /// Whether the task has come to its end, well or badly.
+    /// True if the task has come to its end, well or badly.
     pub terminated: bool,
-    /// Whether what was asked is done.
+    /// True if the goal is reached.
     pub success: bool,
 }
 
-/// What a step reports beside the observation.
+/// The report of a step beside the observation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StepInfo {
-    /// Who made the step.
+    /// The agent that made the step.
     pub agent: AgentId,
     /// Reward, end, success.
     pub verdict: Verdict,
-    /// Whether the action did what it means.
+    /// True if the action did what it means.
     pub action_success: bool,
-    /// Why not, as a sentence; empty when it did.
+    /// The reason of a failure, as a sentence; empty on success.
     pub action_error: String,
     /// Distances and path.
     pub progress: NavigationMetrics,
-    /// Whether this step was cut short by something in the way.
+    /// True if this step was cut short by something in the way.
     pub collision: bool,
 }

@@ -1,4 +1,4 @@
-//! What can go wrong with a world.
+//! Errors of worlds.
 
 /// A fault of a world, its sensors or its tasks.
 #[derive(Debug, thiserror::Error)]
@@ -27,17 +27,17 @@ pub enum WorldError {
     Config {
         /// The field.
         field: &'static str,
-        /// What was found.
+        /// The found value.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         allowed: String,
     },
     /// Settings that cannot be read.
     #[error("{of}: {found}: {}", crate::plain_json_error::plain_json_error(error))]
     Settings {
-        /// What they are for.
+        /// The kind of settings.
         of: &'static str,
-        /// What was found.
+        /// The found value.
         found: String,
         /// Why not.
         error: serde_json::Error,
@@ -45,7 +45,7 @@ pub enum WorldError {
     /// A name that nothing registered has.
     #[error("no {kind} {name:?}; there are {known:?}")]
     Unknown {
-        /// What was looked for.
+        /// The kind of name.
         kind: &'static str,
         /// The name.
         name: String,
@@ -62,7 +62,7 @@ pub enum WorldError {
         /// Why not, and what would help.
         why: String,
     },
-    /// Who waited for a bench wanted it no more.
+    /// A bench was stopped by its caller.
     #[error("stopped before all was measured")]
     Stopped,
     /// A call out of order or with a wrong count.

@@ -1,4 +1,4 @@
-//! How a task outside of this crate, one in Python for instance, plays upon an environment: it asks, and it judges.
+//! Tasks outside of this crate, in Python for instance, on an environment: they set the goal and judge the steps.
 
 use crate::env::Env;
 use crate::episode::Verdict;

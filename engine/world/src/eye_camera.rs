@@ -13,7 +13,7 @@ pub struct EyeCamera {
     pub camera: Camera,
     /// Its horizontal field of view, degrees; nothing for a camera that was given by its projection.
     pub fov_deg: Option<f32>,
-    /// Where it is mounted.
+    /// Its pose relative to the eyes.
     pub eye_from_camera: Pose,
     /// Flat or lit.
     pub preset: Preset,

@@ -4,7 +4,7 @@ use crate::world::World;
 use dwell_scene::{JointKind, LightShape, Pose};
 use serde::Serialize;
 
-/// What a house holds besides surfaces, in world space.
+/// The lamps, sounds, joints and boxes of a house, in world space.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SceneOverlay {
     /// Lamps' lights.
@@ -22,13 +22,13 @@ pub struct SceneOverlay {
 pub struct LampFixture {
     /// The lamp's name.
     pub name: String,
-    /// Where the light is, m; of a line its middle.
+    /// Position of the light, m; of a line its middle.
     pub position: [f32; 3],
     /// Linear light, each 0 to 1.
     pub color: [f32; 3],
     /// W.
     pub power_w: f32,
-    /// Whether it shines.
+    /// True if it is on.
     pub on: bool,
 }
 
@@ -39,11 +39,11 @@ pub struct SoundSource {
     pub name: String,
     /// m.
     pub position: [f32; 3],
-    /// What sounds.
+    /// The name of the sound.
     pub signal: String,
     /// dB SPL at 1 m.
     pub level_db: f32,
-    /// Whether it sounds.
+    /// True if it sounds.
     pub on: bool,
 }
 
@@ -54,7 +54,7 @@ pub struct JointFixture {
     pub name: String,
     /// Turning (`hinge`) or sliding (`slide`).
     pub kind: &'static str,
-    /// Where it is, m.
+    /// Position, m.
     pub position: [f32; 3],
     /// Its axis, unit length.
     pub axis: [f32; 3],

@@ -1,4 +1,4 @@
-//! What a floor plan says beside its picture: where names stand, and how doors swing.
+//! Labels of a floor plan beside its picture: places of names, and swings of doors.
 
 use crate::world::World;
 use dwell_scene::{Articulation, House, JointKind, LevelId, Pose, Room, RoomId, State};
@@ -28,7 +28,7 @@ pub struct FloorPlan {
 pub struct PlanRoom {
     /// Its name.
     pub name: String,
-    /// What people call it.
+    /// Everyday names of its kind.
     pub kinds: Vec<String>,
     /// m².
     pub area_m2: f32,
@@ -41,13 +41,13 @@ pub struct PlanRoom {
 pub struct PlanDoor {
     /// The door's name.
     pub name: String,
-    /// Where it hangs.
+    /// Position of the hinge.
     pub hinge: [f32; 2],
-    /// Where the leaf's other edge is when it is shut.
+    /// The other edge of the leaf when it is closed.
     pub shut: [f32; 2],
-    /// Where that is half way.
+    /// That edge half way.
     pub half: [f32; 2],
-    /// Where that is when it stands open.
+    /// That edge when it is fully open.
     pub open: [f32; 2],
 }
 

@@ -60,12 +60,12 @@ pub fn info(engines: &Engines, report: &Value) -> Value {
     })
 }
 
-/// Where to stand to see a room, and where to look.
+/// A viewpoint from which a room is seen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RoomViewpoint {
     /// The room's name.
     pub name: String,
-    /// What people call it.
+    /// Everyday names of its kind.
     pub kinds: Vec<String>,
     /// m².
     pub area_m2: f32,
@@ -73,7 +73,7 @@ pub struct RoomViewpoint {
     pub floor_y: f32,
     /// A place for the eye, m.
     pub eye: [f32; 3],
-    /// Where to look from there, degrees.
+    /// Heading of the view from there, degrees.
     pub yaw_deg: f32,
     /// A place to stand in the room's middle, m; the same height as the floor there.
     pub stand: [f32; 3],
@@ -104,7 +104,7 @@ pub fn viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, WorldError> {
         .collect())
 }
 
-/// Where one can stand on the floor of each room, m.
+/// Returns the walkable places on the floor of each room, m.
 fn walkable_places(house: &House, grid: &NavGrid) -> IdVec<RoomId, Vec<Vec3>> {
     let mut places = IdVec::filled(Vec::new(), house.rooms.len());
     for (k, cell) in grid.walkable().enumerate() {

@@ -12,14 +12,14 @@ pub fn all() -> impl Iterator<Item = &'static LawInfo> {
         .chain(dwell_render::laws::all())
 }
 
-/// What a law does that is asked for by its name alone: numbers that need no choice.
+/// The usual parameters of a law that is installed by its name alone: numbers that need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultAction {
     /// The law's id.
     pub id: &'static str,
     /// Values by parameter name; the others have their defaults.
     pub params: &'static [(&'static str, f64)],
-    /// What they mean, and where they come from.
+    /// The meaning of the values, and their source.
     pub about: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Whether the machine can hold the environments or the picture that are asked for, found out before their memory is taken.
+//! Memory estimates of environments and pictures, checked against the machine before their memory is taken.
 
 use crate::env::Env;
 use crate::error::WorldError;
@@ -8,18 +8,18 @@ use dwell_render::{Camera, ImageChannels};
 use std::fs::read_to_string;
 use std::path::Path;
 
-/// What a world takes beside its bodies, bytes.
+/// Memory of a world beside its bodies, bytes.
 const WORLD_BYTES: u64 = 64 << 10;
-/// What a world keeps of a free body, with its pieces and their contacts, bytes.
+/// Memory of a free body in a world, with its pieces and their contacts, bytes.
 const BODY_BYTES: u64 = 9 << 10;
-/// What a world keeps of a piece of the house that stands, bytes.
+/// Memory of a fixed piece of the house in a world, bytes.
 const PIECE_BYTES: u64 = 768;
-/// What a sample of an agent's window of sound takes, with the echoes and filters on their way to it, bytes.
+/// Memory of a sample of an agent's window of sound, with the echoes and filters on their way to it, bytes.
 const SAMPLE_BYTES: u64 = 256;
 /// From here on the system is asked whether a picture fits, bytes.
 const PICTURE_BYTES_ASKED_ABOUT: u64 = 64 << 20;
 
-/// What one environment takes beside what it shares with others over its house, bytes: rather more than it comes to need where
+/// The memory of one environment beside what it shares with others over its house, bytes: rather more than it comes to need where
 /// most lies still.
 struct MemoryEstimate {
     world: u64,

@@ -1,4 +1,4 @@
-//! How well an episode of navigation went.
+//! Measures of navigation episodes.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};

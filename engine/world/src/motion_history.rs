@@ -1,15 +1,15 @@
-//! Where things were a control step ago: what flow, blur and rolling shutters need to know.
+//! Poses of a control step ago, for flow, blur and rolling shutters.
 
 use dwell_scene::{AgentId, Id, PartId, Pose, State, math};
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// What has moved in the last step, with where it was before.
+/// The motion of the last step: what has moved, with its previous pose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionHistory {
     /// Parts that have moved, by part.
     pub moved: Vec<(PartId, Pose)>,
-    /// Whether there was a step since the world began.
+    /// True if there was a step since the world began.
     pub known: bool,
     /// The agents' eyes. Shape (agent,); empty where nothing has been before.
     pub eyes: Vec<Pose>,
@@ -62,13 +62,13 @@ impl MotionHistory {
     }
 }
 
-/// What is kept of the state while a step is made. Memory is kept from step to step.
+/// The part of the state that is kept while a step is made. Memory is reused from step to step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PreviousState {
     parts: Vec<Pose>,
     eyes: Vec<Pose>,
     feet: Vec<Vec3>,
-    /// Where agents stood, m, and faced, rad. Shape (agent,).
+    /// Agents' positions, m, and headings, rad. Shape (agent,).
     pub(crate) agents: Vec<(Vec3, f32)>,
     /// Positions and velocities of joints. Shape (joint,).
     pub(crate) joints: Vec<(f32, f32)>,

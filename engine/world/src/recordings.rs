@@ -28,7 +28,7 @@ struct HouseSounds {
 pub(crate) struct Recordings {
     known: Mutex<LoadedSounds>,
     own: Mutex<HouseSounds>,
-    /// Whether the house's own sounds were found to be some.
+    /// Set once the house's own sounds are known to be valid.
     are_sounds: OnceLock<()>,
 }
 

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub struct RoomSurface {
     /// The room; `None`: the building where no room is known, and what stands outside.
     pub room: Option<RoomId>,
-    /// Whether it is a ceiling, which hides the room from above.
+    /// True for a ceiling, which hides the room from above.
     pub ceiling: bool,
     /// The material.
     pub material: MaterialId,

@@ -13,7 +13,7 @@ pub struct FieldSchema {
     pub name: &'static str,
     /// The doc comment, on one line.
     pub about: String,
-    /// Whether it must be given.
+    /// True if it must be given.
     pub required: bool,
     /// Type, range and default, as JSON Schema has them.
     pub schema: Value,

@@ -1,4 +1,4 @@
-//! What sensors ask of the engines, and what they get.
+//! Requests of sensors to the engines, and their results.
 
 use crate::eye_camera::EyeCamera;
 use crate::world::World;
@@ -55,7 +55,7 @@ pub struct Picture {
     pub frame: Frame,
 }
 
-/// What the engines computed for one world. Buffers are kept from step to step.
+/// The engines' results for one world. Buffers are kept from step to step.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
     /// Pictures, in the order of the requests.

@@ -32,11 +32,11 @@ pub struct World {
     pub(crate) sound: WorldSound,
     pub(crate) events: Vec<ContactEvent>,
     pub(crate) key: RandomKey,
-    /// Where things were before the last step.
+    /// Poses before the last step.
     pub(crate) past: MotionHistory,
     /// Memory for it.
     before: PreviousState,
-    /// What [`World::reset`] goes back to; worlds of one config share it.
+    /// The state that [`World::reset`] goes back to; worlds of one config share it.
     pub(crate) start: Arc<InitialWorld>,
 }
 

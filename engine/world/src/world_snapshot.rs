@@ -11,10 +11,10 @@ use dwell_scene::packing::{pack_within, unpack};
 use dwell_scene::{AgentBody, Id, State};
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What a world's snapshot begins with: its kind and version.
+/// Header of a world's snapshot: its kind and version.
 const MAGIC: &[u8] = b"dwworld6";
 
-/// What is told before the rest is unpacked.
+/// The fields that are checked before the rest is unpacked.
 #[derive(serde::Serialize, serde::Deserialize)]
 struct SnapshotHeader {
     /// The house's fingerprint.

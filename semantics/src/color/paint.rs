@@ -7,14 +7,14 @@ use dwell_scene::{House, IdVec, MaterialId, Texture, TextureId};
 /// Share of the visible surface below which a colour is not worth a word.
 pub const MENTION_SHARE: f32 = 0.2;
 
-/// How far from the colour of a sort its shades lie, in `OKLab`: the grain of oak spreads 0.05 to 0.1 about its mean, neighbours
+/// Largest distance of its shades from the colour of a sort, in `OKLab`: the grain of oak spreads 0.05 to 0.1 about its mean, neighbours
 /// in a picture lie 0.2 and more apart.
 const SHADE: f32 = 0.15;
 /// Share of an image from which one sort of colour is that of the whole.
 const DOMINANT_SHARE: f32 = 0.6;
 /// About how many pixels stand for an image.
 const PIXELS: usize = 1024;
-/// How often the middle of a sort is moved to the mean of its shades.
+/// Number of times that the middle of a sort is moved to the mean of its shades.
 const ROUNDS: usize = 4;
 
 /// The colours of a material, in linear light.

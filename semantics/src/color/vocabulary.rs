@@ -312,7 +312,7 @@ mod tests {
         }
     }
 
-    /// What the survey's people, or anybody, would say.
+    /// Everyday colours get the words that the survey's people, or anybody, would say.
     #[test]
     fn everyday_things_get_everyday_words() {
         let cases: &[([u8; 3], &str)] = &[

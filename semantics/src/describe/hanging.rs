@@ -1,4 +1,4 @@
-//! What hangs, and on what.
+//! Hanging things, and their mounts.
 
 use super::contents::grouped;
 use crate::english::list;
@@ -6,10 +6,10 @@ use crate::predicates::mount_of;
 use crate::scene::{SemanticScene, Term};
 use dwell_scene::{ObjectId, StructureId, StructureKind};
 
-/// How far apart the middles of two pieces of one wall may lie across it, m.
+/// Largest distance across the wall between the middles of two pieces of one wall, m.
 const SAME_WALL_M: f32 = 0.2;
 
-/// What things hang on, in the order of telling.
+/// The kind of a mount, in the order of telling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum MountKind {
     Wall,
@@ -23,7 +23,7 @@ pub(super) struct MountedObject {
     pub(super) thing: ObjectId,
     pub(super) hold: MountKind,
     mount: Term,
-    /// Whether its room has other windows beside the one it hangs at.
+    /// True if its room has other windows beside the one it hangs at.
     other_windows: bool,
 }
 

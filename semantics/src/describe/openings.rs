@@ -4,7 +4,7 @@ use crate::english::{counted, list};
 use crate::scene::SemanticScene;
 use dwell_scene::RoomId;
 
-/// Where a door leads from a room.
+/// The destination of a door from a room.
 #[derive(Clone, PartialEq, Eq)]
 enum DoorDestination {
     Rooms(Vec<RoomId>),

@@ -37,7 +37,7 @@ fn shell(scene: &SemanticScene<'_>, room: RoomId) -> String {
     format!("The {} is about {area} square {unit}{with}.", facts.label)
 }
 
-/// What does not stand on the floor: things by what carries them and how, and what hangs.
+/// The contents of a room off the floor: things by what carries them and how, and what hangs.
 #[derive(Default)]
 struct RoomContents {
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,

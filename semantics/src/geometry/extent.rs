@@ -1,4 +1,4 @@
-//! Where a thing is: its box, its outline from above, and the points it stands on.
+//! Extents of things: the box, the outline from above, and the points of support.
 
 use super::hull::Hull;
 use super::triangles::object_triangles;
@@ -10,7 +10,7 @@ const SOLE_M: f32 = 0.02;
 /// The number of points that stand for a sole.
 const SOLE_POINTS: usize = 32;
 
-/// Where an object is in one state.
+/// The extent of an object in one state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Extent {
     /// The box around it, m.

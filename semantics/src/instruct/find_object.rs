@@ -5,7 +5,7 @@ use crate::refer::refer;
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
 
-/// What is part of the building, stands between rooms, or has no name of its own, is not looked for.
+/// Categories that are not looked for: parts of the building, things between rooms, and those without a name of their own.
 const NOT_SOUGHT: [&str; 11] = [
     "door",
     "garage_door",

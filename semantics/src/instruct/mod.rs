@@ -14,7 +14,7 @@ use crate::error::SemanticsError;
 use crate::scene::SemanticScene;
 use dwell_scene::random::RandomKey;
 
-/// How much room a text has at most, in characters.
+/// Largest length of a text, in characters.
 pub const MAX_TEXT_LEN: usize = 120;
 /// Every character that a text may have.
 pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";

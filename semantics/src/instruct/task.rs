@@ -10,12 +10,12 @@ use glam::Vec2;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How near to a thing's outline an agent must be to have found it, m.
+/// Largest distance from a thing's outline at which an agent has found it, m.
 pub(super) const FOUND_M: f32 = 1.5;
 /// Half the angle within which the thing must lie for the agent to have found it, rad: 45 degrees.
 const FOUND_HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
-/// What is asked.
+/// The kind of an instruction.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema,
 )]
@@ -60,7 +60,7 @@ impl InstructionKind {
     }
 }
 
-/// How far an instruction is fulfilled.
+/// The progress of an instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum InstructionProgress {
@@ -72,29 +72,29 @@ pub enum InstructionProgress {
     Continue,
 }
 
-/// Where an instruction leads, for rewards and path planning; no words in it.
+/// The goal of an instruction, for rewards and path planning; no words in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InstructionGoal {
     /// The rooms that count; empty when a thing counts.
     pub rooms: Vec<RoomId>,
     /// The things that count; empty when a room counts.
     pub objects: Vec<ObjectId>,
-    /// How near to a thing's outline from above one must come, m; 0 for a room, in which one must stand.
+    /// Distance from a thing's outline, seen from above, within which one must come, m; 0 for a room, in which one must stand.
     pub radius_m: f32,
-    /// Whether the thing must be in sight too.
+    /// True if the thing must be in sight too.
     pub in_sight: bool,
 }
 
 /// An instruction in words, bound at reset to the things it means: later changes of the scene do not change what counts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instruction {
-    /// What is asked.
+    /// The kind of instruction.
     pub kind: InstructionKind,
     /// The words, of [`CHARSET`](super::CHARSET), at most [`MAX_TEXT_LEN`](super::MAX_TEXT_LEN) of them.
     pub text: String,
-    /// What is meant, with its article: "the red chair in the kitchen".
+    /// The target's description, with its article: "the red chair in the kitchen".
     pub target: String,
-    /// Where it leads.
+    /// Its goal.
     pub goal: InstructionGoal,
 }
 

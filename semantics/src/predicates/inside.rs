@@ -6,7 +6,7 @@ use dwell_scene::{Aabb, House, ObjectId};
 
 /// In how many things a thing is at most.
 const MOST_AROUND: usize = 32;
-/// How far beside a container's box the middle of what it contains may lie, m: more than its brim.
+/// Largest distance beside a container's box of the middle of its content, m: more than its brim.
 const BESIDE_M: f32 = 0.025;
 
 /// `a` is in `b`: as [`dwell_scene::House::encloses`] has it, and `a` is not held. So a bowl, a drawer, a sink and a

@@ -21,7 +21,7 @@ use crate::scene::{SemanticScene, Term, Viewer};
 use crate::semantics::Semantics;
 use dwell_scene::{ObjectId, State};
 
-/// What always holds of a relation; checked for every relation by the tests.
+/// The properties of a relation that always hold; checked for every relation by the tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(
     clippy::struct_excessive_bools,

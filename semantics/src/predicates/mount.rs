@@ -1,11 +1,11 @@
-//! What holds things that no surface below them carries: walls, ceilings, windows.
+//! Mounts of things that no surface below them carries: walls, ceilings, windows.
 
 use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
 
 /// The largest gap between a thing and the wall or ceiling it hangs on, m.
 const WALL_GAP_M: f32 = 0.06;
-/// How far above a wall's foot a thing must begin to hang on it, m.
+/// Smallest height above a wall's foot at which a thing hangs on it, m.
 const CLEARANCE_M: f32 = 0.1;
 /// The largest distance from above between a window and the cloth before it, m.
 const WINDOW_GAP_M: f32 = 0.3;
@@ -13,9 +13,9 @@ const WINDOW_GAP_M: f32 = 0.3;
 const WINDOW_SHARE: f32 = 0.3;
 /// The gap from which a thing is above a surface and does not touch it, m.
 const ABOVE_M: f32 = 0.01;
-/// What is thinner than this falls over where nothing holds it, m.
+/// Thickness below which a thing falls over where nothing holds it, m.
 const FLAT_M: f32 = 0.08;
-/// What of cloth is higher than this is held from above, m.
+/// Height above which a thing of cloth is held from above, m.
 const UPRIGHT_M: f32 = 0.3;
 
 /// Kinds that the table marks as mounted and that stand as well: on a sink, on the floor.

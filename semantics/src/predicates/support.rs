@@ -1,4 +1,4 @@
-//! What a thing rests on.
+//! Support: what a thing rests on.
 
 use super::mount::hangs_despite;
 use crate::geometry::{height_under, object_triangles_near, structure_triangles};
@@ -7,9 +7,9 @@ use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
 
-/// How far a surface may lie below or above a point of the sole and still carry it, m: models float and sink a little.
+/// Largest distance of a surface below or above a point of the sole that it carries, m: models float and sink a little.
 pub(crate) const REST_GAP_M: f32 = 0.03;
-/// How far above a thing's lowest point that of its carrier may lie, m: what begins higher lies in the thing.
+/// Largest height of a carrier's lowest point above that of the thing, m: what begins higher lies in the thing.
 const CARRIER_RISE_M: f32 = 0.005;
 /// The layer at a thing's foot whose faces are its underside, m; thinner in thin things.
 const UNDERSIDE_M: f32 = 0.005;

@@ -1,4 +1,4 @@
-//! What tells things of one noun apart, counted once for all of them.
+//! Distinguishing attributes of things of one noun, counted once for all of them.
 
 use super::expression::{ReferringExpression, Relation};
 use crate::predicates;

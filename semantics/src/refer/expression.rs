@@ -36,7 +36,7 @@ pub struct Relation {
     pub predicate: String,
     /// The landmark.
     pub landmark: Box<ReferringExpression>,
-    /// Whether the landmark's description fits one thing only, so that it takes "the".
+    /// True if the landmark's description fits one thing only, so that it takes "the".
     pub definite: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What a scene remembers of the things of one noun: found at first use by `refer`.
+//! Cache of a scene about the things of one noun: filled at first use by `refer`.
 
 use crate::size::SizeClass;
 use dwell_scene::{ObjectId, RoomId};

@@ -92,7 +92,7 @@ impl Viewer {
 
 /// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
 pub struct SemanticScene<'a> {
-    /// What stays true.
+    /// The state-independent facts.
     pub semantics: &'a Semantics,
     /// The state.
     pub state: &'a State,
@@ -165,7 +165,7 @@ impl<'a> SemanticScene<'a> {
         found.map(ObjectId::from_index).collect()
     }
 
-    /// What was measured of an object so far.
+    /// Returns the measurements of an object so far.
     pub(crate) fn cache(&self, object: ObjectId) -> &ObjectCache {
         &self.known[object]
     }

@@ -232,7 +232,7 @@ impl Builder {
     }
 }
 
-/// What the small house holds.
+/// The small house and its things.
 pub(crate) struct Small {
     pub(crate) house: Arc<House>,
     pub(crate) table: ObjectId,

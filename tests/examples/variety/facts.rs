@@ -1,4 +1,4 @@
-//! What is counted of one house.
+//! Counted facts of one house.
 
 use dwell_houses::generate::GeneratedHouse;
 use dwell_scene::{House, Room, units};

@@ -1,6 +1,6 @@
-//! How varied generated houses are, and whether any two are near copies: tables as Markdown, plots as one SVG.
+//! Variety of generated houses, and near copies among them: tables as Markdown, plots as one SVG.
 //!
-//! `cargo run -p dwell-tests --example variety -- docs/images/generator-variety.svg 1000`: file, how many seeds.
+//! `cargo run -p dwell-tests --example variety -- docs/images/generator-variety.svg 1000`: file, number of seeds.
 
 #![expect(clippy::print_stdout, reason = "a program tells by printing")]
 

@@ -1,9 +1,9 @@
-//! How far a picture may be from the golden one.
+//! Comparison of a picture with its golden image.
 
 use super::store::StoredObservation;
 use crate::flip::flip;
 
-/// How far colours may be away: perceptual differences (FLIP), 0 to 1.
+/// Tolerances of colours: perceptual differences (FLIP), 0 to 1.
 ///
 /// One machine and build give the same bits; other builds may round otherwise. Set by the defects of the test `goldens`, which must
 /// be found on the `cpu` back end (x86-64): one lamp of a room off has a mean of 0.0096 and 0.0185 rough pixels, a hundredth more
@@ -14,7 +14,7 @@ pub const LOOKS: Bounds = Bounds {
     rough_share: 0.005,
 };
 
-/// How far numbers may be away, in their own unit, beside half a step of the file: 0.1 mm, a ten-thousandth. Rays that pass an
+/// Tolerances of numbers, in their own unit, beside half a step of the file: 0.1 mm, a ten-thousandth. Rays that pass an
 /// edge within rounding may meet the other side.
 pub const EXACT: Bounds = Bounds {
     mean: f64::INFINITY,
@@ -22,7 +22,7 @@ pub const EXACT: Bounds = Bounds {
     rough_share: 0.002,
 };
 
-/// What is allowed.
+/// The tolerances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Of the mean difference.
@@ -33,7 +33,7 @@ pub struct Bounds {
     pub rough_share: f64,
 }
 
-/// What was found.
+/// The found differences.
 #[derive(Clone, Debug)]
 pub struct Difference {
     bounds: Bounds,

@@ -10,7 +10,7 @@ type Gray16 = ImageBuffer<Luma<u16>, Vec<u16>>;
 type Color16 = ImageBuffer<Rgb<u16>, Vec<u16>>;
 type Color8 = ImageBuffer<Rgb<u8>, Vec<u8>>;
 
-/// What a file can hold of an observation.
+/// The content of an observation's file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StoredObservation {
     /// sRGB bytes. Shape (height, width, 3).
@@ -193,11 +193,11 @@ fn rows(data: &ObservationData, parts: usize) -> Vec<Vec<f64>> {
 /// The golden pictures of a run.
 #[derive(Debug)]
 pub struct Golden {
-    /// Where they are kept.
+    /// The folder of the golden files.
     folder: PathBuf,
-    /// Where pictures go that differ.
+    /// The folder of pictures that differ.
     found: PathBuf,
-    /// Whether they are written anew.
+    /// True to write them anew.
     update: bool,
     names: Vec<String>,
     faults: Vec<String>,

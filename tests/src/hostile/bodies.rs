@@ -1,4 +1,4 @@
-//! What is done with every input.
+//! Test bodies: the calls that are made with every input.
 
 use std::sync::Arc;
 

@@ -21,7 +21,7 @@ const NUMBERS: [&str; 16] = [
     "1e5",
     "99999999999999999999999",
 ];
-/// What may stand in the place of any value.
+/// Substitutes for any value.
 const VALUES: [&str; 12] = [
     "null",
     "true",

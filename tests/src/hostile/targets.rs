@@ -1,4 +1,4 @@
-//! What cargo-fuzz runs: a target for each sample, and for the files that are read beside houses.
+//! Targets of cargo-fuzz: one for each sample, and for the files that are read beside houses.
 //!
 //! The first byte of an input says which file of the target it stands for, the rest is that file's content.
 

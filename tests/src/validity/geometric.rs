@@ -1,4 +1,4 @@
-//! What a furnished house must keep to as it stands: shown by oracles that share no code with the generator.
+//! Rules for a furnished house as it stands: checked by oracles that share no code with the generator.
 
 use super::RuleViolation;
 use dwell_furniture::tables::category;
@@ -8,7 +8,7 @@ use dwell_scene::{Aabb, House, ObjectId, State};
 use glam::Vec2;
 use std::collections::BTreeSet;
 
-/// What counts as interpenetration, m.
+/// Largest penetration that is no fault, m.
 const TOLERANCE_M: f32 = 0.005;
 /// Positions of a joint that are looked at, without the first.
 const STATIONS: usize = 6;

@@ -1,4 +1,4 @@
-//! What must hold for every generated house, by rule. Tests look at hundreds of seeds, the bench `validity` at thousands.
+//! Rules that hold for every generated house. Tests look at hundreds of seeds, the bench `validity` at thousands.
 
 mod geometric;
 mod settled;
@@ -7,7 +7,7 @@ use dwell_houses::generate::{GeneratedHouse, HouseSpec, generate};
 use dwell_scene::parallel::Threads;
 use std::sync::Arc;
 
-/// How far the rules are looked at.
+/// The depth of the checks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckDepth {
     /// As the house stands.
@@ -23,20 +23,20 @@ pub struct RuleViolation {
     /// `reach` (a room that nobody can enter), `bytes` (not the same beside other houses), `start` (physics had to move
     /// it), `settle` (a pickable thing moved more than 2 cm in 2 s), `physics`, `generate`.
     pub rule: &'static str,
-    /// What, in words.
+    /// The violation, in words.
     pub what: String,
 }
 
-/// What was looked at.
+/// The checks of one house.
 #[derive(Clone, Debug)]
 pub struct CheckCounts {
     /// The seed.
     pub seed: u64,
-    /// How many rooms and objects it has.
+    /// Its numbers of rooms and objects.
     pub counts: [usize; 2],
-    /// What was wanted and given up.
+    /// The omissions that the generator reported.
     pub given_up: Vec<String>,
-    /// What breaks a rule.
+    /// The violations.
     pub faults: Vec<RuleViolation>,
 }
 

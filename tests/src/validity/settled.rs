@@ -1,4 +1,4 @@
-//! What a furnished house must keep to when its physics begins.
+//! Rules for a furnished house when its physics begins.
 
 use super::RuleViolation;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
@@ -6,7 +6,7 @@ use dwell_scene::{House, Id, ObjectId, State};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// How long physics runs, s.
+/// Simulated time, s.
 const DURATION_S: f32 = 2.0;
 /// No pickable thing may have moved farther, m.
 const FARTHEST_M: f32 = 0.02;

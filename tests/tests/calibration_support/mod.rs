@@ -1,4 +1,4 @@
-//! What the hidden effects are made with. It shares no code with the engines: its own generator of random numbers, its own
+//! Support for the hidden effects. It shares no code with the engines: its own generator of random numbers, its own
 //! integrators, and files written by hand.
 #![allow(dead_code, reason = "each test file uses a part")]
 #![allow(

@@ -1,11 +1,11 @@
-//! What must hold after every step.
+//! Invariants after every step.
 
 use dwell::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::{Aabb, StructureKind, SurfaceOwner};
 use glam::Vec3;
 
-/// How far a thing may be outside of the box around the house: what leans out of a window, m.
+/// Largest distance of a thing from the box around the house: that of one that leans out of a window, m.
 const MARGIN_M: f32 = 1.0;
 
 /// The most that a snapshot may hold, bytes.

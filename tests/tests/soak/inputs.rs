@@ -1,4 +1,4 @@
-//! What agents and joints are told, and what the world is set to: mostly with sense.
+//! Random inputs: commands to agents and joints, and parameters of the world, mostly sensible.
 
 use dwell::World;
 use dwell_physics::{AgentControl, BodyState, Grasp, HandAction, Target, actions};

@@ -32,13 +32,13 @@ use std::sync::Arc;
 const AGENTS: usize = 4;
 /// Physics steps in a control step.
 const SUBSTEPS: usize = 6;
-/// How much of what it was told a play remembers.
+/// Number of latest commands that a play remembers.
 const LATELY: usize = 12;
-/// How long the world goes astray in the middle of a run before the snapshot brings it back, control steps.
+/// Length of the detour in the middle of a run before the snapshot brings the world back, control steps.
 const ASTRAY: usize = 30;
 /// Set for the process that plays again.
 const AGAIN: &str = "DWELL_SOAK_AGAIN";
-/// What that process writes before its hash.
+/// Prefix of the hash that that process writes.
 const HASH: &str = "hash ";
 
 fn steps() -> usize {
@@ -77,7 +77,7 @@ struct Play {
     controls: [AgentControl; AGENTS],
     /// Every parameter as it was at the start.
     parameters: Vec<(Address, Parameter)>,
-    /// What it was told and set to last, the newest at the end.
+    /// Its latest commands and settings, the newest at the end.
     lately: Vec<String>,
 }
 

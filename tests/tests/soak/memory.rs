@@ -1,4 +1,4 @@
-//! How memory is watched: every byte that is allocated and freed is counted.
+//! Memory watch: every byte that is allocated and freed is counted.
 //!
 //! Agents strew things about, so that ever more pieces of theirs are near each other, and physics keeps the contacts of each
 //! such pair. How much that is, a world says that is restored from a snapshot: it holds what the state needs. What is held
@@ -11,7 +11,7 @@ use std::alloc::System;
 #[global_allocator]
 static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// How far the rest may grow from the second tenth of a run to the last ("flat memory").
+/// Largest growth of the rest from the second tenth of a run to the last ("flat memory").
 const GROWTH_BYTES: i64 = 1024 * 1024;
 /// Looks in a run.
 pub(crate) const LOOKS: usize = 100;
@@ -26,7 +26,7 @@ fn in_use() -> i64 {
 pub(crate) struct Watch {
     /// Before there was a world.
     empty: i64,
-    /// What was held beyond need, bytes, at each look.
+    /// Memory held beyond need, bytes, at each look.
     rest: Vec<i64>,
 }
 
@@ -50,7 +50,7 @@ impl Watch {
         [held, needed]
     }
 
-    /// What is held now counts no more.
+    /// Takes the memory held now as zero.
     pub(crate) fn begin(&mut self) {
         self.empty = in_use();
     }

@@ -14,7 +14,7 @@ pub(crate) struct Stage {
 
 const CONFIG: &str = "python/pyproject.toml";
 const STUB: &str = "python/dwell/_native.pyi";
-/// What stubtest may overlook, each line with its reason; may be absent.
+/// Items that stubtest may overlook, each line with its reason; may be absent.
 const ALLOWLIST: &str = "python/stubtest-allowlist.txt";
 
 /// In order; the cheapest first. Python's tools are those of `.venv`.

@@ -1,13 +1,13 @@
 //! The list: DESIGN section 1 as data. A new crate is one entry.
 
-/// What one crate of ours may use of ours.
+/// The crates of ours that one of them may use.
 #[derive(Debug)]
 pub(crate) struct Rule {
     pub name: &'static str,
     /// Relative to the root.
     pub folder: &'static str,
     pub may_use: &'static [&'static str],
-    /// What its tests may use besides.
+    /// Those that its tests may use besides.
     pub tests_may_use: &'static [&'static str],
 }
 

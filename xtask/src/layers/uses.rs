@@ -1,4 +1,4 @@
-//! Who uses whom among our own crates, as the manifests declare it.
+//! Dependencies among our own crates, as the manifests declare them.
 
 use super::rules::Rule;
 use crate::manifests::Member;

@@ -11,9 +11,9 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Exemption {
     name: String,
-    /// Who needs the older one, and why that does no harm.
+    /// The crates that need the older one, and why that does no harm.
     reason: String,
-    /// What ends it.
+    /// The condition that ends it.
     way_out: String,
 }
 

@@ -1,4 +1,4 @@
-//! What we ship and under which terms: licences, versions that stand twice, sources outside the registry.
+//! Licences of what we ship, versions that stand twice, and sources outside the registry.
 
 mod duplicates;
 pub(crate) mod spdx;

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What a package's manifest says about it, beyond what `cargo tree` prints.
+/// The fields of a package's manifest beyond what `cargo tree` prints.
 #[derive(Debug, Clone, Default, Deserialize)]
 pub(crate) struct Manifest {
     name: String,

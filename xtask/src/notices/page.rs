@@ -9,7 +9,7 @@ pub(crate) struct IncludedWork {
     pub title: String,
     /// SPDX expression.
     pub licence: String,
-    /// Where it comes from and who wrote it; empty if nobody says.
+    /// Its origin and authors; empty if nobody says.
     pub origin: String,
     /// Its texts, in full.
     pub texts: Vec<String>,

@@ -1,4 +1,4 @@
-//! What grows unless someone looks: source files, the number of crates, the wheel, the cold build.
+//! Sizes that grow unless someone looks: source files, the number of crates, the wheel, the cold build.
 
 mod ceilings;
 mod files;

@@ -56,9 +56,9 @@ pub struct DriveRecording {
     pub group: String,
     /// The kind of path.
     pub kind: String,
-    /// Where the tracker saw it: x, y in m and the heading in rad, not wrapped. Shape (sample,).
+    /// The tracked path: x, y in m and the heading in rad, not wrapped. Shape (sample,).
     pub planar: Vec<[f64; 3]>,
-    /// How far the left and the right wheel turned since the sample before, rad. Shape (sample,).
+    /// Rotations of the left and the right wheel since the sample before, rad. Shape (sample,).
     pub turned_rad: Vec<[f64; 2]>,
     motions: Vec<MeasuredMotion>,
     regimes: Vec<Regime>,

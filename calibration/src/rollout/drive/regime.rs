@@ -1,4 +1,4 @@
-//! What a robot does at a sample, as its wheels tell it.
+//! Regimes of a drive: a robot's motion at a sample, by its wheels.
 
 use super::NominalBase;
 use crate::rollout::Regime;

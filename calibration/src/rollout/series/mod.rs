@@ -56,7 +56,7 @@ impl Default for SeriesOptions {
     }
 }
 
-/// What a model makes of the series.
+/// The outcome of a model on the series.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelOutcome {
     /// The model.
@@ -71,7 +71,7 @@ pub struct ModelOutcome {
     pub gain: Option<ModelGain>,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
-    /// What a quarter of the step changes.
+    /// The effect of a quarter of the step.
     pub refinements: Vec<Refinement>,
 }
 
@@ -84,13 +84,13 @@ pub struct SeriesReport {
     pub title: String,
     /// The licence of the data.
     pub licence: String,
-    /// How it was made.
+    /// The options of the study.
     pub options: SeriesOptions,
     /// In a sentence.
     pub sentence: String,
     /// The models, as they were given.
     pub models: Vec<ModelOutcome>,
-    /// How residuals spread.
+    /// Distributions of the residuals.
     pub residuals: Vec<ResidualGroups>,
     /// Which residuals are the solver's, a sentence for each model.
     pub solver: Vec<String>,

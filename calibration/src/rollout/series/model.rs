@@ -12,7 +12,7 @@ pub struct ModelParameter {
     pub name: String,
     /// SI unit, `"1"` for none.
     pub unit: &'static str,
-    /// Where the fit starts, and where it stays when the episodes say nothing about it.
+    /// The value at which the fit starts, and stays when the episodes say nothing about it.
     pub start: f64,
     /// The range that is searched.
     pub range: [f64; 2],
@@ -45,11 +45,11 @@ impl ModelParameter {
 pub struct SimulationModel {
     /// A short name.
     pub name: &'static str,
-    /// What it is, in a sentence.
+    /// A description in a sentence.
     pub about: &'static str,
     /// The model that it extends; `null`: none.
     pub extends: Option<&'static str>,
-    /// What is fitted.
+    /// The fitted parameters.
     pub parameters: Vec<ModelParameter>,
 }
 

@@ -13,12 +13,12 @@ use std::collections::BTreeMap;
 /// Samples of an episode that a fit looks at.
 const FIT_SAMPLES: usize = 60;
 
-/// How far off a whole episode is, by parameters that it did not choose.
+/// The error over a whole episode, by parameters that it did not choose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EpisodeError {
     /// Its name.
     pub episode: String,
-    /// What kind it is.
+    /// Its kind.
     pub kind: String,
     /// The fold that it was held out with.
     pub fold: usize,
@@ -39,7 +39,7 @@ pub struct EpisodeError {
 pub struct KindErrors {
     /// The kind; `null`: all episodes.
     pub kind: Option<String>,
-    /// How many episodes.
+    /// Number of episodes.
     pub count: usize,
     /// Distance at the last sample, mm.
     pub end_mm: f64,
@@ -51,7 +51,7 @@ pub struct KindErrors {
     pub mean_deg: f64,
 }
 
-/// What a model gains over the one that it extends, each episode out of fold.
+/// The gain of a model over the one that it extends, each episode out of fold.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelGain {
     /// The other model.

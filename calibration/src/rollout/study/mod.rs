@@ -43,7 +43,7 @@ pub struct StudyOptions {
     pub population: usize,
     /// Generations on a part of the training episodes, then on all of them; default 6 and 0.
     pub generations: [usize; 2],
-    /// How many episodes that part has; default 60.
+    /// Number of episodes of that part; default 60.
     pub first_episodes: usize,
     /// Windows start at every so many samples; default 20.
     pub window_stride: usize,
@@ -79,11 +79,11 @@ pub struct EpisodeScore {
     pub fold: usize,
     /// The score.
     pub score: Score,
-    /// Whether starts within the tracker's noise end elsewhere.
+    /// True if starts within the tracker's noise end elsewhere.
     pub diverges: bool,
 }
 
-/// What a contact model makes of the bundle.
+/// The outcome of a contact model on the bundle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModelReport {
     /// The model.
@@ -96,7 +96,7 @@ pub struct ModelReport {
     pub steady: ScoreSummary,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
-    /// What a quarter of the step changes.
+    /// The effect of a quarter of the step.
     pub refinements: Vec<Refinement>,
     /// Every episode.
     pub episodes: Vec<EpisodeScore>,
@@ -113,7 +113,7 @@ pub struct StudyReport {
     pub title: String,
     /// The licence of the data.
     pub licence: String,
-    /// How it was made.
+    /// The options of the study.
     pub options: StudyOptions,
     /// The tracker's noise from sample to sample.
     pub noise: TrackerNoise,
@@ -123,7 +123,7 @@ pub struct StudyReport {
     pub solver: Vec<String>,
     /// The models, in the order of [`models`].
     pub models: Vec<ModelReport>,
-    /// How residuals of the first models spread.
+    /// Distributions of the first models' residuals.
     pub residuals: Vec<ResidualGroups>,
     /// The best model with the median of what its folds chose, for the simulator.
     pub found: FoundEffects,

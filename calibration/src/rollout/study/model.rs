@@ -14,7 +14,7 @@ pub struct ContactParameter {
     pub unit: &'static str,
     /// The range that is searched.
     pub range: [f64; 2],
-    /// Whether the search takes equal ratios for equal steps.
+    /// True if the search takes equal ratios for equal steps.
     pub by_ratio: bool,
 }
 
@@ -23,12 +23,12 @@ pub struct ContactParameter {
 pub struct ContactModel {
     /// A short name.
     pub name: &'static str,
-    /// What it is, in a sentence.
+    /// A description in a sentence.
     pub about: &'static str,
-    /// How friction is solved where faces touch.
+    /// The friction solver where faces touch.
     #[serde(skip)]
     pub contact_friction: ContactFriction,
-    /// What is fitted; none: the nominal values stand.
+    /// The fitted parameters; none: the nominal values stand.
     pub parameters: Vec<ContactParameter>,
 }
 

@@ -13,7 +13,7 @@ use std::path::Path;
 /// Bytes of an answer that are read; ours have less than a thousand.
 const MOST_BYTES: u64 = 1 << 20;
 
-/// What decides about the end of a search: equal questions have equal answers.
+/// The inputs that determine the end of a search: equal keys have equal answers.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct SearchKey {
     title: String,

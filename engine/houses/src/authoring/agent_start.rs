@@ -1,4 +1,4 @@
-//! Where agents start.
+//! Start poses of agents.
 
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{AgentBody, AgentStart, Room, State};
@@ -11,7 +11,7 @@ use super::surfaces;
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
-/// How far from a room's floor a place may be that counts as in the room, m.
+/// Largest distance from a room's floor of a place that counts as in the room, m.
 const ROOM_M: f32 = 0.5;
 
 /// Sets where an agent starts.

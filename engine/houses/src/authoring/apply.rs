@@ -119,7 +119,7 @@ pub(super) struct EditSession<'a> {
     pub(super) threads: Threads,
     pub(super) report: LoadReport,
     pub(super) object_index: ObjectIndex,
-    /// What is taken out before anything else is done.
+    /// Objects to remove before anything else is done.
     removed: BTreeSet<ObjectId>,
     /// Mesh files by path, scale and axis.
     pub(super) meshes: BTreeMap<String, Arc<LoadedMesh>>,

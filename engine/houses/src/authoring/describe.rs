@@ -1,4 +1,4 @@
-//! What an object is: category, mobility, mass.
+//! Attributes of an object: category, mobility, mass.
 
 use dwell_furniture::tables::category_names;
 use dwell_scene::{Category, Collider, HouseData, Mobility, ObjectId, Part};

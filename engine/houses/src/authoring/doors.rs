@@ -1,4 +1,4 @@
-//! How far doors, drawers and lids are open at the start.
+//! Initial opening of doors, drawers and lids.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What is wrong with an edit or a plan, in one form: the field, what was found, what is possible.
+//! Errors of edits and plans in one form: the field, what was found, what is possible.
 
 use std::fmt::Display;
 

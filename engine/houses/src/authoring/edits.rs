@@ -54,26 +54,26 @@ impl Edit {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AddObject {
-    /// What is added.
+    /// The source of the object.
     pub what: ObjectSource,
     /// Its name; `None`: its category with a number.
     #[serde(default)]
     pub name: Option<String>,
-    /// Where it goes.
+    /// The place of the object.
     #[serde(default)]
     pub place: Placement,
-    /// What is told about it.
+    /// Attributes that differ from those of the source.
     #[serde(default)]
     pub traits: ObjectAttributes,
-    /// What all its surfaces are made of instead.
+    /// A surface style that replaces those of all its surfaces.
     #[serde(default)]
     pub look: Option<SurfaceStyle>,
-    /// What it sounds like, from its middle.
+    /// A sound that the object emits from its middle.
     #[serde(default)]
     pub sound: Option<SoundSpec>,
 }
 
-/// Where an object comes from.
+/// The source of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObjectSource {
@@ -129,15 +129,15 @@ pub enum UpAxis {
     Z,
 }
 
-/// Where an object goes.
+/// The place of an object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Placement {
-    /// Where its anchor goes, m.
+    /// Target position of its anchor, m.
     pub at: Option<[f32; 3]>,
     /// The object on whose upper side it goes: at `at`, whose height then does not count, else in the middle.
     pub on: Option<String>,
-    /// Where it is turned, degrees to the left; `None`: as it is.
+    /// Heading, degrees to the left; `None`: unchanged.
     pub yaw_deg: Option<f32>,
     /// Which of its points `at` is.
     pub anchor: Anchor,
@@ -159,7 +159,7 @@ pub enum Anchor {
     Origin,
 }
 
-/// What is told about an object. `None` leaves a thing as it is.
+/// Attributes of an object. `None` leaves a value as it is.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectAttributes {
@@ -171,13 +171,13 @@ pub struct ObjectAttributes {
     pub mass_kg: Option<f32>,
     /// Its mean density over the volume of its collision pieces, kg/m³; not beside a mass.
     pub density_kg_m3: Option<f32>,
-    /// Whether a hand can take it, as far as shape and use say.
+    /// True if a hand can take it, as far as shape and use say.
     pub pickable: Option<bool>,
-    /// Whether it starts switched on.
+    /// True if it starts switched on.
     pub switch: Option<bool>,
 }
 
-/// What a surface is made of, and its colour. `None` leaves a thing as it is, except that another substance brings its own
+/// The substance and the colour of a surface. `None` leaves a value as it is, except that another substance brings its own
 /// look.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -207,7 +207,7 @@ pub struct SoundSpec {
     pub file: Option<String>,
     /// Level at 1 m in the free field, dB SPL (RMS over the whole sound); -20 to 140.
     pub level_db: f32,
-    /// Whether it begins again when it is over.
+    /// True if it begins again when it is over.
     #[serde(default = "yes")]
     pub loops: bool,
     /// When it begins, s after the start of a world; 0 to 86400.
@@ -221,7 +221,7 @@ pub struct SoundSpec {
 pub struct RemoveObject {
     /// The object's name.
     pub object: String,
-    /// Whether what stands on it or lies in it goes too; else that stays where it is.
+    /// True to remove what stands on it or lies in it too; else that stays in place.
     #[serde(default)]
     pub with_things: bool,
 }
@@ -232,7 +232,7 @@ pub struct RemoveObject {
 pub struct MoveObject {
     /// The object's name.
     pub object: String,
-    /// Where it goes; without place and height it only turns.
+    /// The new place; without place and height it only turns.
     #[serde(default)]
     pub place: Placement,
     /// By how much it is shifted after that, m.
@@ -241,7 +241,7 @@ pub struct MoveObject {
     /// By how much it is turned about its anchor after that, degrees to the left.
     #[serde(default)]
     pub turn_deg: f32,
-    /// Whether what stands on it or lies in it comes along.
+    /// True to move what stands on it or lies in it along.
     #[serde(default = "yes")]
     pub with_things: bool,
 }
@@ -256,7 +256,7 @@ const fn yes() -> bool {
 pub struct ChangeMaterial {
     /// Which surfaces.
     pub of: SurfaceSelector,
-    /// What they are now.
+    /// Their new style.
     pub look: SurfaceStyle,
 }
 
@@ -276,7 +276,7 @@ pub enum SurfaceSelector {
         #[serde(default)]
         part: Option<String>,
     },
-    /// What a room shows to those in it.
+    /// All surfaces of a room that are seen from inside.
     Room {
         /// The room's name.
         name: String,
@@ -301,7 +301,7 @@ pub enum RoomSide {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AddEmitter {
-    /// What sounds.
+    /// The sound that it emits.
     pub sound: SoundSpec,
     /// The object that sounds, from its middle; it starts switched on.
     #[serde(default)]
@@ -333,7 +333,7 @@ pub struct AddLamp {
     /// The new lamp's name.
     #[serde(default)]
     pub name: Option<String>,
-    /// Where the new lamp goes.
+    /// The place of the new lamp.
     #[serde(default)]
     pub place: Placement,
     /// Electrical power, W, of which 1 counts as 100 lm; `None`: the model's, or 10.
@@ -342,7 +342,7 @@ pub struct AddLamp {
     /// Colour of the light, sRGB; `None`: warm white.
     #[serde(default)]
     pub srgb: Option<[u8; 3]>,
-    /// Whether it starts switched on.
+    /// True if it starts switched on.
     #[serde(default = "yes")]
     pub on: bool,
 }
@@ -359,12 +359,12 @@ pub struct AddRobot {
     pub path: String,
     /// The robot's name as an object.
     pub name: String,
-    /// Where its base stands, m.
+    /// Position of its base, m.
     pub at: [f32; 3],
-    /// Where it faces, degrees to the left of -Z.
+    /// Heading, degrees to the left of -Z.
     #[serde(default)]
     pub yaw_deg: f32,
-    /// Whether its base is held for good; `None`: as the file says.
+    /// True to fix its base; `None`: as the file says.
     #[serde(default)]
     pub fixed_base: Option<bool>,
 }
@@ -373,11 +373,11 @@ pub struct AddRobot {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SetAgentStart {
-    /// Where its feet are, m; `None`: nearest to the middle of the room where someone of usual size can stand.
+    /// Position of its feet, m; `None`: nearest to the middle of the room where someone of usual size can stand.
     pub at: Option<[f32; 3]>,
     /// The room's name; beside `at` that room must hold the place.
     pub room: Option<String>,
-    /// Where it faces, degrees to the left of -Z.
+    /// Heading, degrees to the left of -Z.
     pub yaw_deg: f32,
     /// Which agent, counted from 0; `None`: the first that has no start yet.
     pub agent: Option<u32>,
@@ -402,7 +402,7 @@ pub struct SetDoor {
 pub struct SetAttributes {
     /// The object's name.
     pub object: String,
-    /// What it is.
+    /// The attributes to set.
     pub traits: ObjectAttributes,
 }
 
@@ -418,7 +418,7 @@ pub struct Rename {
     pub room: Option<String>,
     /// The new name; not taken yet.
     pub to: String,
-    /// What people call the room, if that changes too.
+    /// The kind of the room in everyday words, if that changes too.
     #[serde(default)]
     pub kind: Option<String>,
 }

@@ -1,18 +1,18 @@
-//! Where on top of a thing there is room for another one.
+//! Search for a free place on top of an object.
 
 use dwell_scene::{Aabb, HouseData, Id, ObjectId};
 use glam::{Vec2, Vec3};
 
 use super::place::{height_over, triangles};
 
-/// How far apart the places are that are tried, m, and the most of them along a side.
+/// Spacing of the places that are tried, m, and the most of them along a side.
 const STEP_M: f32 = 0.05;
 const MOST_STEPS: f32 = 40.0;
-/// How uneven the ground under a thing may be, m.
+/// Largest unevenness of the ground under an object, m.
 const EVEN_M: f32 = 0.01;
-/// How far inside of a thing's box its feet are, a share of its size.
+/// Inset of an object's feet from the sides of its box, a share of its size.
 const INSET: f32 = 0.1;
-/// What is left between things, m.
+/// Clearance between objects, m.
 const APART_M: f32 = 0.01;
 /// More than that.
 const REACH_M: f32 = 0.1;

@@ -27,7 +27,7 @@ pub struct NodeHinge {
     /// A point of the axis, m.
     #[serde(default)]
     pub at: Option<[f32; 3]>,
-    /// How far it is turned when it is fully open, degrees, right-handed about the axis from how the file has it; -360 to 360.
+    /// Rotation when it is fully open, degrees, right-handed about the axis from the pose in the file; -360 to 360.
     #[serde(default = "quarter")]
     pub open_deg: f32,
     /// The same when it is closed.

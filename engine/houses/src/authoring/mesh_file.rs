@@ -16,7 +16,7 @@ use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// What a mesh file holds, as the first mesh of tables that hold its materials and images too.
+/// The content of a mesh file, as the first mesh of tables that hold its materials and images too.
 pub(super) struct LoadedMesh {
     /// One mesh, and the file's materials and textures.
     pub(super) data: HouseData,
@@ -27,7 +27,7 @@ pub(super) struct LoadedMesh {
 /// Reads a file; one that was read already is shared.
 ///
 /// # Errors
-/// What the format's reader says; [`HousesError::Empty`] without a triangle.
+/// Those of the format's reader; [`HousesError::Empty`] without a triangle.
 pub(super) fn load(
     desk: &mut EditSession<'_>,
     name: &str,

@@ -24,10 +24,10 @@ use crate::warning_kind::WarningKind;
 
 /// The most patterns, and letters of one.
 const MOST: [usize; 2] = [20_000, 256];
-/// How far a thing may hover above what it stands on, m.
+/// Largest gap between a thing and its support, m.
 const GAP_M: f32 = 0.03;
 
-/// What foreign names mean: patterns with `*` and `?`, without regard to case. Of those that fit, the one with the most plain
+/// The meanings of foreign names: patterns with `*` and `?`, without regard to case. Of those that fit, the one with the most plain
 /// letters counts.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -40,11 +40,11 @@ pub struct NameMapping {
     pub rooms: BTreeMap<String, MappedRoom>,
 }
 
-/// What a material is: a substance's name, or a table.
+/// The mapping of a material: a substance's name, or a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MappedMaterial(pub MaterialMapping);
 
-/// What a material is.
+/// The table form of a material's mapping.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MaterialMapping {
@@ -58,11 +58,11 @@ pub struct MaterialMapping {
     pub roughness: Option<f32>,
 }
 
-/// What a node is: a category's name, or a table.
+/// The mapping of a node: a category's name, or a table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MappedNode(pub NodeMapping);
 
-/// What a node is.
+/// The table form of a node's mapping.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NodeMapping {
@@ -76,7 +76,7 @@ pub struct NodeMapping {
     pub mass_kg: Option<f32>,
     /// kg/m³.
     pub density_kg_m3: Option<f32>,
-    /// Whether a hand can take it.
+    /// True if a hand can take it.
     pub pickable: Option<bool>,
     /// It is no object but a piece of the building.
     pub structure: Option<StructureKind>,
@@ -84,7 +84,7 @@ pub struct NodeMapping {
     pub hinge: Option<NodeHinge>,
 }
 
-/// What people call a room.
+/// The everyday name of a kind of room.
 pub type MappedRoom = String;
 
 macro_rules! word_or_table {

@@ -6,7 +6,7 @@ use dwell_scene::{Aabb, HouseData, Id, JointId, ObjectId};
 
 use super::place::world_box;
 
-/// What is known of the objects; it follows the tables from edit to edit.
+/// An index of the objects; it follows the tables from edit to edit.
 #[derive(Default)]
 pub(super) struct ObjectIndex {
     ids: BTreeMap<String, ObjectId>,

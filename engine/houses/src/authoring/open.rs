@@ -19,14 +19,14 @@ use crate::limits::MAX_TEXT_BYTES;
 use crate::opened::Opened;
 use crate::report::{FileLocation, LoadReport};
 
-/// What the field `format` of a plan file holds.
+/// Value of the field `format` of a plan file.
 const FORMAT: &str = "dwell-plan";
 /// The version that is written and read.
 const VERSION: u32 = 1;
 /// The end of a plan file's name.
 const ENDING: &str = ".plan.json";
 
-/// What a house is made of: a building or another house, and edits, one after another.
+/// The plan of a house: a building or another house, and edits, one after another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct HousePlan {
@@ -40,7 +40,7 @@ pub struct HousePlan {
     pub house: Option<String>,
     /// A building that is raised; not beside a house.
     pub building: Option<BuildingPlan>,
-    /// What is added and changed.
+    /// The edits, in order.
     pub edits: Vec<Edit>,
 }
 

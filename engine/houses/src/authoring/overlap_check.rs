@@ -1,4 +1,4 @@
-//! What was put into something else.
+//! Overlaps of added and moved objects with others.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use glam::{Vec2, Vec3};
 
 use super::place::{points, triangles, world_box};
 
-/// How deep things must be in each other to be told, m: less is touch.
+/// Smallest penetration depth that is reported, m: less counts as touch.
 const DEEP_M: f32 = 0.01;
 /// Points of a thing that are looked at, at most.
 const LOOKED_AT: usize = 64;

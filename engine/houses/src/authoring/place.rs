@@ -1,4 +1,4 @@
-//! Where objects stand: the upright box around one, where it is put, what stands on it, and the room that it is in then.
+//! Placement of objects: the upright box around one, its target pose, what stands on it, and the room that it is in then.
 
 use std::collections::BTreeSet;
 
@@ -14,11 +14,11 @@ use super::edits::{Anchor, Placement};
 use super::free_place::{PlacementSearch, SupportSurface};
 use crate::error::HousesError;
 
-/// How far a thing may hover above what it stands on, m.
+/// Largest gap between a thing and its support, m.
 const GAP_M: f32 = 0.03;
-/// How far outside of a room's height its things may be, m.
+/// Largest distance of a thing from its room's range of heights, m.
 const ROOM_M: f32 = 0.3;
-/// How many pairs of things are looked at to find what goes with a thing.
+/// Largest number of pairs that are compared to find what moves with an object.
 const MOST_PAIRS: usize = 10_000;
 
 /// The boxes that physics and eyes know of a part, as points in the world.

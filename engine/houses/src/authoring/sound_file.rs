@@ -9,7 +9,7 @@ use super::files::FileAccess;
 use crate::data_root::UserFile;
 use crate::error::HousesError;
 
-/// What the files begin with: WAV, FLAC, Ogg.
+/// Magic numbers of the file formats: WAV, FLAC, Ogg.
 const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
 
 /// Reads a sound file.

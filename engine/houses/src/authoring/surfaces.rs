@@ -1,4 +1,4 @@
-//! What surfaces are made of, and their colours.
+//! Substances and colours of surfaces.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::edits::{ChangeMaterial, RoomSide, SurfaceSelector, SurfaceStyle};
 use super::remove_objects;
 use crate::error::HousesError;
 
-/// How far before a face one looks whether the room is there, m.
+/// Distance in front of a face at which the room is looked up, m.
 const BEFORE_M: f32 = 0.02;
 /// The cosine from which on a face is level.
 const LEVEL: f32 = 0.7;

@@ -15,7 +15,7 @@ use crate::warning_kind::UnmappedKind;
 pub struct UnmappedName {
     /// The name, as in the file.
     pub name: String,
-    /// How many surfaces, objects or rooms have it.
+    /// Number of surfaces, objects or rooms that have it.
     pub count: usize,
     /// The area of those surfaces, of the objects' surfaces, or of the floors, m².
     pub area_m2: f64,

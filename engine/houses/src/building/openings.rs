@@ -1,4 +1,4 @@
-//! What fills holes in walls.
+//! Doors and windows in holes of walls.
 
 use std::f32::consts::FRAC_PI_2;
 

@@ -18,7 +18,7 @@ pub(crate) type PlanRect = [f32; 4];
 #[derive(Clone, Debug)]
 pub(crate) struct ShellRoom {
     pub(crate) name: String,
-    /// What people call it, most fitting first.
+    /// Everyday names of its kind, the most fitting first.
     pub(crate) kinds: Vec<String>,
     /// The free floor, in rectangles that do not overlap; halves of doorways too.
     pub(crate) floor: Vec<PlanRect>,

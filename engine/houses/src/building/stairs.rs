@@ -15,14 +15,14 @@ use glam::Vec3;
 /// Half of the thickness of a railing with its distance from the edge, m.
 pub(crate) const RAILING_INSET_M: f32 = 0.05;
 
-/// Where two flights beside each other stand.
+/// The pose of two flights beside each other.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StairFlights {
     /// The middle of the front edge on the storey's floor, m.
     pub(crate) front: Vec3,
     /// The direction in which the first flight climbs, (x, z): one step along an axis.
     pub(crate) climb: [i32; 2],
-    /// Whether the first flight is at the right of who looks along it, instead of at the left.
+    /// True if the first flight is at the right, seen along it, instead of at the left.
     pub(crate) mirrored: bool,
     /// Of both flights together, m.
     pub(crate) width_m: f32,

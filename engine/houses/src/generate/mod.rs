@@ -42,18 +42,18 @@ pub const VERSION: u32 = 4;
 pub struct GeneratedHouse {
     /// The house.
     pub house: House,
-    /// What was drawn and what was given up.
+    /// The draws, and what was given up.
     pub report: GenerateReport,
 }
 
-/// What was drawn and what was given up.
+/// The draws of a generated house, and what was given up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GenerateReport {
-    /// What kind of home it is.
+    /// The kind of home.
     pub home: HomeKind,
     /// The style of its furniture.
     pub style: String,
-    /// What was wanted and could not be had, in sentences.
+    /// The omissions: what was wanted but did not fit, in sentences.
     pub given_up: Vec<String>,
 }
 

@@ -19,7 +19,7 @@ pub(crate) const OUTER_M: f32 = 0.2;
 const DOOR: GridSteps = 19;
 /// From the middle of the wall at a corner to the opening.
 const CORNER: GridSteps = 3;
-/// What a leaf that opens beyond a right angle takes beside its opening, with its handle, m.
+/// Width beside its opening that a leaf takes that opens beyond a right angle, with its handle, m.
 const BESIDE_M: f32 = 0.099;
 /// Depth before a door that no open leaf may reach into, from the middle of its wall, m: one passes between the two.
 const PASS_M: f32 = 0.85;
@@ -31,16 +31,16 @@ const ARCH_M: f32 = 2.2;
 /// A rectangle in metres: x from, z from, x to, z to.
 pub(crate) type ZoneXz = [f32; 4];
 
-/// What fills a hole in a wall.
+/// The contents of a hole in a wall.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum HoleContents {
     /// A leaf into the room.
     Door {
-        /// Whether it hangs on the right as one stands in the room and looks at the wall from inside.
+        /// True if it hangs on the right, seen from inside the room.
         hinge_right: bool,
-        /// Whether it has a pane.
+        /// True if it has a pane.
         glazed: bool,
-        /// Whether one comes into the house here.
+        /// True for an entrance of the house.
         entrance: bool,
     },
     /// Nothing.
@@ -59,7 +59,7 @@ pub(crate) struct WallHole {
     pub(crate) room: usize,
     /// The room behind; `None`: outside.
     pub(crate) behind: Option<usize>,
-    /// Whether the wall runs along x.
+    /// True if the wall runs along x.
     pub(crate) along_x: bool,
     /// The middle of the wall, across it, m.
     pub(crate) at_m: f32,

@@ -1,4 +1,4 @@
-//! Whether someone can reach every room, told from what the generator knows: floors, open leaves and the boxes around
+//! Reachability of every room, from what the generator knows: floors, open leaves and the boxes around
 //! collision pieces below head height. A house need not be built for it, and it takes a tenth of what a
 //! [`NavGrid`](dwell_scene::navigation::NavGrid) takes.
 //!
@@ -18,7 +18,7 @@ const CELL_M: f32 = 0.05;
 const CLEAR: usize = 6;
 /// Taken off doorways on both sides for their frames, m.
 const FRAME_M: f32 = 0.06;
-/// How far sills of windows stand out, m.
+/// Depth by which sills of windows stand out, m.
 const SILL_M: f32 = 0.04;
 /// From the first step of stairs to where one stands before it, m.
 const BEFORE_STAIRS_M: f32 = 0.45;
@@ -101,7 +101,7 @@ fn stairs_at(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 
     ways
 }
 
-/// Whether one can stand somewhere.
+/// The reachability of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CellReach {
     No,

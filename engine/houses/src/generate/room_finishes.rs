@@ -1,4 +1,4 @@
-//! What floors, walls and ceilings are covered with.
+//! Finishes of floors, walls and ceilings.
 
 use super::rooms::GeneratedRoomKind;
 use crate::building::wall::FinishBands;

@@ -15,7 +15,7 @@ pub enum GeneratedRoomKind {
     LivingRoom,
     /// A table with chairs.
     DiningRoom,
-    /// Where one cooks.
+    /// A room to cook in.
     Kitchen,
     /// For the owners.
     Bedroom,
@@ -29,9 +29,9 @@ pub enum GeneratedRoomKind {
     Toilet,
     /// A room with desks.
     Office,
-    /// Where visitors of an office wait.
+    /// A room in which visitors of an office wait.
     Lobby,
-    /// Where clothes hang.
+    /// A room in which clothes hang.
     Wardrobe,
     /// Shelves.
     Storage,
@@ -47,7 +47,7 @@ pub enum GeneratedRoomKind {
     Terrace,
 }
 
-/// What windows a room gets.
+/// The kind of windows that a room gets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum WindowStyle {
     /// Wide ones on every outer wall.
@@ -62,12 +62,12 @@ pub(crate) enum WindowStyle {
     None,
 }
 
-/// What builders expect of a kind of room.
+/// The requirements of a kind of room.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoomRequirements {
     /// A row of `assets/rooms.csv`; rooms are named after it.
     pub(crate) name: &'static str,
-    /// What people call it, most fitting first.
+    /// Everyday names of its kind, the most fitting first.
     pub(crate) words: &'static [&'static str],
     /// The least, the usual and the largest floor, m².
     pub(crate) area_m2: [f32; 3],

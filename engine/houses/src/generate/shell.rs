@@ -53,7 +53,7 @@ impl BuildingShell {
     }
 }
 
-/// What a shell is built from.
+/// The inputs from which a shell is built.
 pub(crate) struct ShellBuilder<'a> {
     pub(crate) plan: &'a GeneratedPlan,
     pub(crate) holes: &'a [Vec<WallHole>],

@@ -1,4 +1,4 @@
-//! What a house shall be like.
+//! Specification of a generated house.
 
 use super::rooms::GeneratedRoomKind;
 use crate::error::HousesError;
@@ -7,7 +7,7 @@ use dwell_scene::Daytime;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What kind of home.
+/// The kind of home.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HomeKind {
@@ -17,11 +17,11 @@ pub enum HomeKind {
     Apartment,
     /// Rooms on one to three storeys.
     House,
-    /// Where people work.
+    /// A place to work.
     Office,
 }
 
-/// How doors between rooms stand at the start.
+/// The initial positions of the doors between rooms.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DoorStates {
@@ -62,7 +62,7 @@ impl AssetSplit {
     }
 }
 
-/// What a house shall be like. What is left out is drawn from the seed.
+/// The specification of a house. Fields that are left out are drawn from the seed.
 ///
 /// ```
 /// # fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -16,7 +16,7 @@ pub(crate) struct SidecarFile {
     pub(crate) bytes: Vec<u8>,
 }
 
-/// What URIs put before [`SidecarFile::path`]: a native house stands in `house/NAME.dwell/`.
+/// Prefix of [`SidecarFile::path`] in URIs: a native house is at `house/NAME.dwell/`.
 pub(crate) const TO_LIBRARY: &str = "../../";
 
 /// The name of a shared file: 128 bits of its content.

@@ -22,13 +22,13 @@ pub(super) const LEAST_CONE_RAD: f32 = 1e-3;
 /// The strongest lamp, W.
 const MOST_W: f32 = 1e5;
 
-/// What our own files say of a lamp beside the extension.
+/// Properties of a lamp in our own files beside the extension's.
 #[derive(Clone, Default)]
 pub(super) struct LampExtras {
     pub(super) power_w: Option<f32>,
     pub(super) on: Option<bool>,
     pub(super) light_of: Option<String>,
-    /// Whether it is the sun of a sky.
+    /// True for the sun of a sky.
     pub(super) sky: bool,
 }
 

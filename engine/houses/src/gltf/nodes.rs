@@ -83,7 +83,7 @@ struct PendingNode {
     /// The name of the topmost node above, which is a storey's in our files.
     top: Option<usize>,
     room: Option<usize>,
-    /// Whether it is a part of an object.
+    /// True for a part of an object.
     of_object: bool,
     /// The object, as a position in [`NodeTree::objects`], when it says all that one needs.
     object: Option<usize>,

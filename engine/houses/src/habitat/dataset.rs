@@ -14,11 +14,11 @@ use crate::limits::{MAX_NODES, MAX_PATTERN_WORDS, MAX_TEXT_BYTES};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// How the data set's own file ends.
+/// Ending of the data set's own file.
 const DATASET_ENDING: &str = ".scene_dataset_config.json";
-/// How a scene's file ends.
+/// Ending of a scene's file.
 pub(super) const SCENE_ENDING: &str = ".scene_instance.json";
-/// How many folders above the scene the data set may begin.
+/// Largest number of folders from the scene up to the data set.
 const MOST_STEPS: usize = 4;
 
 /// Kinds of template, with the ending of their files.
@@ -42,7 +42,7 @@ impl TemplateKind {
     }
 }
 
-/// What a template states, and from where its paths count.
+/// The content of a template, and the folder from which its paths count.
 #[derive(Debug, Clone)]
 pub(super) struct ResolvedTemplate {
     pub(super) at: FileLocation,

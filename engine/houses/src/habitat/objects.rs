@@ -15,7 +15,7 @@ use crate::import::{CategoryRow, MeshPieces, category, category_of};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
-/// How far outside of a room's height its things may be, m.
+/// Largest distance of a thing from its room's range of heights, m.
 const ROOM_M: f32 = 0.3;
 
 impl HabitatReader<'_> {

@@ -1,4 +1,4 @@
-//! Where an instance stands.
+//! Poses of instances.
 
 use dwell_scene::Pose;
 use glam::{Affine3A, Mat3, Quat, Vec3};

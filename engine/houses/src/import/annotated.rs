@@ -1,4 +1,4 @@
-//! What a file of our own says of its objects, beyond shapes and names.
+//! Annotations of objects in a file of our own, beyond shapes and names.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use dwell_scene::{
 use glam::{Affine3A, Mat3A, Vec3};
 use serde::Deserialize;
 
-/// How far what is left of a part's place beside a turn and a shift may lie from nothing, per number: editors round.
+/// Largest remainder of a part's transform beside rotation and translation, per number: editors round.
 const ROUNDING: f32 = 1e-3;
 
 /// An object with all that its node says.
@@ -56,15 +56,15 @@ pub(crate) struct AnnotatedPart {
     density_kg_m3: f32,
     #[serde(default)]
     inertial: Option<Inertial>,
-    /// Where it stood in the house that was written.
+    /// Its pose in the house that was written.
     world_from_part: Pose,
     #[serde(default)]
     part_from_mesh: Option<Affine3A>,
     colliders: Vec<Collider>,
-    /// Where the node stands in the file as it is.
+    /// The node's transform in the file as it is.
     #[serde(skip)]
     pub(crate) world_from_node: Affine3A,
-    /// Whether it shows a mesh.
+    /// True if it shows a mesh.
     #[serde(skip)]
     pub(crate) shown: bool,
 }
@@ -144,7 +144,7 @@ struct PlacedPart {
     part: AnnotatedPart,
     world_from_part: Pose,
     part_from_mesh: Affine3A,
-    /// What it looks like.
+    /// Its mesh and the materials of its slots.
     look: Option<(Arc<Mesh>, Vec<MaterialId>)>,
 }
 

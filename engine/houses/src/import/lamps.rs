@@ -10,14 +10,14 @@ const OWN_M: f32 = 0.5;
 pub(crate) struct ImportedLamp {
     /// m.
     pub(crate) position: Vec3,
-    /// Where a spot's cone points, unit length, and half of its opening angle, rad.
+    /// Axis of a spot's cone, unit length, and half of its opening angle, rad.
     pub(crate) cone: Option<(Vec3, f32)>,
     /// Linear light, each 0 to 1.
     pub(crate) color: [f32; 3],
     pub(crate) power_w: f32,
     /// The thing that the file says it belongs to, or whose parts it belongs to.
     pub(crate) carrier: Option<String>,
-    /// Whether it shines at the start.
+    /// True if it is on at the start.
     pub(crate) on: bool,
 }
 

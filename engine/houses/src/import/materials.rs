@@ -7,10 +7,10 @@ use dwell_scene::{IdVec, Material, MaterialId, TextureId, units};
 
 use super::UniqueNames;
 
-/// How a surface looks in its file, and what it is made of.
+/// A surface's look in its file, and its substance.
 #[derive(Debug, Clone)]
 pub(crate) struct ImportedMaterial {
-    /// What the material should be called.
+    /// The name for the material.
     pub(crate) name: String,
     /// sRGB-encoded colour, each 0 to 1; multiplies the texture.
     pub(crate) srgb: [f32; 3],
@@ -24,7 +24,7 @@ pub(crate) struct ImportedMaterial {
     pub(crate) roughness: Option<f32>,
     /// As in glTF 2.0; `None`: the substance's.
     pub(crate) metallic: Option<f32>,
-    /// What it is made of.
+    /// Its substance.
     pub(crate) substance: &'static Substance,
 }
 

@@ -1,4 +1,4 @@
-//! What several formats need to make a [`HouseData`](dwell_scene::HouseData) out of their files.
+//! Conversion of files to a [`HouseData`](dwell_scene::HouseData): the parts that several formats share.
 
 mod annotated;
 mod components;

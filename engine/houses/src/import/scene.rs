@@ -20,7 +20,7 @@ use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// How far a thing may hover above what it stands on, m.
+/// Largest gap between a thing and its support, m.
 const GAP_M: f32 = 0.03;
 
 /// A named mesh with its place and materials.
@@ -37,7 +37,7 @@ pub(crate) struct SceneNode {
     pub(crate) part_of: Option<(usize, usize)>,
 }
 
-/// What a file says of a thing.
+/// The role that a file states for a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum NodeRole {
     /// Nothing: its name may mean something.

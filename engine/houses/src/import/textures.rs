@@ -13,7 +13,7 @@ use crate::limits::{MAX_ALL_PIXELS, MAX_IMAGE_BYTES, MAX_IMAGE_PIXELS, MAX_IMAGE
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// What JPEG files begin with.
+/// Magic number of JPEG files.
 const JPEG_START: [u8; 2] = [0xff, 0xd8];
 
 /// The name of a texture: its path's last part without the ending.

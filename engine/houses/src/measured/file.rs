@@ -1,4 +1,4 @@
-//! What the file holds, nothing interpreted.
+//! The content of the file, nothing interpreted.
 
 use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
@@ -51,7 +51,7 @@ fn each_once<'de, D: Deserializer<'de>>(
     deserializer.deserialize_map(Once)
 }
 
-/// What a surface does to sound energy.
+/// The acoustic properties of a surface.
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasuredMaterial {
     /// 0 to 1.

@@ -25,11 +25,11 @@ const HIDDEN_GROUP: i32 = 3;
 /// A geom that is a body's.
 pub(super) struct BodyGeom {
     pub(super) shape: LinkShape,
-    /// What the file calls it.
+    /// Its name in the file.
     pub(super) name: Option<String>,
     pub(super) touches: bool,
     pub(super) seen: bool,
-    /// Whether it is a plane, which is held as a flat box.
+    /// True for a plane, which is held as a flat box.
     pub(super) is_plane: bool,
     /// As stated, kg.
     mass: Option<f64>,

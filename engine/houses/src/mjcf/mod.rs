@@ -23,7 +23,7 @@ use crate::robot;
 
 pub(crate) use read::read;
 
-/// How much of a file is looked at to tell MuJoCo's XML from another's, bytes.
+/// Length of the head of a file that is searched to tell MuJoCo's XML from another's, bytes.
 const HEAD: u64 = 4096;
 
 /// Returns whether `path` names an XML file whose root is `<mujoco>`.

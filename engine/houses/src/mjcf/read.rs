@@ -234,7 +234,7 @@ fn refuse<T>(
     })
 }
 
-/// What holds a root.
+/// The attachment of a root body.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RootAttachment {
     /// Nothing: it falls.

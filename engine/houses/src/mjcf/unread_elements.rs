@@ -7,7 +7,7 @@ use crate::warning_kind::WarningKind;
 
 /// Elements that hold bodies.
 const HOLDERS: [&str; 3] = ["worldbody", "body", "frame"];
-/// What `mjcf-rs` reads in them, and what the format's page says is left alone: cameras, lights and sites.
+/// Elements that `mjcf-rs` reads in them, and those that the format's page says are left alone: cameras, lights and sites.
 const KNOWN: [&str; 11] = [
     "attach",
     "body",

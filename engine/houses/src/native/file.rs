@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::gltf::MeshAccessors;
 
-/// What the field `format` holds.
+/// Value of the field `format`.
 pub const FORMAT: &str = "dwell-house";
 /// The version that is written.
 pub const VERSION: u32 = 3;
@@ -32,7 +32,7 @@ pub(super) struct NativeFile {
     pub(super) format: String,
     /// [`VERSION`].
     pub(super) version: u32,
-    /// Where each mesh stands in the geometry file, in the order of `MeshId`.
+    /// The accessors of each mesh in the geometry file, in the order of `MeshId`.
     pub(super) mesh_accessors: Vec<MeshAccessors>,
     /// For each texture its size; the images of the geometry file have the same order.
     pub(super) texture_sizes: Vec<[u32; 2]>,

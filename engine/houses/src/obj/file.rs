@@ -1,4 +1,4 @@
-//! What an OBJ and an MTL file hold, nothing interpreted.
+//! The content of an OBJ and an MTL file, nothing interpreted.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ pub struct ObjFile {
     pub normals: Vec<[f32; 3]>,
     /// Corners of all faces, one face after another; positions are in range, the others are in range or [`NONE`].
     pub corners: Vec<FaceCorner>,
-    /// Where each face ends in `corners`.
+    /// End of each face in `corners`.
     pub face_ends: Vec<u32>,
     /// Stretches of faces under the same `o`, `g` and `usemtl`; together they cover all faces in order.
     pub runs: Vec<FaceGroup>,

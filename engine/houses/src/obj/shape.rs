@@ -86,7 +86,7 @@ pub(crate) struct PartShape<'a> {
     pub(crate) obj: &'a ObjFile,
     /// The slot of each run that is taken, with the run.
     pub(crate) runs: Vec<(u16, &'a FaceGroup)>,
-    /// Whether corners without texture coordinates get some, in metres on the nearest axis plane, because a texture
+    /// True if corners without texture coordinates get some, in metres on the nearest axis plane, because a texture
     /// lies on them.
     pub(crate) box_mapping: bool,
 }

@@ -1,4 +1,4 @@
-//! What floors, walls and ceilings are covered with, by the words of the material's name.
+//! Coverings of floors, walls and ceilings, by the words of the material's name.
 
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;

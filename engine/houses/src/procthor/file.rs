@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
-/// What is read of a house. `null` counts as absent.
+/// The content that is read of a house. `null` counts as absent.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase")]
 pub(super) struct ProcThorHouse {
@@ -58,7 +58,7 @@ pub(super) struct WallFile {
     #[serde(deserialize_with = "nullable")]
     pub(super) polygon: Vec<Vector3>,
     pub(super) material: Value,
-    /// Whether there is no wall at all: rooms flow into each other.
+    /// True if there is no wall at all: rooms flow into each other.
     #[serde(deserialize_with = "nullable")]
     pub(super) empty: bool,
 }
@@ -104,7 +104,7 @@ pub(super) struct ObjectFile {
     pub(super) position: Option<Vector3>,
     #[serde(deserialize_with = "nullable")]
     pub(super) rotation: Vector3,
-    /// Whether it stays where it is.
+    /// True if it never moves.
     #[serde(deserialize_with = "nullable")]
     pub(super) kinematic: bool,
     #[serde(deserialize_with = "nullable")]

@@ -18,19 +18,19 @@ use crate::warning_kind::{UnmappedKind, WarningKind};
 
 /// Thickness of slabs, m; the file has none.
 const SLAB_M: f32 = 0.1;
-/// How deep frames of doors and windows are, m; the file's walls have no thickness.
+/// Depth of the frames of doors and windows, m; the file's walls have no thickness.
 const FRAME_M: f32 = 0.1;
 /// Height of rooms without walls, m.
 const CEILING_M: f32 = 2.5;
-/// How far from a wall is looked for the room on that side, m.
+/// Distance from a wall at which the room on that side is looked up, m.
 const BESIDE_M: f32 = 0.05;
 /// The smallest hole that holds a door or a window, m.
 const LEAST_M: f32 = 0.3;
 /// The widest casement, m.
 const CASEMENT_M: f32 = 0.8;
-/// How far a hole may reach beyond its wall, m: coordinates of the file are rounded.
+/// Largest overhang of a hole beyond its wall, m: coordinates of the file are rounded.
 const BEYOND_M: f32 = 0.05;
-/// How far window sills stand into the room, m.
+/// Depth of window sills into the room, m.
 const SILL_M: f32 = 0.02;
 
 /// A wall's face: it runs from `foot` along `along`, `height_m` high, and looks along `normal`.

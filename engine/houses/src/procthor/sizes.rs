@@ -1,4 +1,4 @@
-//! How large assets are: `asset-database.json`, as the package `procthor` ships it.
+//! Sizes of assets: `asset-database.json`, as the package `procthor` ships it.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -18,9 +18,9 @@ use crate::error::HousesError;
 use crate::import::substance_of;
 use crate::report::FileLocation;
 
-/// How far the ground of a robot alone reaches, m.
+/// Half of the edge of the ground under a robot without a house, m.
 const GROUND_M: f32 = 5.0;
-/// How thick it is, m.
+/// Thickness of the ground, m.
 const GROUND_DEPTH_M: f32 = 0.1;
 
 /// From a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).

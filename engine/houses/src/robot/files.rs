@@ -16,7 +16,7 @@ use crate::obj;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// How many folders above the file a package may begin.
+/// Largest number of folders from the file up to the package.
 const MOST_STEPS: usize = 3;
 
 /// The folder that bounds a robot's files.

@@ -11,7 +11,7 @@ use super::model::{LinkInertia, Robot, RobotJoint, RobotJointKind};
 /// By so much numbers of a few digits may break the inequality of moments.
 const ROUNDING: f64 = 1.01;
 
-/// Who is fixed to whom in a robot.
+/// The links of a robot that fixed joints connect.
 pub(super) struct FixedLinks<'a> {
     /// The fixed joints below each link. Shape (link,).
     below: Vec<Vec<&'a RobotJoint>>,

@@ -18,7 +18,7 @@ pub struct Robot {
     pub(crate) links: Vec<RobotLink>,
     /// One for each link but the root, in their order.
     pub(crate) joints: Vec<RobotJoint>,
-    /// Whether the file holds the base for good.
+    /// True if the file fixes the base.
     pub(crate) fixed_base: bool,
 }
 
@@ -49,13 +49,13 @@ pub(crate) struct LinkShape {
     pub(crate) solid: ShapeGeometry,
     /// sRGB and opacity.
     pub(crate) rgba: Option<[f32; 4]>,
-    /// What the file calls its material.
+    /// The name of its material in the file.
     pub(crate) material: String,
     /// The image of its material, for meshes with texture coordinates.
     pub(crate) image: Option<Arc<Texture>>,
 }
 
-/// What a shape is; cylinders and capsules stand along their Z.
+/// The geometry of a shape; cylinders and capsules stand along their Z.
 #[derive(Clone, Debug)]
 pub(crate) enum ShapeGeometry {
     Cuboid { half: Vec3 },
@@ -66,7 +66,7 @@ pub(crate) enum ShapeGeometry {
     Mesh { mesh: Arc<Mesh>, scale: Vec3 },
 }
 
-/// How a joint moves.
+/// The kind of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum RobotJointKind {
     Fixed,

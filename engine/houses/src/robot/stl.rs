@@ -10,7 +10,7 @@ const TRIANGLE: usize = 50;
 /// Reads an STL file.
 ///
 /// # Errors
-/// What is wrong with it.
+/// A message that says what is wrong with the file.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, String> {
     let count = bytes
         .get(80..HEADER)

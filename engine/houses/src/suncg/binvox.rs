@@ -15,7 +15,7 @@ pub struct VoxelGrid {
     pub translate: [f64; 3],
     /// Length of the grid's side, m.
     pub scale: f64,
-    /// Whether each voxel is solid, as the file orders them. Shape (dims product,).
+    /// True for each solid voxel, as the file orders them. Shape (dims product,).
     pub solid: Vec<bool>,
 }
 

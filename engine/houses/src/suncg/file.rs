@@ -140,7 +140,7 @@ pub struct NodeFile {
         skip_serializing_if = "Option::is_none"
     )]
     pub material_indices: Option<Vec<f64>>,
-    /// What the room is used for, as its designer typed it.
+    /// The uses of the room, as its designer typed them.
     #[serde(
         deserialize_with = "lenient_json::texts",
         skip_serializing_if = "Option::is_none"

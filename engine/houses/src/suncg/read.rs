@@ -43,7 +43,7 @@ pub struct SuncgFiles {
     pub sounds: SoundTable,
 }
 
-/// Where the parts of a house lie, relative to the root.
+/// Paths of the files of a house, relative to the root.
 pub(super) mod paths {
     use super::NodeFile;
 

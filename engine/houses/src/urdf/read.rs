@@ -18,8 +18,8 @@ use crate::robot::{
 use crate::warning_kind::WarningKind;
 use crate::xml;
 
-/// How fast a position motor that states nothing follows, 1/s: URDF names no gains, so they come from the effort: full
-/// effort at this share of a radian or metre, and damping for the velocity it may have.
+/// Position error at which a position motor that states no gains applies full effort, rad or m: URDF names no gains, so they come
+/// from the limits of effort and velocity.
 const FULL_EFFORT_AT: f32 = 0.02;
 
 /// Reads a URDF file.

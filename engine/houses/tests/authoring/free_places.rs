@@ -58,7 +58,7 @@ fn things_on_one_table_stand_beside_each_other_until_it_is_full() {
     );
 }
 
-/// What is turned takes its turned room, and what is told where to stand stands there.
+/// A turned object takes its turned footprint, and one with a given place stands there.
 #[test]
 fn a_place_that_is_told_is_kept() {
     let house = house();

@@ -10,7 +10,7 @@ fn cuboid(name: &str, size_m: [f32; 3], at: [f32; 3]) -> Value {
     json!({"add": {"what": {"box": {"size_m": size_m}}, "name": name, "place": {"at": at}}})
 }
 
-/// What is in a heap is in many things; each is told of 32 at most.
+/// An object in a heap is in many others; each is compared with 32 at most.
 #[test]
 fn each_thing_of_a_heap_is_compared_with_a_few() {
     let size = |k: usize| [0.6 - 0.002 * k as f32; 3];

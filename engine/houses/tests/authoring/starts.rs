@@ -1,4 +1,4 @@
-//! Where agents start.
+//! Start poses of agents.
 
 use super::{edited, refused};
 use dwell_houses::authoring::{FileAccess, HousePlan, build};

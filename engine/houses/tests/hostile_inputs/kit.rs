@@ -1,10 +1,10 @@
-//! What the cases are made with: folders, GLBs, PNGs, and how a case ends.
+//! Building blocks of the cases: folders, GLBs, PNGs, and the expected end of a case.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-/// How the reading of a hostile file ends.
+/// The expected end of reading a hostile file.
 pub(crate) enum Ends {
     /// In an error whose sentence holds all of these words.
     Fails(&'static [&'static str]),
@@ -18,7 +18,7 @@ pub(crate) struct Case {
     /// Writes the files into an empty folder and gives the HOUSE string.
     pub(crate) make: fn(&Path) -> PathBuf,
     pub(crate) ends: Ends,
-    /// Whether it is read up to the caps, which are large, instead of being refused at sight.
+    /// True if it is read up to the caps, which are large, instead of being refused at sight.
     pub(crate) heavy: bool,
 }
 

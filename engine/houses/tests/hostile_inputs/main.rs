@@ -36,7 +36,7 @@ const MOST_BYTES: u64 = 2 << 30;
 /// The same of one that is refused at sight.
 const MOST_PLAIN_BYTES: u64 = 192 << 20;
 
-/// What no sentence says to who opens a house.
+/// Words that no sentence for users holds.
 const JARGON: [&str; 14] = [
     "Some(", "None,", "usize", "u8 ", "u16", "u32", "u64", "i32", "i64", "f32", "f64", "Vec3",
     "struct ", "islice",
@@ -156,7 +156,7 @@ fn mjcf_files() {
     check(robots::MJCF_CASES);
 }
 
-/// What only the matrix of kinds and formats has.
+/// The inputs that only the matrix of kinds and formats has.
 #[cfg(unix)]
 #[test]
 fn every_kind_of_input_in_every_format() {

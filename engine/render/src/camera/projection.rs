@@ -1,11 +1,11 @@
-//! Where pixels look: the kinds of cameras, and what is allowed of each.
+//! Projections: the kinds of cameras, and the parameters that each allows.
 
 use super::fault;
 use super::{fisheye, lens};
 use crate::error::RenderError;
 use serde::{Deserialize, Serialize};
 
-/// Where pixels look.
+/// The projection from camera space to pixels.
 ///
 /// Cameras with one axis (pinhole, with or without a lens, and orthographic) count depth along it; the others count range, the
 /// distance from the camera.
@@ -94,9 +94,9 @@ pub enum Projection {
     Cubemap,
     /// All rays are parallel; the image is centred on the camera.
     Orthographic {
-        /// What the image spans from left to right, m.
+        /// Width of the image, from left to right, m.
         width_m: f32,
-        /// What the image spans from top to bottom, m.
+        /// Height of the image, from top to bottom, m.
         height_m: f32,
     },
 }

@@ -11,7 +11,7 @@ use glam::{Vec2, Vec3};
 pub(super) const COLUMNS: usize = 8;
 /// Pixels down a packet.
 pub(super) const ROWS: usize = 4;
-/// What cameras see.
+/// The surfaces that cameras see.
 pub(crate) const SEEN: RayMask = RayMask::EYE.or(RayMask::BODY);
 /// Rays of a packet.
 pub(super) const LANES: usize = COLUMNS * ROWS;
@@ -53,7 +53,7 @@ struct ScalarRays {
     hits: [Option<Hit>; LANES],
 }
 
-/// What one pixel sees.
+/// The closest hit of one pixel's ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PrimaryHit {
     pub(super) point: Vec3,
@@ -232,7 +232,7 @@ impl CameraRays {
         (self.view.camera.near_m(), self.view.camera.far_m())
     }
 
-    /// What the pixels from (`left`, `top`) on see; those beyond `width` and `height` see nothing.
+    /// Returns what the pixels from (`left`, `top`) on see; those beyond `width` and `height` see nothing.
     #[inline]
     pub(super) fn cast(
         &self,

@@ -32,7 +32,7 @@ pub(super) fn bits(mut set: u64) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Where the pixels of a packet find their colour on an image. Shapes (lane,) and (corner, lane).
+/// The texels and weights from which the pixels of a packet take their colour. Shapes (lane,) and (corner, lane).
 #[repr(C, align(64))]
 #[derive(Debug, PartialEq)]
 struct TexelLookups {

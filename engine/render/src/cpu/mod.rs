@@ -30,8 +30,8 @@ use tile::ImageTile;
 const BAND_ROWS: usize = 8;
 /// Renders views of one house, in any of its worlds.
 ///
-/// What pictures show: RGB is what a camera sees, glass and other materials that let light through included. Depth,
-/// instance and semantic tell of the nearest surface, **glass itself** where there is glass; the holes of a texture with
+/// Pictures show the following: RGB is what a camera sees, glass and other materials that let light through included. Depth,
+/// instance and semantic refer to the nearest surface, **glass itself** where there is glass; the holes of a texture with
 /// alpha count as surface, too. Surfaces are seen from both sides. Of surfaces that coincide the one with the lower id is
 /// seen.
 ///
@@ -78,11 +78,11 @@ pub struct RenderJob<'a> {
     pub state: &'a State,
     /// The view.
     pub view: View,
-    /// Where things were before, for flow; without it nothing has moved.
+    /// The previous frame, for flow; without it nothing has moved.
     pub before: Option<PreviousFrame<'a>>,
     /// The first row and the one behind the last, of those that are wanted; `None`: all.
     pub rows: Option<(u32, u32)>,
-    /// Where its images go: of the rows that are wanted.
+    /// The buffers for its images: of the rows that are wanted.
     pub frame: FrameMut<'a>,
 }
 

@@ -1,4 +1,4 @@
-//! Where points of the image were before.
+//! Optical flow: previous positions of the points of an image.
 
 use super::CpuRenderer;
 use super::camera_rays::PrimaryHit;

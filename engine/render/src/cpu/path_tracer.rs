@@ -31,18 +31,18 @@ pub(super) const SAMPLES: usize = EDGE * EDGE;
 const GATHERED: usize = 2;
 /// No gathered ray brings more, in units of display white: few that meet a patch of sun would show as single bright pixels.
 const MOST_GATHERED: f32 = 3.0;
-/// What smooth glass, varnish or ceramic reflects of light from straight ahead.
+/// Reflectance of smooth glass, varnish or ceramic at normal incidence.
 const STRAIGHT: f32 = 0.04;
 /// Rougher than this a surface that is no metal shows no reflection. This, and that polish falls evenly up to there, is ours.
 const DULL: f32 = 0.7;
-/// How far into the room places in a window lie, m: before its frame.
+/// Distance of the sample points of a window into the room, m: before its frame.
 const BEFORE_FRAME_M: f32 = 0.05;
 /// A room is looked up half of the way back from a surface at most: steps back a metre of way.
 const NEAR: f32 = 2.5;
 /// Tangent of half the angle under which the sun is seen: 0.533 degrees in the mean.
 const SUN_RADIUS: f32 = 0.004_65;
 
-/// What surfaces of one kind of ray may do.
+/// The remaining budget of bounces of one kind of ray.
 #[derive(Clone, Copy)]
 struct PathState {
     /// Surfaces that may still throw light on.
@@ -200,7 +200,7 @@ impl PathTracer<'_> {
         (shown, skin.opacity)
     }
 
-    /// What comes from where a ray is thrown to by a mirror.
+    /// Returns the radiance from the direction into which a mirror reflects the ray.
     fn reflected(
         &self,
         sight: &PrimaryHit,

@@ -15,13 +15,13 @@ use glam::Vec3;
 
 /// Most surfaces that a ray passes; the last one counts as opaque.
 pub(super) const LAYERS: usize = 8;
-/// What passes so little light shows only itself.
+/// Opacity from which on a surface shows only itself.
 pub(super) const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
 /// A ray that goes on starts so far behind the surface that it passed: a length and a part of the depth.
 pub(super) const GAP: (f32, f32) = (2e-4, 2e-6);
 /// Most mirrors that light meets; one more shows its colour.
 pub(super) const MIRRORS: u32 = 2;
-/// How far off a surface its shadow ray or reflection starts, m.
+/// Offset from a surface at which its shadow ray or reflection starts, m.
 pub(super) const OFF_SURFACE_M: f32 = 1e-3;
 /// A pixel whose ray passed a surface.
 #[derive(Clone, Copy)]
@@ -29,13 +29,13 @@ struct TransmittedPixel {
     lane: usize,
     /// Light so far.
     light: Vec3,
-    /// How much of what lies behind is seen.
+    /// Transmittance so far: the share of what lies behind that is seen.
     rest: f32,
-    /// Where to go on, m of depth.
+    /// Depth from which the ray goes on, m.
     from: f32,
 }
 
-/// What a surface is like at a point, before light.
+/// A surface's properties at a point, before light.
 pub(super) struct ShadedSurface<'a> {
     pub(super) look: &'a ShadingMaterial,
     /// Reflectance, linear.
@@ -92,15 +92,15 @@ const SHADOW_RAYS: usize = 2;
 #[derive(Clone, Copy)]
 pub(super) struct PendingShadows {
     lane: usize,
-    /// How much of what lies behind it hides.
+    /// The share of what lies behind it that it hides.
     opacity: f32,
-    /// What it sends to the camera.
+    /// The light that it sends to the camera.
     pub(super) incoming: IncidentLight<SHADOW_RAYS>,
-    /// Where its shadow rays end.
+    /// The end of its shadow rays.
     pub(super) off: Vec3,
     /// Normal of the flat triangle towards the viewer.
     pub(super) facing: Vec3,
-    /// Where a ray goes on behind it, m of depth.
+    /// Depth behind it from which a ray goes on, m.
     from: f32,
 }
 
@@ -115,10 +115,10 @@ impl PendingShadows {
     };
 }
 
-/// What a surface sends to the camera.
+/// The light that a surface sends to the camera.
 struct OutgoingLight {
     incoming: IncidentLight<SHADOW_RAYS>,
-    /// How much of what lies behind it hides.
+    /// The share of what lies behind it that it hides.
     opacity: f32,
     off: Vec3,
     facing: Vec3,

@@ -1,4 +1,4 @@
-//! Whether light arrives.
+//! Shadow rays: occlusion of lights.
 
 use super::CpuRenderer;
 use super::camera_rays::{LANES, SEEN};
@@ -8,11 +8,11 @@ use dwell_scene::EntityId;
 use dwell_scene::bvh::{PacketHits, Ray, RayPacket, SceneBvh};
 use glam::Vec3;
 
-/// How far what gives shadow may be from what the sky and the sun shine on, m.
+/// Largest distance at which something casts a shadow of the sky or the sun, m.
 const SKY_RAY_M: f32 = 500.0;
 /// Most surfaces of glass that light passes; behind more it counts as shadow.
 const PANES: usize = 8;
-/// What lets through more than this counts as glass.
+/// Transmittance above which a material counts as glass.
 const GLASS: f32 = 0.5;
 
 impl CpuRenderer {

@@ -5,7 +5,7 @@ use std::pin::pin;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::task::{Context, Poll, Waker};
 
-/// What an adapter is made of.
+/// The type of an adapter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AdapterKind {
     /// A graphics card of its own.
@@ -37,7 +37,7 @@ impl AdapterKind {
 /// interfaces.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Adapter {
-    /// What it is made of.
+    /// Its type.
     pub kind: AdapterKind,
     /// `vulkan`, `metal`, `dx12` or `gl`.
     pub interface: String,
@@ -45,11 +45,11 @@ pub struct Adapter {
     pub name: String,
     /// The numbers of its maker and model, as the interface has them (those of PCI as a rule); 0 where it has none.
     pub ids: [u32; 2],
-    /// Where it is plugged in, such as `0000:01:00.0`; empty where the interface does not say.
+    /// Its address on the bus, such as `0000:01:00.0`; empty where the interface does not say.
     pub bus: String,
     /// The driver and its version.
     pub driver: String,
-    /// How many that are equal in all else the interface lists before it.
+    /// The number of adapters equal in all else that the interface lists before it.
     pub twin: usize,
 }
 
@@ -224,7 +224,7 @@ pub fn adapters() -> Vec<Adapter> {
     all.into_iter().map(|(adapter, _)| adapter).collect()
 }
 
-/// Where GL was used before a fork.
+/// The hint for GL that was used before a fork.
 const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
 
 /// Returns what a process is told that was forked from one that has opened an adapter.

@@ -22,7 +22,7 @@ const NOT_WANTED: u32 = u32::MAX;
 /// Edge of a tile, pixels.
 const TILE: u32 = 8;
 
-/// Where the images of one view lie among the words that come back.
+/// Offsets of one view's images among the words that are read back.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImageOffsets {
     /// Pixels of each image.
@@ -78,7 +78,7 @@ pub(super) struct LensRays {
     cameras: Vec<(Camera, u32)>,
     /// Directions per metre of depth in the camera's frame. Shape (ray,).
     pub(super) rays: Vec<[f32; 4]>,
-    /// Whether there are new ones.
+    /// True if there are new ones.
     pub(super) changed: bool,
 }
 
@@ -124,7 +124,7 @@ pub(super) struct GpuBatch {
     pub(super) rows: Vec<PackedRow>,
     pub(super) places: Vec<ImageOffsets>,
     pub(super) lenses: LensRays,
-    /// What the raster path draws.
+    /// The draw calls of the raster path.
     pub(super) drawing: DrawBatch,
     worlds: WorldRows,
     pub(super) pixels: usize,

@@ -53,7 +53,7 @@ impl GrowableBuffer {
 #[derive(Debug)]
 struct StagingBuffer {
     buffer: Option<wgpu::Buffer>,
-    /// Whether it can be written: not while an adapter may read it.
+    /// True if it can be written: not while an adapter may read it.
     is_mapped: Arc<AtomicBool>,
 }
 

@@ -49,7 +49,7 @@ pub(super) struct CullingView {
     pub(super) hidden: i32,
 }
 
-/// What can be seen from an eye.
+/// A query of what is visible from an eye.
 pub(super) struct VisibilityQuery<'a> {
     eye: &'a CullingView,
     shadows: &'a [OcclusionVolume],

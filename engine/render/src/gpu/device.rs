@@ -44,7 +44,7 @@ pub struct BatchLimits {
 }
 
 impl BatchLimits {
-    /// What adapters allow.
+    /// No limits but those of the adapters.
     pub const NONE: Self = Self {
         buffer_bytes: u64::MAX,
         groups: u32::MAX,
@@ -58,7 +58,7 @@ static OPEN: Mutex<DeviceRegistry> = Mutex::new(DeviceRegistry::NONE);
 
 /// Adapters in use by this process.
 struct DeviceRegistry {
-    /// What names meant.
+    /// The adapter that each requested name stands for.
     names: BTreeMap<Option<String>, Adapter>,
     gpus: BTreeMap<Adapter, Arc<Gpu>>,
 }

@@ -18,7 +18,7 @@ use std::ops::Range;
 /// Rows before the tables; `shaders/common.wgsl` and `skin.wgsl` read them by number.
 const HEADER_ROWS: usize = 8;
 
-/// Where the tables begin, and what never changes about a house.
+/// The buffers of a house's constant data, and their bind group.
 #[derive(Debug)]
 pub(super) struct HouseBuffers {
     pub(super) group: wgpu::BindGroup,

@@ -2,14 +2,14 @@
 
 use std::sync::OnceLock;
 
-/// What all kernels see: a house, and a batch of views.
+/// The bind group layouts of all kernels: a house, and a batch of views.
 #[derive(Debug)]
 pub(super) struct BindGroupLayouts {
     pub(super) house: wgpu::BindGroupLayout,
     pub(super) batch: wgpu::BindGroupLayout,
     /// The rows of a batch alone, for drawing.
     pub(super) rows: wgpu::BindGroupLayout,
-    /// What was drawn.
+    /// The drawn triangle of each pixel.
     pub(super) atlas: wgpu::BindGroupLayout,
     pipeline: wgpu::PipelineLayout,
     settle: wgpu::PipelineLayout,
@@ -81,7 +81,7 @@ impl BindGroupLayouts {
 #[derive(Debug)]
 pub(super) struct Kernels {
     stack: usize,
-    /// What each pixel sees first, by rays.
+    /// The closest hit of each pixel, by rays.
     pub(super) trace: wgpu::ComputePipeline,
     /// All images but colour.
     pub(super) describe: wgpu::ComputePipeline,

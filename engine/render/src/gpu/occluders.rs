@@ -12,7 +12,7 @@ const LEAST_PIECE_M2: f32 = 0.02;
 const LEAST_M2: f32 = 0.4;
 /// Most corners of a piece.
 const MOST_CORNERS: usize = 8;
-/// How far corners of a piece may lie off its plane, m.
+/// Largest distance of a piece's corners from its plane, m.
 const FLAT_M: f32 = 1e-5;
 
 /// A flat convex piece of something that never moves.
@@ -27,7 +27,7 @@ pub(super) struct Occluder {
     pub(super) bounds: Aabb,
 }
 
-/// What an occluder hides from one place: all that lies inside of its planes.
+/// The volume that an occluder hides from one place: all that lies inside of its planes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OcclusionVolume {
     planes: [Vec4; MOST_CORNERS + 1],

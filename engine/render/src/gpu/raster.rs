@@ -12,7 +12,7 @@ use dwell_scene::rays::BODY_PIECES;
 use glam::{Affine3A, DAffine3, DVec3, DVec4, Vec3};
 use std::ops::Range;
 
-/// What pixels note of the nearest triangle: see `shaders/raster.wgsl`.
+/// Format in which pixels store the nearest triangle: see `shaders/raster.wgsl`.
 const NOTED: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 /// Vertices of a block of four triangles.
@@ -22,13 +22,13 @@ const PIECE_BLOCKS: u32 = 8;
 /// Rows of a record.
 const RECORD_ROWS: usize = 5;
 
-/// What the raster path needs of a house beside the buffers.
+/// The data of a house that the raster path needs beside the buffers.
 #[derive(Debug)]
 pub(super) struct RasterScene {
     pub(super) culler: Culler,
     /// The blocks of each part that moves, then of each piece of an agent's body. Shape (mesh,).
     pub(super) meshes: Vec<Range<u32>>,
-    /// Whether to leave out what cannot be seen; tests compare.
+    /// True to leave out what cannot be seen; tests compare.
     pub(super) culls: bool,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct AtlasTile {
     pieces: Range<u32>,
 }
 
-/// What is drawn for a batch. Its memory is used again.
+/// The drawing of a batch. Its memory is used again.
 #[derive(Debug, Default)]
 pub(super) struct DrawBatch {
     pub(super) sheets: Vec<AtlasTile>,
@@ -57,7 +57,7 @@ pub(super) struct DrawBatch {
     lists: Vec<DrawList>,
 }
 
-/// What one picture draws: as in [`DrawBatch`], records counted from its own first.
+/// The drawing of one picture: as in [`DrawBatch`], records counted from its own first.
 #[derive(Debug, Default)]
 struct DrawList {
     records: Vec<PackedRow>,

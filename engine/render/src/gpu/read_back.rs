@@ -1,4 +1,4 @@
-//! How quickly pictures can come back: a bound on views a second, whoever renders them.
+//! Read-back rate of pictures: a bound on views a second for any renderer on the adapter.
 
 use super::device::Gpu;
 use crate::error::RenderError;

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, mpsc};
 
 /// Renders views of one house, in any of its worlds, by a graphics adapter.
 ///
-/// What pictures show is what [`CpuRenderer`] shows, within a bound: where a pixel and its eight neighbours show one thing
+/// Pictures agree with those of [`CpuRenderer`] within a bound: where a pixel and its eight neighbours show one thing
 /// without a jump of depth, ids are equal and depths differ by less than a millimetre.
 #[derive(Debug)]
 pub struct GpuRenderer {
@@ -57,7 +57,7 @@ struct SubmittedPart {
     mapped: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
 }
 
-/// Where one view's images lie, and where they go.
+/// One view's images in the read-back memory, and their destination.
 struct ReadBack<'a, 'b> {
     places: ImageOffsets,
     frame: &'a mut FrameMut<'b>,

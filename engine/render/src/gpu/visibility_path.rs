@@ -13,7 +13,7 @@ use glam::Vec3;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// How an adapter finds what each pixel sees first. All images are made from that in one way.
+/// The method by which an adapter finds what each pixel sees first. All images are made from that in one way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum VisibilityPath {
     /// A kernel walks the trees of `cpu`, ray by ray.

@@ -1,4 +1,4 @@
-//! How bright a camera makes its pictures.
+//! Exposure of cameras.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;

@@ -1,4 +1,4 @@
-//! What real cameras and depth sensors do to pictures. One file each, one line in the list.
+//! Laws of real cameras and depth sensors. One file each, one line in the list.
 //!
 //! A law at its default is not installed, so that no bit changes. A law acts on the cameras of all agents, or of the agent whose
 //! number is its target; on the rays (lenses, shutters) or on the finished picture, in the order in which laws were installed.
@@ -33,7 +33,7 @@ struct RenderLaw {
     acts: RenderStage,
 }
 
-/// Where a law acts.
+/// The stage of rendering in which a law acts.
 enum RenderStage {
     /// On where pixels look.
     Lens(fn(LawValues<'_>, Camera) -> Camera),
@@ -89,7 +89,7 @@ impl LawValues<'_> {
     }
 }
 
-/// What a law of depth knows beside the depths.
+/// The inputs of a law of depth beside the depths.
 struct DepthContext<'a> {
     camera: &'a Camera,
     /// Shape (height, width, 3); empty unless the law asked for normals.
@@ -106,9 +106,9 @@ impl DepthContext<'_> {
 /// When the rows of a picture are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shutter {
-    /// How much later each row is taken than the one above, s; the last one is taken at the picture's time.
+    /// Delay of each row after the one above, s; the last one is taken at the picture's time.
     pub line_s: f32,
-    /// How long light is gathered for each row before it is taken, s.
+    /// Exposure time of each row, s.
     pub exposure_s: f32,
 }
 
@@ -203,7 +203,7 @@ impl<'a> Optics<'a> {
         self.laws.iter().any(|(_, acts, _)| by_normals(acts))
     }
 
-    /// What the sensor reads where the depths are `image`, m; 0 to the camera's far end.
+    /// Applies the sensor's laws to the depths `image`, m; 0 to the camera's far end.
     ///
     /// `camera`: as it is. `normals`: as [`crate::FrameMut::normals`], if [`Self::needs_normals`].
     ///
@@ -236,7 +236,7 @@ impl<'a> Optics<'a> {
         }
     }
 
-    /// What the sensor reads where colours are `image`, sRGB bytes. Shape (height, width, 3).
+    /// Applies the sensor's laws to the colours `image`, sRGB bytes. Shape (height, width, 3).
     ///
     /// # Determinism
     /// Equal keys, equal bits.

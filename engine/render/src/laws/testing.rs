@@ -1,4 +1,4 @@
-//! What tests of laws share.
+//! Helpers for tests of laws.
 
 use super::Optics;
 use crate::camera::Camera;

@@ -1,4 +1,4 @@
-//! What the light of a world was made from, so that it is made anew only when some of that has changed.
+//! The inputs of a world's light, so that it is computed anew only when some of them have changed.
 
 use super::indirect::HouseLight;
 use dwell_scene::rays::RayScene;
@@ -9,7 +9,7 @@ use dwell_scene::{House, State};
 pub(crate) struct LightingInputs<'a> {
     pub(crate) house: &'a House,
     pub(crate) fixed: &'a HouseLight,
-    /// What stands in the way of light.
+    /// The geometry that blocks light.
     pub(crate) scene: &'a RayScene,
     /// Switches, places of lamps, and how far doors are open.
     pub(crate) state: &'a State,

@@ -3,12 +3,12 @@
 use super::indirect::luminance;
 use glam::Vec3;
 
-/// Where light comes from that a thing may stop.
+/// A source of light that a shadow ray may find occluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LightSource {
     /// From nowhere.
     None,
-    /// What the walls of a room throw back.
+    /// Light reflected by the walls of a room.
     Room,
     /// From all around under the open sky.
     Sky,
@@ -38,7 +38,7 @@ impl LightSample {
 /// Light on a point: of its `N` strongest sources apart, of which a ray each tells whether it arrives; the rest arrives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct IncidentLight<const N: usize> {
-    /// What arrives, in units of display white.
+    /// The light that arrives, in units of display white.
     pub(crate) light: Vec3,
     pub(crate) rays: [LightSample; N],
 }

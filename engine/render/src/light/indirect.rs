@@ -11,9 +11,9 @@ use std::f32::consts::PI;
 
 /// Luminance of the sky of a house that does not say, cd/m²: an overcast sky that gives about 8,000 lx in the open.
 const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
-/// What the ground before such a house throws back of it.
+/// Albedo of the ground before such a house.
 const GROUND: f32 = 0.2;
-/// What window panes let through.
+/// Transmittance of window panes.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
 /// Illuminance by the sun of a house that does not say, on a surface across its rays behind a pane, lx: a low sun behind
 /// thin cloud.
@@ -22,16 +22,16 @@ const SUN_LX: f32 = 2500.0;
 pub(super) const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
 /// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
 const RESIDUAL_LX: f32 = 15.0;
-/// What furniture leaves of the walls' reflectance.
+/// Factor by which furniture lowers the walls' reflectance.
 const FURNITURE: f32 = 0.85;
-/// What a closed door lets through: gaps and glass.
+/// Transmittance of a closed door: gaps and glass.
 const CLOSED_DOOR: f32 = 0.1;
-/// How far walls tint the light of their room: light of one colour meets things of other colours, too.
+/// Share of the walls' tint in the light of their room: light of one colour meets things of other colours, too.
 const TINT: f32 = 0.5;
 /// Rounds in which rooms exchange light.
 const ROUNDS: usize = 24;
 
-/// What never changes about a house's light.
+/// The constant part of a house's light.
 #[derive(Debug)]
 pub(crate) struct HouseLight {
     pub(crate) grid: RoomGrid,
@@ -41,7 +41,7 @@ pub(crate) struct HouseLight {
     pub(crate) sun: (Vec3, Vec3),
     /// By room.
     pub(crate) windows: Vec<WindowLight>,
-    /// Where the windows of each room start, and where the last end. Shape (room + 1,).
+    /// The first window of each room, and the end of the last room's. Shape (room + 1,).
     pub(super) window_starts: Vec<usize>,
     passages: Vec<LightPortal>,
     /// Shape (room,).

@@ -1,6 +1,6 @@
-//! What casts shadows: the lamps of one thing as one point.
+//! Shadow casters: the lamps of one thing as one point.
 //!
-//! A chandelier's bulbs or the quarters of a line hang so near to one another that one ray tells for all of them.
+//! A chandelier's bulbs or the quarters of a line hang so near to one another that one ray stands for all of them.
 
 use super::indirect::luminance;
 use super::lamps::PointLamp;
@@ -10,12 +10,12 @@ use glam::Vec3;
 /// Casts no shadows.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// How far below a lamp, or above a low one, places are looked for that its light reaches, m.
+/// Distance below a lamp, or above a low one, of the places that test whether its light gets out, m.
 const BELOW_M: f32 = 0.8;
 const ABOVE_M: f32 = 0.5;
 /// Lamps that hang higher than this over the floor are looked at from below, m.
 const LOW_M: f32 = 1.2;
-/// How far to the sides these places are, m.
+/// Horizontal distance of these places, m.
 const ASIDE_M: f32 = 0.6;
 
 /// Lamps of one thing in one room.
@@ -23,16 +23,16 @@ const ASIDE_M: f32 = 0.6;
 pub(crate) struct LampCluster {
     /// The middle of its lamps by their light.
     pub(crate) center: Vec3,
-    /// Where its lamps start among all, and how many there are.
+    /// Index of its first lamp among all, and their number.
     pub(super) lamps: (usize, usize),
     /// The thing; it casts no shadow of this light.
     pub(crate) entity: i32,
 }
 
-/// Tells each lamp its caster. `lamps`: those of one thing in one room side by side. `passes`: whether light comes from one point
+/// Assigns each lamp its caster. `lamps`: those of one thing in one room side by side. `passes`: whether light comes from one point
 /// to another past a thing.
 ///
-/// What light cannot leave, such as a lamp above the ceiling that it shall light, casts no shadows: then its light passes all.
+/// Lamps whose light cannot leave, such as one above the ceiling that it should light, cast no shadows: their light passes all.
 pub(crate) fn cluster_lamps(
     house: &House,
     lamps: &mut [PointLamp],

@@ -28,17 +28,17 @@ use std::f32::consts::PI;
 const PENUMBRA_M: f32 = 0.03;
 /// Points along an edge of a window at which the sun is looked for.
 const SUN_POINTS: u32 = 4;
-/// How far before the middle of a window that is done, m: beyond the wall that it stands in.
+/// Distance of those points from the middle of the window, m: beyond the wall that it stands in.
 const BEFORE_PANE_M: f32 = 0.25;
-/// How far from a surface its room is looked for, m: off the skin of the wall that it belongs to, and towards the viewer,
+/// Distances from a surface at which its room is looked up, m: off the skin of the wall that it belongs to, and towards the viewer,
 /// who sees it from its room.
 const OFF_SURFACE_M: [f32; 2] = [0.1, 0.2];
 /// Radius of a bulb in its shade, m.
 const BULB_M: f32 = 0.05;
-/// What white shows in the open, in units of display white: the open has an exposure of its own.
+/// Pixel value of white in the open, in units of display white: the open has an exposure of its own.
 const OPEN_AIR: f32 = 1.3;
 
-/// What a plain sky shows on a lit picture, against a flat one: tone mapping darkens it again.
+/// Luminance of a plain sky on a lit picture, relative to a flat one: tone mapping darkens it again.
 const LIT_SKY: f32 = 2.5;
 
 /// All light of a house in one state.
@@ -46,18 +46,18 @@ const LIT_SKY: f32 = 2.5;
 pub(crate) struct Lighting {
     /// By room; those outside come first.
     lamps: Vec<PointLamp>,
-    /// Where the lamps of each room start, those outside first, and where the last end. Shape (room + 2,).
+    /// The first lamp of each room, those outside first, and the end of the last. Shape (room + 2,).
     lamp_starts: Vec<usize>,
-    /// What casts shadows.
+    /// The shadow casters.
     casters: Vec<LampCluster>,
     /// Shape (room,).
     rooms: Vec<RoomLight>,
     flux_lm: Vec<Vec3>,
-    /// How much of each window the sun reaches. Shape (window,), or empty.
+    /// The sunlit share of each window. Shape (window,), or empty.
     sunlit: Vec<f32>,
-    /// What all of this was made from.
+    /// The inputs of all of this.
     cache_key: LightingCacheKey,
-    /// What the light of rooms was made from, of this time and the last.
+    /// The inputs of the light of rooms, of this time and the last.
     room_inputs: [Vec<u32>; 2],
 }
 
@@ -278,13 +278,13 @@ impl Lighting {
     }
 }
 
-/// Where light meets a surface.
+/// A point of a surface at which light is evaluated.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadingPoint {
     pub(crate) point: Vec3,
     /// Unit length, towards the viewer; interpolated between corners.
     pub(crate) normal: Vec3,
-    /// Where the point's room is looked up, see [`room_lookup_point`].
+    /// The point at which its room is looked up, see [`room_lookup_point`].
     pub(crate) room_lookup: Vec3,
     /// Whose surface it is.
     pub(crate) entity: i32,

@@ -4,7 +4,7 @@ use super::room_grid::RoomGrid;
 use dwell_scene::{Aabb, House, ObjectId};
 use glam::Vec3;
 
-/// How far from either face of an opening its rooms are looked for, m.
+/// Distance from either face of an opening at which its rooms are looked up, m.
 const STEP_M: f32 = 0.35;
 
 /// A window between a room and the open air.
@@ -36,7 +36,7 @@ pub(crate) struct LightPortal {
     pub(crate) rooms: [usize; 2],
     /// m².
     pub(crate) area_m2: f32,
-    /// What closes it.
+    /// The door that closes it.
     pub(crate) door: ObjectId,
 }
 

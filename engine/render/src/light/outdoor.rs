@@ -5,7 +5,7 @@ use dwell_scene::{Sky, SkyDome, math};
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// What the ground outside throws back: grey-brown, of the usual albedo of 0.2 (B. Y. H. Liu, R. C. Jordan, Solar Energy 7 (1963)).
+/// Albedo of the ground outside: grey-brown, the usual 0.2 (B. Y. H. Liu, R. C. Jordan, Solar Energy 7 (1963)).
 const GROUND: Vec3 = Vec3::new(0.2, 0.2, 0.165);
 /// Steps of the sum over the sky: of elevation and of azimuth.
 const STEPS: [u32; 2] = [16, 32];
@@ -20,7 +20,7 @@ pub(crate) struct OutdoorLight {
     pub(crate) sun_lx: Vec3,
     /// Luminance of the sky as spherical harmonics, cd/m². Shape (9,).
     pub(super) harmonics: [Vec3; 9],
-    /// What the ground sends out, lm/m².
+    /// Radiant exitance of the ground, lm/m².
     pub(super) ground_lx: Vec3,
     /// Display white per lx out there.
     pub(super) per_lx: f32,

@@ -9,7 +9,7 @@ const CELL_M: f32 = 0.1;
 const MOST_CELLS: f32 = 1e6;
 /// Most cells along an edge.
 const MOST_CELLS_ALONG: f32 = 16_384.0;
-/// How far rooms reach beyond their floor, in cells: into the walls around them.
+/// Reach of rooms beyond their floor, in cells: into the walls around them.
 const REACH: usize = 2;
 /// A cell outside.
 const OUTSIDE: u16 = u16::MAX;

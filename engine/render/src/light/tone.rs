@@ -6,11 +6,11 @@ use glam::Vec3;
 
 /// Illuminance at which exposure is neither raised nor lowered, lx.
 const MIDDLE_LX: f32 = 150.0;
-/// How far eyes adapt: 1 would make every room equally bright.
+/// Degree of adaptation of the eyes: 1 would make every room equally bright.
 const ADAPTATION: f32 = 0.85;
-/// What white under the mean illuminance of the room shows, before tone mapping.
+/// Pixel value of white under the mean illuminance of the room, before tone mapping.
 const GAIN: f32 = 1.2;
-/// What becomes display white.
+/// The value that tone mapping maps to display white.
 const WHITE: f32 = 8.0;
 
 /// Units of display white per lx of a room with this mean illuminance.

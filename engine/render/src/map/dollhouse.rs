@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 
 /// Free space around the storey, as a share of the image's width.
 const BORDER: f32 = 0.02;
-/// How thick outer walls may be, m.
+/// Largest thickness of outer walls, m.
 const WALL_M: f32 = 0.4;
-/// How far away the eye is, in diagonals of the house: perspective shows, and sizes can still be compared.
+/// Distance of the eye, in diagonals of the house: perspective shows, and sizes can still be compared.
 const DIAGONALS: f32 = 2.2;
-/// How far below its floor things still belong to a storey: slabs and steps, m.
+/// Depth below its floor to which a storey extends, m: slabs and steps.
 const SLAB_M: f32 = 0.35;
 /// Edge of the pixels by which walls are found at the cut, m.
 const PLAN_PIXEL_M: f32 = 0.015;
@@ -29,9 +29,9 @@ const PLAN_PIXEL_M: f32 = 0.015;
 pub struct DollhouseConfig {
     /// Pixels across, 1 to 16,384; as many down as are needed.
     pub width: u32,
-    /// Where one looks, to the left of -Z, degrees.
+    /// Heading of the view, to the left of -Z, degrees.
     pub yaw_deg: f32,
-    /// How far one looks down, 20 to 90 degrees.
+    /// Pitch of the view downwards, 20 to 90 degrees.
     pub down_deg: f32,
     /// Height of the cut over the floor, m, 0.3 to 10.
     pub cut_m: f32,

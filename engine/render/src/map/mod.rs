@@ -17,16 +17,16 @@ use glam::{Vec2, Vec3};
 use section_view::SectionView;
 use std::f32::consts::FRAC_PI_2;
 
-/// How far below the lowest ceiling a storey is cut open, m.
+/// Distance of the cut below the lowest ceiling of a storey, m.
 const BELOW_CEILING_M: f32 = 0.6;
 /// Free space around the house, m.
 const BORDER_M: f32 = 0.5;
 /// A storey from above, cut open below its ceilings, -Z up in the image and +X to the right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoreyMap {
-    /// What to render; [`crate::Preset::Flat`], which is a field to set. Its depth counts from the cut.
+    /// The view to render; [`crate::Preset::Flat`], which is a field to set. Its depth counts from the cut.
     pub view: View,
-    /// Where the upper left corner of the image lies: (x, z), m.
+    /// The upper left corner of the image: (x, z), m.
     pub corner: Vec2,
     /// Pixels a metre, in both directions.
     pub pixels_per_m: f32,

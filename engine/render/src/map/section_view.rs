@@ -17,14 +17,14 @@ const PIXELS_PER_CHECK: usize = 1 << 14;
 /// Pixels of a strip of rows that is drawn at a time: what it takes to colour a large picture would fill the memory, and to give
 /// that back takes its time.
 const PIXELS_PER_STRIP: usize = 1 << 20;
-/// Where nothing is.
+/// Background colour, sRGB.
 const PAPER: [u8; 3] = [250, 249, 246];
-/// Where light comes from in the camera's frame: from above, the left, and the viewer.
+/// Direction to the light in the camera's frame: from above, the left, and the viewer.
 const LIGHT: Vec3 = Vec3::new(-0.35, 0.72, 0.6);
 /// Light that comes from everywhere, as a share of that on what faces the light.
 const AMBIENT: f32 = 0.5;
 
-/// What colours are made from.
+/// The channels from which colours are made.
 const BESIDE: ImageChannels = ImageChannels {
     depth: true,
     instance: true,
@@ -39,7 +39,7 @@ pub(super) struct SectionView<'a> {
     pub(super) view: View,
     /// Height of the cut, m.
     pub(super) level_y: f32,
-    /// What lies deeper belongs to another storey and is left out, m.
+    /// Height below which geometry belongs to another storey and is left out, m.
     pub(super) floor_y: f32,
     /// The map on which walls at the cut are looked up.
     pub(super) plan: &'a StoreyMap,

@@ -53,7 +53,7 @@ pub(crate) fn cameras() -> Vec<(&'static str, Camera)> {
     ]
 }
 
-/// What has moved, and where it was.
+/// The pair of renderers with the earlier poses of moved parts and the earlier positions of agents.
 type Moved = (Pair, Vec<(PartId, Pose)>, Vec<Vec3>);
 
 /// A furnished house in which parts and two agents have moved.

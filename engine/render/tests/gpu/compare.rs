@@ -1,6 +1,6 @@
-//! What agreement is: every image of a view, pixel by pixel.
+//! Agreement of the back ends: every image of a view, pixel by pixel.
 //!
-//! Where the 3 by 3 pixels around one show one id and no jump of depth of over 2 %, images agree at that pixel (DESIGN 4.2). At
+//! Images agree at a pixel where the 3 by 3 pixels around it show one id and no jump of depth of over 2 % (DESIGN 4.2). At
 //! every other pixel a picture may show what the other back end shows within one pixel: values must lie among those of the 3 by 3
 //! pixels, and what lies elsewhere is counted.
 
@@ -31,7 +31,7 @@ const BEYOND: [f64; 2] = [1e-3, 6e-3];
 /// Images whose values are counted where they lie beyond what is around.
 const IMAGES: [&str; 6] = ["depth", "instance", "normals", "flow", "albedo", "rgb"];
 
-/// What was compared.
+/// Counts of compared pixels.
 #[derive(Debug, Default)]
 pub(crate) struct Count {
     pub(crate) pixels: usize,

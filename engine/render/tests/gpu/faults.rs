@@ -8,7 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 type Fault = (&'static str, fn(&mut Frame, usize));
 
-/// What each does to one pixel: a little more than is allowed.
+/// Faults that each change one pixel: a little more than is allowed.
 const FAULTS: [Fault; 7] = [
     ("depth", |frame, k| frame.depth[k] += 2.5),
     ("instance", |frame, k| frame.instance[k] += 40),

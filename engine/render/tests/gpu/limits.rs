@@ -55,7 +55,7 @@ fn fisheye(f: f32) -> Camera {
     Camera::new(24, 24, projection).unwrap()
 }
 
-/// What of a batch is too large: its name, its views, the rows that each wants, whether each is of a world of its own, and the
+/// A batch that is too large: its name, its views, the rows that each wants, whether each is of a world of its own, and the
 /// limits.
 struct Case {
     what: &'static str,

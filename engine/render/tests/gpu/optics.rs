@@ -145,7 +145,7 @@ fn full_pictures_are_those_of_cpu() {
     assert!(found[1].0.rgb != found[0].0.rgb);
 }
 
-/// What was further away than numbers go has no flow; it used to be infinite.
+/// A surface that was further away than numbers go has no flow; it used to be infinite.
 #[test]
 fn what_was_endlessly_far_beside_the_picture_has_no_flow() {
     let Some(pair) = Pair::new(room(), VisibilityPath::Compute) else {

@@ -1,4 +1,4 @@
-//! What the table of actions says of each.
+//! Kinds of actions: the rows of the table of actions.
 
 use super::step_sizes::StepSizes;
 use crate::error::WorldError;
@@ -22,7 +22,7 @@ pub struct ActionKind {
     hand: Option<HandReader>,
 }
 
-/// Where the sentence about a kind stands.
+/// The source of the sentence about a kind.
 #[derive(Clone, Copy, Debug)]
 enum About {
     Here(&'static str),

@@ -27,7 +27,7 @@ use kind::hand as of_hand;
 /// Makes the table, and of its discrete actions an enum in the order of their numbers.
 macro_rules! actions {
     (discrete: [$($Name:ident = $kind:expr,)+] others: [$($other:expr,)+]) => {
-        /// What an agent does in one step.
+        /// A discrete action of an agent, one per step.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum DiscreteAction {
             $(#[doc = concat!("The action of [`ActionKind`] ", stringify!($kind), ".")] $Name,)+

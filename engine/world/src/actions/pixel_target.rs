@@ -1,4 +1,4 @@
-//! What a pixel shows, as the target of an action.
+//! The thing that a pixel shows, as the target of an action.
 
 use crate::error::WorldError;
 use crate::world::World;

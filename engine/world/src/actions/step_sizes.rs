@@ -1,10 +1,10 @@
-//! How far the movement actions go.
+//! Step sizes of the movement actions.
 
 use crate::error::WorldError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How far the movement actions go in one control step.
+/// Step sizes of the movement actions in one control step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct StepSizes {

@@ -1,4 +1,4 @@
-//! What an action is done to, as people and programs say it: a thing by name, id, pixel or ray.
+//! Targets of actions, as people and programs say them: a thing by name, id, pixel or ray.
 
 use crate::error::WorldError;
 use crate::world::World;
@@ -9,7 +9,7 @@ use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How many names an error lists, the nearest first.
+/// Number of names that an error lists, the nearest first.
 const NAMES: usize = 12;
 
 /// A thing by its name in the house, or by the sensors' id.
@@ -35,9 +35,9 @@ pub struct PixelCamera {
     /// The kind of camera with its numbers, in place of `fov_deg`.
     #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     pub projection: Option<Projection>,
-    /// Where the camera is against the eye: to the right, up, back, m.
+    /// Position of the camera relative to the eye: to the right, up, back, m.
     pub position_m: [f32; 3],
-    /// How it is turned there, degrees to the left.
+    /// Rotation of the camera relative to the eye: yaw, degrees to the left.
     pub yaw_deg: f32,
     /// Then up, degrees.
     pub pitch_deg: f32,
@@ -60,7 +60,7 @@ impl Default for PixelCamera {
     }
 }
 
-/// What an action is done to: an `object` (and one `part` of it), a `pixel` of a `camera`, or a ray from `origin` along
+/// The target of an action: an `object` (and one `part` of it), a `pixel` of a `camera`, or a ray from `origin` along
 /// `direction`; without any of them what the agent looks at.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
@@ -73,9 +73,9 @@ pub struct TargetRequest {
     pub pixel: Option<[f32; 2]>,
     /// The pixel's camera.
     pub camera: Option<PixelCamera>,
-    /// Where a ray starts, m; default the agent's eye.
+    /// Origin of a ray, m; default the agent's eye.
     pub origin: Option<[f32; 3]>,
-    /// Where a ray goes, in world space.
+    /// Direction of a ray, in world space.
     pub direction: Option<[f32; 3]>,
 }
 

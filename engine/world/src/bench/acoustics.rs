@@ -118,12 +118,12 @@ struct WalkBench {
     c80_off_db: Option<f64>,
 }
 
-/// What is walked in a room.
+/// The walks of a listener and a source in a room.
 #[derive(Clone, Copy)]
 struct WalkFigure {
-    /// Where the listener's way has its middle, m.
+    /// The middle of the listener's path, m.
     spot: Vec3,
-    /// Where that way goes to, and what is to its right; unit length, level.
+    /// Directions of that path and to the right of it; unit length, level.
     ahead: Vec3,
     right: Vec3,
 }
@@ -131,9 +131,9 @@ struct WalkFigure {
 impl WalkFigure {
     /// Turns of a figure that are tried.
     const TURNS: usize = 12;
-    /// How far the listener goes to either side of the middle, m.
+    /// Half of the length of the listener's path, m.
     const REACH_M: f32 = 0.6;
-    /// How far ways go on freely beyond their ends, m.
+    /// Free distance that paths need beyond their ends, m.
     const ROOM_M: f32 = 0.15;
 
     /// The first turn around `spot` for which nothing stands in the two ways, nor between the two who go them.

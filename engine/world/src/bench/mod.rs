@@ -37,7 +37,7 @@ const STAGES: [BenchStage; 5] = [
     ("env", env::run),
 ];
 
-/// What `dwell bench` can be told.
+/// Options of `dwell bench`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BenchOptions {
@@ -52,9 +52,9 @@ pub struct BenchOptions {
     pub resolutions: Vec<u32>,
     /// `"flat"` (default), `"lit"` or `"full"`.
     pub preset: Preset,
-    /// Who renders: `"cpu"` (default), `"gpu"` or `"gpu:NAME"`.
+    /// The rendering back end: `"cpu"` (default), `"gpu"` or `"gpu:NAME"`.
     pub backend: BackEnd,
-    /// How often all views are rendered in one batch, as if for so many worlds; 1 to 4,096, default 1.
+    /// Number of times that all views are rendered in one batch, as if for so many worlds; 1 to 4,096, default 1.
     pub batches: usize,
     /// Threads; `None`: what the machine allows.
     pub threads: Option<usize>,
@@ -69,7 +69,7 @@ pub struct BenchOptions {
     /// Walks of 10 s in which `acoustics` measures streams, over up to four rooms in turns; default 16. What one says of a decay is
     /// chance by a third.
     pub walks: usize,
-    /// What `physics` steps instead of the house's own objects; `None`: those.
+    /// Boxes that `physics` steps instead of the house's own objects; `None`: those.
     pub boxes: Option<BenchBoxes>,
     /// Worlds that `physics` steps together, to be compared with one; default 64.
     pub worlds: usize,

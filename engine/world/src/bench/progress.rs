@@ -1,4 +1,4 @@
-//! How far a bench is.
+//! Progress of a bench.
 
 use crate::error::WorldError;
 

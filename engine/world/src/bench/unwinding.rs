@@ -1,4 +1,4 @@
-//! What a stopped call leaves behind, dropped without its caller waiting.
+//! Dropping the values of a stopped call without making its caller wait.
 
 use std::ops::{Deref, DerefMut};
 

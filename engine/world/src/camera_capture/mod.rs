@@ -17,11 +17,11 @@ pub struct PictureRequest {
     pub camera: Camera,
     /// From where.
     pub place: CameraMount,
-    /// How much light there is.
+    /// The amount of light transport.
     pub preset: Preset,
 }
 
-/// Where a camera stands.
+/// The mount of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CameraMount {
     /// On an agent, against its eyes: it moves along, does not see the body that carries it, and obeys the laws of its cameras.
@@ -34,7 +34,7 @@ pub enum CameraMount {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimedView {
     pub(crate) view: View,
-    /// Where the camera was a control step ago.
+    /// The camera's pose a control step ago.
     pub(crate) was: Pose,
 }
 

@@ -16,15 +16,15 @@ const MOMENTS: usize = 16;
 /// When a picture's rows are taken, in steps of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RowTiming {
-    /// How much later each row is taken than the one above.
+    /// Delay of each row after the one above.
     delay: f32,
-    /// How long colours are gathered for each row.
+    /// Exposure time of each row's colours.
     exposure: f32,
 }
 
 /// Rows that are taken at one moment.
 struct PictureRows<'a> {
-    /// How long before the picture's time, in steps of the world.
+    /// Time before the picture's, in steps of the world.
     share: f32,
     /// The first row and the one behind the last; `None`: all.
     rows: Option<(u32, u32)>,
@@ -184,7 +184,7 @@ fn rolling_rows<'a>(
 struct PastStates {
     /// Even steps back from now; only now where nothing moves.
     copies: Vec<(State, RayScene)>,
-    /// How far back the last one lies, in steps of the world.
+    /// Age of the last one, in steps of the world.
     longest: f32,
 }
 

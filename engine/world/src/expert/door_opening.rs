@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 /// Orders to open after which a door that does not move counts as held up.
 const PATIENCE: u32 = 5;
-/// How little of its way a door moves between two orders when it is held up.
+/// Change of a door's openness between two orders below which it is held up.
 const STILL: f32 = 0.002;
 /// Room left between the swinging leaf and the body, m.
 const CLEARANCE_M: f32 = 0.1;
-/// How much nearer than the arm reaches it stands, m.
+/// Margin by which it stands nearer than its arm reaches, m.
 const WITHIN_REACH_M: f32 = 0.1;
 
 /// A door that is being opened.

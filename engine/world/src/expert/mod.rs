@@ -13,9 +13,9 @@ use dwell_scene::{AgentId, AgentState, Entity, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// How far ahead of itself it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
+/// Distance ahead at which it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
 const DOOR_AHEAD_M: f32 = 1.4;
-/// How far ahead on the way it aims, m.
+/// Look-ahead distance on the path, m.
 const AIM_AHEAD_M: f32 = 1.0;
 /// A door is open enough to pass from this share on.
 const PASSABLE: f32 = 0.8;
@@ -27,7 +27,7 @@ pub struct ShortestPathFollower {
     grid: Arc<NavGrid>,
     field: Arc<DistanceField>,
     stride: StepSizes,
-    /// How often it was blocked of late.
+    /// Number of recent blocked steps.
     blocked: u32,
     /// Steps of the manoeuvre that frees it, counted down.
     escape: u32,

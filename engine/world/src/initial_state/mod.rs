@@ -1,4 +1,4 @@
-//! How worlds of one house and one config begin.
+//! Initial states of the worlds of one house and one config.
 
 mod snapshot_base;
 

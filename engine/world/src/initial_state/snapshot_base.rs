@@ -1,4 +1,4 @@
-//! What snapshots of all worlds of one beginning have in common.
+//! The common part of the snapshots of all worlds with one initial state.
 
 use super::InitialWorld;
 use crate::config::WorldConfig;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// What a snapshot holds.
+/// The parts of a snapshot.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct SnapshotParts {
     pub(crate) state: Vec<u8>,

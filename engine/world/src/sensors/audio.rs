@@ -1,4 +1,4 @@
-//! What an agent's two ears hear.
+//! The binaural sensor: sound at an agent's two ears.
 
 use super::{
     Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind, SensorSetup, SensorSpec, settings,

@@ -30,9 +30,9 @@ pub struct CameraConfig {
     /// `fisheye`, `equirectangular`, `cubemap`, `orthographic`.
     #[schemars(with = "Option<serde_json::Map<String, serde_json::Value>>")]
     pub projection: Option<Projection>,
-    /// Where the camera is against the eyes: to the right, up, back, m; default none of them.
+    /// Position of the camera relative to the eyes: to the right, up, back, m; default none of them.
     pub position_m: [f32; 3],
-    /// How it is turned against the look of the eyes, degrees to the left.
+    /// Rotation of the camera relative to the eyes: yaw, degrees to the left.
     pub yaw_deg: f32,
     /// Then up, degrees.
     pub pitch_deg: f32,

@@ -1,4 +1,4 @@
-//! Where an agent faces, relative to where it faced at the start.
+//! The compass: an agent's heading relative to its start.
 
 use super::{
     AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,

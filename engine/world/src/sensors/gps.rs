@@ -1,4 +1,4 @@
-//! Where an agent is, relative to where it started.
+//! The position sensor: an agent's position relative to its start.
 
 use super::{
     AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,

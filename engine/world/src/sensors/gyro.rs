@@ -1,4 +1,4 @@
-//! What an agent's gyro reads.
+//! The gyro: an agent's angular velocity.
 
 use super::{
     AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,

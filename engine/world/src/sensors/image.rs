@@ -1,4 +1,4 @@
-//! What all sensors of pictures have in common.
+//! Image sensors: the parts common to all of them.
 
 use super::camera::CameraConfig;
 use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
@@ -13,7 +13,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;
 
-/// What tells one sensor of pictures from another.
+/// The description of an image sensor.
 #[derive(Debug)]
 pub(crate) struct ImageSensorKind {
     pub(super) name: &'static str,
@@ -34,7 +34,7 @@ pub(crate) struct ImageSensorKind {
 /// The sensor of pictures whose classes, where it gives any, are those of a table.
 pub(crate) type ImageOfClasses = fn(ClassSet) -> &'static ImageSensorKind;
 
-/// How people are shown an observation.
+/// The style in which an observation is shown to people.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PictureStyle {
@@ -54,7 +54,7 @@ pub enum PictureStyle {
     List,
 }
 
-/// What observations of pictures depend on beside the picture.
+/// The settings of image observations beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ImageSettings {
     /// Rows of those that list things, 1 to 4,096; default 64.
@@ -104,7 +104,7 @@ impl ImageSensorKind {
     }
 }
 
-/// What a sensor of pictures looks at when it writes.
+/// The inputs of an image sensor when it writes.
 #[derive(Clone, Copy)]
 pub(super) struct ImageContext<'a> {
     pub(super) world: &'a World,
@@ -200,7 +200,7 @@ pub enum ObservationData {
     Int32(Vec<i32>),
 }
 
-/// What a sensor of pictures gives for a camera anywhere in a world.
+/// The observation of an image sensor for a camera anywhere in a world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observation {
     /// Shape, type, unit and range.
@@ -217,7 +217,7 @@ impl World {
     /// [`WorldError::Render`] for a pose that is not finite.
     ///
     /// # Determinism
-    /// What laws draw depends on the episode, the step and the sensor's name alone.
+    /// The random draws of laws depend on the episode, the step and the sensor's name alone.
     pub fn look(
         &self,
         request: &PictureRequest,

@@ -55,7 +55,7 @@ pub enum Dtype {
     Text,
 }
 
-/// What a sensor's observation looks like.
+/// The specification of a sensor's observation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SensorSpec {
     /// The key in the observation.
@@ -86,7 +86,7 @@ impl SensorSpec {
     }
 }
 
-/// Where a sensor writes.
+/// The buffer that a sensor writes into.
 #[derive(Debug)]
 pub enum ObservationBuffer<'a> {
     /// For [`Dtype::Uint8`].
@@ -99,14 +99,14 @@ pub enum ObservationBuffer<'a> {
     Text(&'a mut String),
 }
 
-/// What a sensor may look at when it finishes.
+/// The inputs of a sensor when it finishes.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorContext<'a> {
     /// The world after the step.
     pub world: &'a World,
     /// The episode.
     pub episode: &'a Episode,
-    /// What the engines computed.
+    /// The results of the engines.
     pub results: &'a Results,
     /// The sensor's random stream in this step.
     pub key: RandomKey,
@@ -134,12 +134,12 @@ pub trait Sensor: Debug + Send + Sync {
     }
 }
 
-/// What a sensor is built from: the world's fixed numbers.
+/// The inputs from which a sensor is built: the world's fixed numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorSetup<'a> {
     /// The world's settings.
     pub config: &'a crate::config::WorldConfig,
-    /// Whom the environment is about: the agent of sensors that name none.
+    /// The agent that the environment is about: that of sensors that name none.
     pub agent: AgentId,
 }
 
@@ -227,7 +227,7 @@ pub struct SensorKind {
     pub build: SensorBuilder,
     /// The fields of its settings.
     pub settings: fn() -> Vec<FieldSchema>,
-    /// What [`World::look`] needs of a sensor of pictures.
+    /// The image sensor's part in [`World::look`].
     pub(crate) image: Option<image::ImageOfClasses>,
 }
 

@@ -1,4 +1,4 @@
-//! What is in view, and how much of it is hidden.
+//! The sensor of objects in view, with their hidden shares.
 
 use super::camera::CameraConfig;
 use super::image::{self, ImageContext, ImageSensorKind, ObservationShape, PictureStyle};

@@ -1,4 +1,4 @@
-//! Where a base believes to be, from its wheels alone.
+//! Wheel odometry: a base's pose estimated from its wheels alone.
 
 use super::{
     AgentSensor, AgentSettings, Dtype, ObservationBuffer, Sensor, SensorContext, SensorKind,

@@ -8,7 +8,7 @@ use dwell_scene::units::db_spl_from_pa;
 use dwell_scene::{AgentId, House, State};
 use glam::Vec3;
 
-/// What a wall or a closed door takes off when the loudness of a source in another room is estimated, dB.
+/// Attenuation by a wall or a closed door when the loudness of a source in another room is estimated, dB.
 const OTHER_ROOM_DB: f32 = 20.0;
 /// Sources estimated below this at the ear are not followed, dB SPL: quieter than a quiet room's own noise.
 const INAUDIBLE_DB: f32 = 15.0;

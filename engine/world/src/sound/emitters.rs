@@ -40,17 +40,17 @@ pub(super) fn read(
     Ok(())
 }
 
-/// What was told to an object's own sound.
+/// An override of an object's own sound.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EmitterOverride {
     pub(super) silent: bool,
     pub(super) level_db: Option<f32>,
 }
 
-/// What changes about them.
+/// The changing part of all emitters.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EmitterStates {
-    /// By number; who was told nothing is as the house says.
+    /// By number; emitters without an entry are as the house says.
     pub(super) told: BTreeMap<u64, EmitterOverride>,
     /// Shape (emitter,); empty before the first step.
     pub(super) fades: Vec<GainRamp>,

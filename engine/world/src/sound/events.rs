@@ -1,4 +1,4 @@
-//! What touches, swings and walks becomes sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
+//! Contacts, swinging joints and footsteps become sound here, and nowhere else: physics knows no sounds, the acoustics no physics.
 
 use super::WorldSound;
 use super::gait::{FootEvent, mass_kg};
@@ -37,7 +37,7 @@ const FIRST_FOOT_ID: u64 = 4 << 32;
 /// A floor's covering lies on boards or a slab: the least that is struck, kg/m². Walls are struck as they are.
 const FLOOR_KG_M2: f32 = 120.0;
 const WALL_KG_M2: f32 = 10.0;
-/// What a door's frame and a cupboard's body take of a slam, kg/m²: estimate.
+/// Mass per area of a door's frame and a cupboard's body at a slam, kg/m²: estimate.
 const FRAME_KG_M2: f32 = 40.0;
 /// Slower than this no door slams, rad/s or m/s.
 const SLAM_SPEED: f32 = 0.05;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How long a level takes to change, s.
+/// Duration of a change of level, s.
 const RAMP_S: f64 = 0.005;
 
 /// The amplitude at the beginning and at the end of the block that ended last.

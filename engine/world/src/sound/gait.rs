@@ -1,4 +1,4 @@
-//! When the feet of who walks come down.
+//! Footfalls of walking agents.
 
 use dwell_scene::math::wrap_angle;
 use dwell_scene::{AgentState, Locomotion};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 const WALK_RATIO: f32 = 0.39;
 /// A turn on the spot that takes a step, rad.
 const TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
-/// How fast feet move while one turns on the spot, m/s.
+/// Speed of the feet in a turn on the spot, m/s.
 const TURN_M_S: f32 = 0.4;
 /// Half the distance between the feet, m, of a body 1.7 m high.
 const SIDE_M: f32 = 0.08;
@@ -25,12 +25,12 @@ pub(super) fn mass_kg(height_m: f32) -> f32 {
     22.0 * height_m * height_m
 }
 
-/// Where in its gait an agent is.
+/// The phase of an agent's gait.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct GaitPhase {
     /// Of the step that is made, 0 to 1.
     phase: f32,
-    /// Whether the left foot comes down next.
+    /// True if the left foot comes down next.
     left: bool,
 }
 
@@ -43,21 +43,21 @@ impl Default for GaitPhase {
     }
 }
 
-/// Who stands begins with half a step.
+/// The phase while standing: walking begins with half a step.
 const STANDING: f32 = 0.5;
 
-/// What an agent's feet or wheels do in a control step.
+/// The events of an agent's feet or wheels in a control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FootEvent {
     /// A foot comes down.
     Step {
         /// From the beginning of the control step, s.
         late_s: f64,
-        /// How fast it walks, m/s.
+        /// Walking speed, m/s.
         speed_m_s: f32,
         /// The time from step to step, s.
         period_s: f32,
-        /// How far to the left the foot is, m.
+        /// Lateral offset of the foot, m, positive to the left.
         side_m: f32,
     },
     /// It rolls.

@@ -1,7 +1,7 @@
-//! What sounds in a world, and what its agents hear.
+//! Sound of a world: its sources, and the ears of its agents.
 //!
-//! - `emitters`: the sounds of the house's own objects; `playback`: what was told to play; `sound_state`: both for people.
-//! - `events`: the one file that turns what touches, swings and walks into sounds; `gait`: when feet come down.
+//! - `emitters`: the sounds of the house's own objects; `playback`: sounds played on request; `sound_state`: both for people.
+//! - `events`: the one file that turns contacts, swinging joints and footsteps into sounds; `gait`: when feet come down.
 //! - `ears`: a stream for each agent that listens; `fade`: levels without clicks; `snapshot`: all of it as bytes.
 
 mod ears;
@@ -58,7 +58,7 @@ pub(crate) struct WorldSound {
     ears: Vec<AgentEars>,
 }
 
-/// What sounds in a block.
+/// A source that sounds in a block.
 struct BlockSource {
     id: u64,
     /// m.

@@ -9,7 +9,7 @@ use dwell_scene::{AgentId, House, ObjectId, State};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What is played.
+/// The sound to play.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SoundName {
@@ -19,7 +19,7 @@ pub enum SoundName {
     File(String),
 }
 
-/// Where it is played.
+/// The place of a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SoundPlace {
@@ -35,20 +35,20 @@ pub enum SoundPlace {
 /// A sound that is to be played.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlayRequest {
-    /// What.
+    /// The sound.
     pub sound: SoundName,
-    /// Where.
+    /// Its place.
     pub place: SoundPlace,
     /// Level at 1 m in the free field, dB SPL (RMS over the whole sound); -100 to 200.
     pub level_db: f32,
-    /// Whether it begins again when it is over.
+    /// True if it begins again when it is over.
     pub loops: bool,
 }
 
 /// The middle of a mouth in the space of a head whose origin lies between the eyes, m.
 const MOUTH_IN_HEAD: Vec3 = Vec3::new(0.0, -0.08, -0.1);
 
-/// What is remembered of a sound that plays.
+/// The state of a sound that plays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PlaybackState {
     pub(super) id: u64,

@@ -1,4 +1,4 @@
-//! What sounds, for people.
+//! The sources of a world, for people.
 
 use super::playback::SoundName;
 use serde::Serialize;
@@ -6,17 +6,17 @@ use serde::Serialize;
 /// A source of sound, and what it does now.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoundState {
-    /// What [`World::stop_sound`](crate::World::stop_sound) and kin call it.
+    /// The handle that [`World::stop_sound`](crate::World::stop_sound) and kin take.
     pub handle: u64,
-    /// What sounds.
+    /// The sound.
     pub sound: SoundName,
     /// m.
     pub position: [f32; 3],
     /// Level at 1 m in the free field, dB SPL (RMS).
     pub level_db: f32,
-    /// Whether it begins again when it is over.
+    /// True if it begins again when it is over.
     pub loops: bool,
-    /// Whether it sounds.
+    /// True if it sounds.
     pub on: bool,
     /// The object whose own sound it is.
     pub object: Option<String>,

@@ -1,4 +1,4 @@
-//! Where the leaves of doors stand, which the grid of a walker has all open.
+//! Door leaves as they stand, since the grid of a walker takes all doors as open.
 
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavDoor, NavGrid};

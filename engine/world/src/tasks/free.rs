@@ -19,7 +19,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 const NAME: &str = "Free";
-/// What the sensors of instructions give.
+/// The text that the sensors of instructions give.
 const INSTRUCTION: &str = "Explore.";
 
 pub(super) const KIND: TaskKind = TaskKind {
@@ -37,12 +37,12 @@ pub(super) const KIND: TaskKind = TaskKind {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 struct FreeSettings {
-    /// Where an episode starts: `"house"` (default), where the house has the agent's start, if it says so; `"anywhere"`,
+    /// Start of an episode: `"house"` (default), where the house has the agent's start, if it says so; `"anywhere"`,
     /// another place each time.
     start: StartChoice,
 }
 
-/// Where an episode starts.
+/// The start of an episode.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StartChoice {
@@ -53,7 +53,7 @@ enum StartChoice {
     Anywhere,
 }
 
-/// How far the place where one can stand may be from the house's start, m.
+/// Largest distance of the walkable place from the house's start, m.
 const NEAR_M: f32 = 0.3;
 
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {

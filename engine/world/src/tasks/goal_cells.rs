@@ -1,4 +1,4 @@
-//! Where on a grid goals are looked for: the cells of its largest island, by place and by room.
+//! Candidate cells of goals: those of a grid's largest island, by place and by room.
 
 use dwell_scene::interrupt::PollEvery;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -83,7 +83,7 @@ mod tests {
     use dwell_scene::State;
     use dwell_scene::navigation::NavConfig;
 
-    /// What squares and sides give is what looking at all cells gives.
+    /// Squares and sides give the same cells as a scan of all cells.
     #[test]
     fn goals_are_found_without_looking_at_all_cells() {
         let house = dwell_houses::builtin::build("studio").unwrap();

@@ -143,7 +143,7 @@ impl ActiveInstruction {
 struct InstructionFollowing {
     settings: InstructionFollowingSettings,
     setup: TaskSetup,
-    /// What the house offers at its start; found once.
+    /// Instructions that are playable at the house's start; found once.
     offers: Vec<PlayableInstruction>,
     active: Option<ActiveInstruction>,
 }

@@ -32,12 +32,12 @@ pub trait Task: Debug + Send + Sync {
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 
-/// Whom a task is about.
+/// The agent and the steps of a task.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskSetup {
     /// The agent that acts.
     pub agent: AgentId,
-    /// How far its movement actions go.
+    /// Step sizes of its movement actions.
     pub stride: StepSizes,
 }
 
@@ -53,7 +53,7 @@ pub struct TaskKind {
     pub version: u32,
     /// One sentence about it.
     pub about: &'static str,
-    /// Whether something is asked, so that an episode can succeed.
+    /// True if the task has a goal, so that an episode can succeed.
     pub asks: bool,
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt::Write;
 use std::path::Path;
 
-/// How many references of one module to another are printed.
+/// Number of references of one module to another that are printed.
 const SHOWN: usize = 3;
 
 /// The top-level modules of a crate and where they use each other.

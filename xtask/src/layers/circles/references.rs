@@ -1,14 +1,14 @@
-//! What one file refers to within its crate: paths that begin with `crate`, `super` or `self`, in `use` lines, code and macros.
+//! References of one file within its crate: paths that begin with `crate`, `super` or `self`, in `use` lines, code and macros.
 
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use std::str::FromStr;
 
-/// What a file holds that matters for its modules.
+/// The content of a file that matters for its modules.
 #[derive(Debug, Default)]
 pub(super) struct FileReferences {
     /// Names from below the root, and the line.
     pub paths: Vec<(Vec<String>, usize)>,
-    /// What `use` lines bring into the file's own module.
+    /// The imports of `use` lines into the file's own module.
     pub imports: Vec<Import>,
     /// Items of the file's own module, macros included.
     pub items: Vec<String>,
@@ -41,7 +41,7 @@ pub(super) fn of_file(text: &str, module: &[String]) -> Result<FileReferences, (
     Ok(found)
 }
 
-/// Where tokens stand.
+/// The place of tokens.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Place {
     /// Directly in a module; `of_file` unless the module has braces of its own.

@@ -3,11 +3,11 @@
 use super::references::FileReferences;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What the names below the root stand for.
+/// The meanings of the names below the root.
 #[derive(Debug)]
 pub(super) struct RootNames {
     modules: BTreeSet<String>,
-    /// What the root re-exports under a name: names from below the root.
+    /// The names below the root that it re-exports, by the exported name.
     exports: BTreeMap<String, Vec<String>>,
     /// Items of the root, and names that it has from other crates.
     others: BTreeSet<String>,

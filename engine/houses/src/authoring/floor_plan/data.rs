@@ -3,7 +3,7 @@
 use dwell_scene::Daytime;
 use serde::{Deserialize, Serialize};
 
-/// What a door names instead of a room when it leads into the open.
+/// The name that a door gives instead of a room when it leads outside.
 pub const OUTSIDE: &str = "outside";
 
 /// A building.
@@ -68,21 +68,21 @@ impl Default for StoreyPlan {
 pub struct RoomPlan {
     /// Its name; no other room of the house has it.
     pub name: String,
-    /// What people call it: a row of `assets/rooms.csv`, or other plain words; `None`: what its name means.
+    /// The kind of room: a row of `assets/rooms.csv`, or other plain words; `None`: the meaning of its name.
     #[serde(default)]
     pub kind: Option<String>,
     /// The corners of its free floor, (x, z) in m, in either sense. Edges run along x or z.
     pub outline: Vec<[f32; 2]>,
-    /// Where its ceiling hangs, m above the floor; `None`: as high as the storey.
+    /// Height of the ceiling above the floor, m; `None`: that of the storey.
     #[serde(default)]
     pub height_m: Option<f32>,
-    /// What the floor is covered with; `None`: as usual for its kind.
+    /// Covering of the floor; `None`: as usual for its kind.
     #[serde(default)]
     pub floor: Option<SurfaceFinish>,
-    /// What the walls are covered with.
+    /// Covering of the walls.
     #[serde(default)]
     pub walls: Option<SurfaceFinish>,
-    /// What the ceiling is covered with.
+    /// Covering of the ceiling.
     #[serde(default)]
     pub ceiling: Option<SurfaceFinish>,
 }
@@ -98,7 +98,7 @@ pub struct SurfaceFinish {
     pub srgb: Option<[u8; 3]>,
 }
 
-/// What closes a door.
+/// The leaf of a door.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DoorLeaf {
@@ -140,13 +140,13 @@ pub struct DoorPlan {
     /// Height of the opening, m.
     #[serde(default = "door_height_m")]
     pub height_m: f32,
-    /// What closes it.
+    /// The leaf that closes it.
     #[serde(default)]
     pub leaf: DoorLeaf,
-    /// Where its hinges are.
+    /// The side of its hinges.
     #[serde(default)]
     pub hinge: HingeSide,
-    /// How far it is open at the start, 0 to 1.
+    /// Initial openness, 0 to 1.
     #[serde(default)]
     pub open: f32,
     /// Its name as an object; `None`: `door_1` and so on.

@@ -1,4 +1,4 @@
-//! What floors, walls and ceilings that are told are covered with.
+//! Finishes of floors, walls and ceilings that a plan states.
 
 use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;

@@ -1,4 +1,4 @@
-//! What is room, wall and air on a storey: the plan cut by all edges of rooms, in whole millimetres.
+//! A storey as a grid of room, wall and air: the plan cut by all edges of rooms, in whole millimetres.
 
 use std::collections::VecDeque;
 
@@ -24,7 +24,7 @@ pub(super) fn millimetres(field: &str, metres: f32) -> Result<Millimetres, House
     Ok((within(field, metres, [-1000.0, 1000.0], "m")? * 1000.0).round() as Millimetres)
 }
 
-/// What a cell is.
+/// The contents of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum PlanCell {
     Room(usize),

@@ -1,4 +1,4 @@
-//! Where doors and windows of a plan are.
+//! Positions of the doors and windows of a plan.
 
 use super::super::edit_errors::{fault, inside, unknown, within};
 use super::data::{CardinalDirection, DoorPlan, OUTSIDE, StoreyPlan, WindowPlan};
@@ -12,7 +12,7 @@ const REST_M: f32 = 0.05;
 /// Before this end of a wall a leaf has no room to open beyond a right angle, m.
 const BESIDE_M: f32 = 0.12;
 
-/// What fills a hole.
+/// The contents of a hole.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum OpeningFill<'a> {
     Door(&'a DoorPlan),
@@ -28,9 +28,9 @@ pub(super) struct PlanOpening<'a> {
     pub(super) filling: OpeningFill<'a>,
     /// The room into which it looks.
     pub(super) room: usize,
-    /// Whether that lies at larger coordinates across the wall.
+    /// True if that room lies at larger coordinates across the wall.
     pub(super) inward: bool,
-    /// Whether a leaf opens to a right angle only.
+    /// True if a leaf opens to a right angle only.
     pub(super) square: bool,
 }
 

@@ -7,9 +7,9 @@ use super::grid::{Millimetres, PlanCell, PlanGrid};
 pub(super) struct WallSegment {
     /// x from, z from, x to, z to.
     pub(super) rect: [Millimetres; 4],
-    /// Whether it runs along x; else along z.
+    /// True if it runs along x; else along z.
     pub(super) along_x: bool,
-    /// What lies at smaller and at larger z (of one along x) or x.
+    /// The cells at smaller and at larger z (of one along x) or x.
     pub(super) sides: [PlanCell; 2],
     /// The room that it belongs to.
     pub(super) room: usize,
@@ -34,7 +34,7 @@ impl WallSegment {
     }
 }
 
-/// How a cell of a wall is built.
+/// The run of wall that a cell belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum WallRun {
     /// In a wall along x, with what lies north and south of it.

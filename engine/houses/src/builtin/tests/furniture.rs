@@ -5,7 +5,7 @@ use dwell_furniture::testing::overlap::{ConvexPiece, deepest, depth, object_piec
 use dwell_scene::{Aabb, House, Mobility, ObjectId};
 use glam::Vec3;
 
-/// What counts as interpenetration, m.
+/// Largest penetration that is no fault, m.
 const TOLERANCE_M: f32 = 0.002;
 
 fn shell(house: &House) -> Vec<ConvexPiece> {
@@ -61,7 +61,7 @@ fn nothing_reaches_into_anything_else() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What does not stand firm touches something within 1.5 mm below, with its centre of mass above where it stands, or leans.
+/// Each object that does not stand firm touches something within 1.5 mm below, with its centre of mass above its support, or leans.
 #[test]
 fn nothing_floats() {
     const DROP_M: f32 = 0.0015;

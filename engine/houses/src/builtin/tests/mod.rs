@@ -1,4 +1,4 @@
-//! What must hold for every built-in house.
+//! Properties that hold for every built-in house.
 
 mod furniture;
 mod house;

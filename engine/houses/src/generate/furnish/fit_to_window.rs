@@ -10,7 +10,7 @@ use dwell_furniture::style::Style;
 use dwell_scene::random::RandomKey;
 use std::sync::Arc;
 
-/// What is made to measure.
+/// Kinds of furniture that are made to measure.
 #[cfg(test)]
 pub(crate) const SIZED: [&str; 2] = ["curtains", "radiator"];
 

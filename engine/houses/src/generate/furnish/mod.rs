@@ -31,14 +31,14 @@ const LOOKS: u64 = 3;
 /// Looks that are tried for one that shall be unlike others.
 const UNLIKE_LOOKS: u64 = 24;
 
-/// What stands in one room, heights above its floor.
+/// The furniture of one room, heights above its floor.
 pub(crate) struct RoomFurniture {
     pub(crate) pieces: Vec<PlacedFurniture>,
-    /// What a room of its kind has and this one has not.
+    /// Kinds that a room of its kind has and this one has not.
     pub(crate) missing: Vec<String>,
 }
 
-/// What rooms are furnished from.
+/// The inputs from which rooms are furnished.
 pub(crate) struct HouseFurnisher<'a> {
     pub(crate) plan: &'a GeneratedPlan,
     pub(crate) holes: &'a [Vec<WallHole>],

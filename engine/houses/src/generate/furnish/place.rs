@@ -14,7 +14,7 @@ use std::sync::Arc;
 const WALL_GAP_M: f32 = 0.003;
 /// Space left under a thing that stands on something: below what physics counts as contact, m.
 pub(crate) const REST_GAP_M: f32 = 0.0004;
-/// What hangs over furniture hangs on a wall that is no further behind it, m.
+/// Largest distance of the wall behind furniture for something to hang on it above that, m.
 const BEHIND_M: f32 = 0.3;
 /// Steps along walls, m.
 const ALONG_M: f32 = 0.12;

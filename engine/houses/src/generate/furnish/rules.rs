@@ -4,7 +4,7 @@ use crate::generate::rooms::GeneratedRoomKind;
 use serde::Deserialize;
 use std::sync::OnceLock;
 
-/// Where a thing goes.
+/// The kind of place of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum PlacementKind {
@@ -50,10 +50,10 @@ pub(crate) struct FurnishingRule {
     /// The least and the largest number.
     #[serde(default = "one")]
     pub(crate) count: [usize; 2],
-    /// How often homes have it; `furniture_density` scales it.
+    /// Probability that a home has it; `furniture_density` scales it.
     #[serde(default = "always")]
     pub(crate) chance: f32,
-    /// Whether a room is none of its kind without it.
+    /// True if a room is none of its kind without it.
     #[serde(default)]
     pub(crate) needed: bool,
     /// Free floor before it, m.
@@ -68,7 +68,7 @@ pub(crate) struct FurnishingRule {
     /// Rooms that have one already do not get another.
     #[serde(default)]
     pub(crate) once: bool,
-    /// Whether no two in a room show the same picture.
+    /// True if no two in a room show the same picture.
     #[serde(default)]
     pub(crate) differ: bool,
     /// Rooms with less floor do not get it, m².
@@ -103,15 +103,15 @@ pub(crate) struct SmallItemRule {
     /// Rooms; empty: any.
     #[serde(default)]
     pub(crate) rooms: Vec<GeneratedRoomKind>,
-    /// Whether it lies inside, else on top.
+    /// True if it lies inside, else on top.
     #[serde(default)]
     pub(crate) inside: bool,
     /// The least and the largest number on each.
     pub(crate) count: [usize; 2],
-    /// How far it is turned at most, either way, degrees.
+    /// Largest turn either way, degrees.
     #[serde(default = "round")]
     pub(crate) turn_deg: f32,
-    /// How often; `clutter` scales it.
+    /// Its probability; `clutter` scales it.
     pub(crate) chance: f32,
     /// Why.
     #[cfg_attr(not(test), expect(dead_code, reason = "for readers; tests ask for it"))]

@@ -13,9 +13,9 @@ use std::sync::Arc;
 
 /// Overlap that counts as none, m.
 const TOUCH_M: f32 = 0.0005;
-/// What is lower is stepped over, m.
+/// Height below which obstacles are stepped over, m.
 const STEP_M: f32 = 0.05;
-/// What begins higher is walked under, m.
+/// Height from which on obstacles are walked under, m.
 const HEAD_M: f32 = 1.9;
 /// Edge of a cell of the walkable grid, m.
 const CELL_M: f32 = 0.1;
@@ -25,9 +25,9 @@ const DOOR_FRONT_M: f32 = 0.7;
 /// A straight stretch of wall as seen from its room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct WallSpan {
-    /// Whether it runs along x.
+    /// True if it runs along x.
     pub(crate) along_x: bool,
-    /// Where its face stands, m.
+    /// Coordinate of its face across the wall, m.
     pub(crate) face_m: f32,
     pub(crate) from_m: f32,
     pub(crate) to_m: f32,
@@ -69,9 +69,9 @@ pub(crate) struct PlacedFurniture {
     pub(crate) reach: Aabb,
     /// Floor that must stay free for its use.
     pub(crate) clear: Vec<ZoneXz>,
-    /// What it belongs to; the two may share free floor.
+    /// The piece that it belongs to; the two may share free floor.
     pub(crate) anchor: Option<usize>,
-    /// Whether it hangs or stands before a window.
+    /// True if it hangs or stands before a window.
     at_window: bool,
 }
 
@@ -170,7 +170,7 @@ struct ClearanceGrid {
     radius_m: f32,
     /// Cells before the doors.
     doors: Vec<usize>,
-    /// Whether some door has none.
+    /// True if some door has no such cell.
     shut: bool,
 }
 

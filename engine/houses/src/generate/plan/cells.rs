@@ -5,7 +5,7 @@ use super::{GeneratedRoom, GridRect, GridSteps};
 /// A straight stretch between the same two rooms (or a room and the outside).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RoomBoundary {
-    /// Whether it runs along x (west to east); else along z.
+    /// True if it runs along x (west to east); else along z.
     pub(crate) along_x: bool,
     /// Its place across: z of one along x, x of one along z.
     pub(crate) at: GridSteps,

@@ -41,7 +41,7 @@ pub(crate) struct GeneratedRoom {
     pub(crate) areas: Vec<GridRect>,
 }
 
-/// What joins two rooms.
+/// The kind of connection of two rooms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ConnectionKind {
     /// A door.

@@ -12,7 +12,7 @@ pub(super) const STAIRS_DEPTH: GridSteps = 66;
 /// A doorway with what it needs on both sides.
 const DOORWAY: GridSteps = 25;
 
-/// What all storeys of a house share: the strips' depths and the corridor.
+/// The frame of all storeys of a house: the strips' depths and the corridor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct StoreyFrame {
     /// Depth of the strips north and south of the corridor; 0: none.
@@ -20,7 +20,7 @@ pub(super) struct StoreyFrame {
     pub(super) corridor: GridSteps,
     /// From west to east.
     pub(super) width: GridSteps,
-    /// Whether stairs stand at the west end of the northern strip.
+    /// True if stairs stand at the west end of the northern strip.
     pub(super) stairs: bool,
 }
 

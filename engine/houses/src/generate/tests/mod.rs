@@ -1,4 +1,4 @@
-//! What must hold for every generated house.
+//! Properties that hold for every generated house.
 
 mod building;
 mod specs;

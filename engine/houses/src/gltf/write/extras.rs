@@ -1,4 +1,4 @@
-//! What nodes mean: `extras.dwell`, in our names and SI units.
+//! Meanings of nodes: `extras.dwell`, in our names and SI units.
 
 use dwell_scene::{Articulation, HouseData, Id, Object, ObjectId, Part, PartId, Room, Structure};
 use serde_json::{Value, json};

@@ -88,7 +88,7 @@ pub(super) fn sun(sky: &Sky, index: usize) -> WrittenLamp {
     }
 }
 
-/// What the extension cannot say of lights; extras say it.
+/// Adds what the extension cannot say of lights; extras say it.
 pub(super) fn losses(house: &HouseData, losses: &mut ExportLosses) {
     let count = |is: fn(&Light) -> bool| house.lights.iter().filter(|light| is(light)).count();
     losses.add(

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::super::glb::{BinaryChunk, UNSIGNED_INT, UNSIGNED_SHORT};
 
-/// Where the numbers of a mesh stand in the file: accessors.
+/// The accessors of a mesh in the file.
 #[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct MeshAccessors {

@@ -1,7 +1,7 @@
 //! Any house as a GLB file that every viewer opens.
 //!
 //! Nodes: storeys and the sun; in storeys rooms, in them pieces of the building and objects, in those parts and lights.
-//! What a node means beyond its shape stands in its `extras.dwell`.
+//! The meaning of a node beyond its shape is in its `extras.dwell`.
 
 mod extras;
 mod lights;
@@ -30,7 +30,7 @@ pub(crate) struct WrittenGlb {
     pub(crate) meshes: Vec<MeshAccessors>,
 }
 
-/// Where meshes of objects, and images, stand.
+/// The storage of meshes of objects, and of images.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Storage {
     /// In the file: it needs nothing beside it.

@@ -22,7 +22,7 @@ pub struct ArchFile {
     pub elements: Vec<ArchElement>,
 }
 
-/// What an element is.
+/// The kind of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ElementKind {
     /// Upright, between two points.
@@ -40,7 +40,7 @@ pub enum ElementKind {
 pub struct ArchElement {
     /// Its id.
     pub id: String,
-    /// What it is.
+    /// Its kind.
     pub kind: ElementKind,
     /// The rooms it belongs to: node ids.
     pub rooms: Vec<String>,

@@ -34,7 +34,7 @@ impl<'a> Converter<'a> {
         self.arch_where(belongs, level, room, hidden);
     }
 
-    /// What no node claimed.
+    /// Adds the elements that no node claimed.
     pub(super) fn arch_leftovers(&mut self) {
         if !self.data.levels.is_empty() {
             self.arch_where(|_| true, LevelId(0), None, &[]);

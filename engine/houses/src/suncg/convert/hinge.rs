@@ -11,7 +11,7 @@ use crate::import::Component;
 
 /// Pieces whose boxes differ less stand still, m.
 const STILL_M: f32 = 1e-3;
-/// How far the turned leaf may miss the other state's box, m.
+/// Largest distance of the turned leaf from the other state's box, m.
 const MISS_M: f32 = 0.015;
 /// Smaller turns are no opening, rad.
 const LEAST_TURN_RAD: f64 = 0.05;
@@ -19,7 +19,7 @@ const LEAST_TURN_RAD: f64 = 0.05;
 /// An upright hinge in mesh space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MeshHinge {
-    /// Where it stands, (x, z), m.
+    /// Position of the axis, (x, z), m.
     pub(super) point: DVec2,
     /// The turn about +Y that leads to the other state, rad.
     pub(super) turn_rad: f64,

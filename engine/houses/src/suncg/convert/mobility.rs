@@ -1,4 +1,4 @@
-//! What can move: by kind of thing, and by whether it stands on something.
+//! Mobility: by kind of thing, and by whether it stands on something.
 
 use dwell_scene::{Aabb, Room};
 use glam::{Vec2, Vec3};
@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use super::super::metadata::CategoryEntry;
 use crate::import::CategoryRow;
 
-/// How far something may hover above what it stands on, m; SUNCG's objects rarely touch exactly.
+/// Largest gap between an object and its support, m; SUNCG's objects rarely touch exactly.
 const GAP_M: f32 = 0.06;
 /// Largest side of a thing that one hand takes, m.
 const HAND_SIDE_M: f32 = 0.6;

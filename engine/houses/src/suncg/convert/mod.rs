@@ -100,7 +100,7 @@ struct Converter<'a> {
     textures: BTreeMap<&'a str, TextureId>,
     object_names: UniqueNames,
     structure_names: UniqueNames,
-    /// Where the objects made so far stand, to see what rests on what.
+    /// Bounds of the parts made so far, to see what rests on what.
     stands: Vec<(PartId, Aabb)>,
     /// Which elements of `arch.json` some room has.
     arch_used: Vec<bool>,

@@ -18,11 +18,11 @@ use crate::report::FileLocation;
 /// newtons at the handle. Estimates of ours; SUNCG says nothing.
 const HINGE_FRICTION: f32 = 0.6;
 const HINGE_DAMPING: f32 = 1.5;
-/// How far a door swings at least, rad: the files' open doors stand ajar (the commonest at 49 degrees, which lets nobody
+/// Smallest swing of a door, rad: the files' open doors stand ajar (the commonest at 49 degrees, which lets nobody
 /// through), but their hinges would go on. An estimate of ours.
 const LEAST_SWING_RAD: f32 = 1.6;
 
-/// What a node says about an object, before its parts are made.
+/// The properties of an object that its node states, before its parts are made.
 pub(super) struct ObjectPlan<'a> {
     pub(super) key: NodeKey,
     pub(super) at: FileLocation,

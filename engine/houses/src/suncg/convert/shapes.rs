@@ -19,7 +19,7 @@ use crate::warning_kind::WarningKind;
 pub(super) struct ModelShape {
     pub(super) slots: MaterialSlots,
     pub(super) whole: SharedMesh,
-    /// How it moves between its two states, when a hinge explains them.
+    /// Its leaf and hinge, when a hinge explains its two states.
     pub(super) swing: Option<HingedModel>,
 }
 
@@ -31,9 +31,9 @@ pub(super) struct SharedMesh {
 
 /// A model taken apart at its hinge.
 pub(super) struct HingedModel {
-    /// What stands still, if anything does.
+    /// The fixed part, if there is one.
     pub(super) frame: Option<SharedMesh>,
-    /// What turns.
+    /// The part that turns.
     pub(super) leaf: SharedMesh,
     /// The hinge, and the turn to the model's other state.
     pub(super) hinge: MeshHinge,

@@ -240,7 +240,7 @@ fn usual_of_structure(kind: StructureKind) -> &'static Substance {
     category([name]).map_or_else(|| library().default_substance(), |row| row.substance())
 }
 
-/// What a slot shows.
+/// The look of a material slot.
 struct SlotSurface<'a> {
     srgb: [f32; 3],
     /// Path of a texture that exists.

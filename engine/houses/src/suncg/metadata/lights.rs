@@ -25,7 +25,7 @@ pub struct SuncgLight {
     /// The other end of a line, m.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position2: Option<[f64; 3]>,
-    /// Where a spot or a line shines.
+    /// Direction of a spot or a line.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 3]>,
     /// Half of the cone's opening angle, rad.

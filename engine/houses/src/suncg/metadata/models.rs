@@ -16,7 +16,7 @@ pub struct ModelEntry {
     pub max_m: [f64; 3],
     /// Width, height and depth when the front looks along +Z, **cm**.
     pub aligned_dims_cm: [f64; 3],
-    /// How many materials the file says it has.
+    /// Number of materials that the file states.
     pub materials: u32,
 }
 

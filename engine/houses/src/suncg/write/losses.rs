@@ -1,4 +1,4 @@
-//! What the format cannot hold at all, whatever the house.
+//! Losses of the format for any house.
 
 use std::collections::BTreeSet;
 

@@ -117,12 +117,12 @@ struct SuncgWriter<'a> {
     house: &'a House,
     folder: PathBuf,
     scene_id: String,
-    /// Whether models and textures are named by their content.
+    /// True if models and textures are named by their content.
     shared: bool,
     /// File name without ending of each texture.
     textures: BTreeMap<TextureId, String>,
     models: models::WrittenModels,
-    /// Where everything starts.
+    /// The initial state of the house.
     start: State,
 }
 

@@ -21,7 +21,7 @@ use crate::obj::ObjWriter;
 pub(super) struct WrittenModels {
     by_key: BTreeMap<String, String>,
     names: UniqueNames,
-    /// What the tables say about each model.
+    /// The rows of each model in the tables.
     pub(super) rows: Vec<ModelRow>,
     /// The materials of the MTL file of each.
     materials: Vec<Vec<MaterialId>>,
@@ -43,7 +43,7 @@ impl WrittenModels {
 /// The hinge that a model's two states can show: the positions of the joint in them.
 struct TwoStates {
     joint: JointId,
-    /// Where the door starts, or wide open when it starts closed.
+    /// The initial position of the door, or fully open when it starts closed.
     open: f32,
     closed: f32,
     starts_closed: bool,

@@ -55,7 +55,7 @@ rows! {
     UnknownHouse = "a HOUSE that is none",
 }
 
-/// What a format makes of a kind of input.
+/// The case of a format for a kind of input.
 pub(crate) enum Cell {
     /// The input of this name in the format's own table.
     Has(&'static str),
