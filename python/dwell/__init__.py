@@ -152,7 +152,7 @@ def __getattr__(name: str) -> Any:  # noqa: ANN401 - whatever the module holds u
 
 
 def __dir__() -> list[str]:
-    """What there is to import, also what is loaded at first use."""
+    """The importable names, also those that are loaded at first use."""
     return sorted({*globals(), *__all__, *_MODULES})
 
 

@@ -145,11 +145,11 @@ class House:
     def counts(self) -> tuple[int, int]:
         """Rooms and objects."""
     def is_outside(self, point: tuple[float, float, float]) -> bool:
-        """Whether a point lies in no room; in a house without rooms: beyond all walls."""
+        """Returns whether a point lies in no room; in a house without rooms: beyond all walls."""
     def room_at(self, point: tuple[float, float, float]) -> str | None:
         """The name of the room around a point."""
     def same(self, other: House) -> bool:
-        """Whether the other holds the same in all tables, meshes and images."""
+        """Returns whether the other holds the same in all tables, meshes and images."""
     def fingerprint(self) -> int:
         """The same number for houses that hold the same; 64 bits."""
     def info_json(self) -> str:
@@ -168,11 +168,11 @@ class House:
 
 @final
 class Navigation:
-    """Where one can walk in a house as it stands at one moment."""
+    """The navigation grid of a house as it stands at one moment."""
 
     def __new__(cls, house: House, config_json: str = ..., state: bytes | None = ...) -> Self: ...
     def state(self) -> bytes | None:
-        """Where everything stands, as the constructor takes it; ``None``: as the house starts."""
+        """The state of the house, as the constructor takes it; ``None``: as the house starts."""
     def points(self, start: tuple[float, float, float] | None = ...) -> NDArray[np.float32]:
         """Places to stand, (n, 3), m; with ``start``: those to which a way leads from there."""
     def islands(self, points: Sequence[tuple[float, float, float]]) -> list[int | None]: ...
@@ -277,14 +277,14 @@ class Batch:
     def put(self, env: int, spare: PreparedEnv) -> None:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
-        """How many steps each environment's episode has had."""
+        """Number of steps of each environment's episode so far."""
     def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
         """-1: that environment is not stepped. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of n) and action_error (list)."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
     def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
-        """What environment ``env``'s agent sees, lit; ``view_json``: as :meth:`World.render`."""
+        """The view of environment ``env``'s agent, lit; ``view_json``: as :meth:`World.render`."""
     def instruction(self, env: int) -> str: ...
     def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""

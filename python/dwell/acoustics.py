@@ -221,7 +221,7 @@ class AcousticScene:
         return paths
 
     def explain(self) -> dict[str, Any]:
-        """What sound meets: areas, mean absorption, which materials are guesses."""
+        """The acoustic properties of the house: areas, mean absorption, and guessed materials."""
         explained: dict[str, Any] = json.loads(self._native.explain_json())
         return explained
 

@@ -1,4 +1,4 @@
-"""What agents of a world do with their hands, and step by step."""
+"""Manipulation by agents of a world, step by step."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ class ActionApi(StateApi):
             )
 
     def notices(self) -> list[tuple[int | None, Outcome]]:
-        """What became, in the last step, of actions that take time: who began it, and its end."""
+        """The outcomes, in the last step, of actions that take time: the agent, and its outcome."""
         notices = self._native.notices()
         return [(notice["agent"], Outcome._of(notice["outcome"])) for notice in notices]
 

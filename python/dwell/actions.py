@@ -1,4 +1,4 @@
-"""What agents do with their hands, and what comes of it."""
+"""Manipulation by agents, and its outcomes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from dwell.schemas import Check, checks
 
 @dataclasses.dataclass(frozen=True)
 class Pointed:
-    """What an agent points at.
+    """The thing that an agent points at.
 
     Attributes:
         id: The id that instance images show.
@@ -35,7 +35,7 @@ class Pointed:
 
 @dataclasses.dataclass(frozen=True)
 class Outcome:
-    """What came of an action.
+    """The outcome of an action.
 
     Attributes:
         success: Whether it worked, or began to.
@@ -90,7 +90,7 @@ def _checks() -> dict[str, Check]:
 
 
 def takes_target(kind: str) -> bool:
-    """Whether a kind of action is done to a thing; unknown ones may be."""
+    """Returns whether a kind of action has a target; unknown ones may have."""
     rows = {row["name"]: row for row in action_table()["kinds"]}
     return kind not in rows or rows[kind]["target"] is not None
 

@@ -1,4 +1,4 @@
-"""What agents are told to do in a control step."""
+"""Commands to agents for a control step."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ def fields(
 
 
 def allowed_values(name: str, known: Iterable[str]) -> str:
-    """What there is where ``name`` is not: the nearest names first, then all."""
+    """The allowed values in place of ``name``: the nearest names first, then all."""
     names = [*known]
     if not names:
         return "there are none"
@@ -294,7 +294,7 @@ def to_json(settings: Mapping[str, object] | Sequence[object], at: str = "") -> 
 
 
 def from_json(at: str, written: str | bytes) -> Any:  # noqa: ANN401 - any JSON value
-    """What JSON says; ``at``: where it stands, for the error.
+    """The value of a JSON text; ``at``: its place, for the error.
 
     Raises:
         ConfigError: It is no JSON, or nested too deep.

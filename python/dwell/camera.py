@@ -1,4 +1,4 @@
-"""What pictures are taken with."""
+"""Cameras."""
 
 from __future__ import annotations
 

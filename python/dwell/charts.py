@@ -28,7 +28,7 @@ def font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
 
 
 def decay_chart(echogram: Echogram, *, width: int = 800) -> Image.Image:
-    """What is left of the energy over time in each octave, dB re all (Schroeder's integral).
+    """The decay of the energy over time in each octave, dB re all (Schroeder's integral).
 
     Args:
         echogram: What to draw.

@@ -13,7 +13,7 @@ DELIMITERS = (",", ";", "\t")
 
 
 def delimiter_of(head: str) -> str:
-    """What parts the cells: commas, or semicolons or tabs where the head has no comma."""
+    """The delimiter: a comma, or semicolon or tab where the head has no comma."""
     return next((mark for mark in DELIMITERS if mark in head), ",")
 
 
@@ -69,7 +69,7 @@ def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> f
 
 
 def suggested_fix(told: object) -> str:
-    """What to change about a cell that is no finite number."""
+    """The remedy for a cell that is no finite number."""
     if told in (None, "") or (isinstance(told, float) and math.isnan(told)):
         return MISSING
     text = str(told)

@@ -1,4 +1,4 @@
-"""How loud a source is, or how sensitive a microphone, towards each side."""
+"""Directivities: gains of sources and sensitivities of microphones by direction."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SILENT_DB = -120.0
 
 @dataclass(frozen=True)
 class Directivity:
-    """What is symmetric about the axis of what has it, with a gain of 1 on the axis.
+    """A directivity that is symmetric about its axis, with a gain of 1 on the axis.
 
     >>> import dwell
     >>> tweeter = dwell.Directivity.polar([[0] * 8, [-3] * 8, [-12] * 8])  # 0, 90, 180 degrees
@@ -146,7 +146,7 @@ DIRECTIVITIES: dict[str, Any] = {
 
 
 def directivity_json(directivity: str | Directivity) -> Any:  # noqa: ANN401 - a name or a table
-    """What the engine takes for a name or a directivity."""
+    """The engine's form of a name or a directivity."""
     if isinstance(directivity, Directivity):
         return directivity.to_json()
     if directivity not in DIRECTIVITIES:

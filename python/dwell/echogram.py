@@ -77,7 +77,7 @@ class Echogram:
         return energy
 
     def decay_db(self, step_s: float = 0.001) -> NDArray[np.float64]:
-        """What is left of the energy, dB re all, in steps from the impulse, shape (step, 8).
+        """The decay of the energy, dB re all, in steps from the impulse, shape (step, 8).
 
         Schroeder's backward integral; ``-inf`` where nothing is left.
         """

@@ -41,7 +41,7 @@ class EditList:
 
     @property
     def edits(self) -> list[dict[str, Any]]:
-        """What was noted, as plain data; ``docs/authoring.md`` lists the fields."""
+        """The edits so far, as plain data; ``docs/authoring.md`` lists the fields."""
         edits: list[dict[str, Any]] = json.loads(arguments.to_json(self._edits))
         return edits
 
@@ -51,7 +51,7 @@ class EditList:
 
     @staticmethod
     def kinds() -> dict[str, str]:
-        """What :meth:`add` knows: the catalogue's kinds, each with its category.
+        """The kinds that :meth:`add` knows: those of the catalogue, each with its category.
 
         >>> import dwell
         >>> dwell.HouseBuilder.kinds()["mug"]

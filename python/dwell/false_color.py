@@ -96,12 +96,12 @@ _SHOWN: dict[str, Callable[[NDArray[Any]], NDArray[np.uint8]]] = {
 
 @functools.cache
 def _styles() -> dict[str, str | None]:
-    """How people are shown what each sensor gives."""
+    """The picture style of each sensor."""
     return {row["name"]: row["picture_style"] for row in json.loads(_native.sensors_json())}
 
 
 def has_picture(channel: str) -> bool:
-    """Whether a sensor gives an image, and not a list."""
+    """Returns whether a sensor gives an image, and not a list."""
     return _styles().get(channel) in _SHOWN
 
 

@@ -167,7 +167,7 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
 
 
 def is_draft(name: str) -> bool:
-    """Whether a file or folder of this name is in the making, or was left by who was killed."""
+    """Returns whether a name is of a file or folder in the making, or left by a killed process."""
     return name.startswith(".") and ".partial-" in name
 
 
@@ -252,7 +252,7 @@ def _opened_folder(path: Path) -> int | None:
 
 
 def _is_at(handle: int | None, path: Path) -> bool:
-    """Whether a handle is that of what stands at ``path`` now."""
+    """Returns whether a handle is that of the file at ``path`` now."""
     if handle is None:
         return path.exists()
     with contextlib.suppress(FileNotFoundError):
@@ -316,7 +316,7 @@ def make_folder(folder: Path) -> None:
 
 
 def _place(path: Path) -> Path:
-    """Where a file that is written to ``path`` stands: elsewhere when it is a link.
+    """The path of a file that is written to ``path``: elsewhere when that is a link.
 
     Raises:
         OSError: Something stands there that is no regular file, or a link that leads nowhere.

@@ -1,4 +1,4 @@
-"""What somebody who knows the house would do next: for scripted agents and experts."""
+"""Guidance by somebody who knows the house: for scripted agents and experts."""
 
 from __future__ import annotations
 

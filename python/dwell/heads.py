@@ -18,7 +18,7 @@ RADIUS_M = 0.0875
 
 
 class Head:
-    """What a head does to sound before it is at the ears.
+    """A head: its filters from each direction to the ears.
 
     A copy is the same head; a pickle holds its numbers. :meth:`from_sofa` reads a file, and
     ``docs/acoustics.md`` says how what was measured is heard.
@@ -110,7 +110,7 @@ class Head:
 
     @property
     def about(self) -> dict[str, Any] | None:
-        """What was found in the measurement; ``None`` for a sphere.
+        """Facts about the measurement; ``None`` for a sphere.
 
         ``directions`` and ``filled`` (how many), ``radius_m`` (of the sphere with the nearest
         delays), ``gain_db`` (by which all responses were changed), ``removed_delay_s`` (which was
@@ -126,7 +126,7 @@ class Head:
         return f"Head({what}, id={self.id:016x})"
 
     def __eq__(self, other: object) -> bool:
-        """Whether it is the same head."""
+        """Returns whether it is the same head."""
         return isinstance(other, Head) and self.id == other.id
 
     def __hash__(self) -> int:

@@ -258,7 +258,7 @@ class House:
         return self._native.semantic_classes(text("table", table))
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
-        """Where one can walk in the house as it starts.
+        """The navigation grid of the house as it starts.
 
         The house keeps what it found for the latest eight walkers: asked again, it answers at once.
         """
@@ -304,7 +304,7 @@ class House:
         _native.House.finish_folder(arguments.path("root", root), text("form", form))
 
     def __eq__(self, other: object) -> bool:
-        """Whether both hold the same: rooms, things, materials, meshes, images."""
+        """Returns whether both hold the same: rooms, things, materials, meshes, images."""
         return isinstance(other, House) and (
             self._native is other._native or self._native.same(other._native)
         )
@@ -324,7 +324,7 @@ class House:
         return self
 
     def __reduce__(self) -> tuple[Callable[..., House], tuple[Any, ...]]:
-        """How to open it again."""
+        """The call that opens it again."""
         if self._again is None:
             raise UsageError(
                 f"{self!r} was put together in this process and cannot be pickled; "

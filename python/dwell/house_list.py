@@ -53,7 +53,7 @@ class HouseList(Sequence[str]):
         self._ends.append(len(self) + 1)
 
     def __len__(self) -> int:
-        """How many houses there are, equal ones counted each time."""
+        """Number of houses, equal ones counted each time."""
         return self._ends[-1] if self._ends else 0
 
     def __iter__(self) -> Iterator[str]:
@@ -83,7 +83,7 @@ class HouseList(Sequence[str]):
         return f"seed:{part[0][at - self._ends[which]]}{part[1]}"
 
     def __contains__(self, name: object) -> bool:
-        """Whether a house of this name is among them; none is made to find it."""
+        """Returns whether a house of this name is among them; none is made to find it."""
         return self._find(name) is not None
 
     def index(self, name: object, start: int = 0, stop: int | None = None) -> int:

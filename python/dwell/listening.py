@@ -1,4 +1,4 @@
-"""What makes sound and what hears it: sources and receivers for :class:`dwell.AcousticScene`."""
+"""Sources and receivers of sound for :class:`dwell.AcousticScene`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Source:
-    """What radiates sound.
+    """A source of sound.
 
     Attributes:
         position: Where it is, m.
@@ -60,7 +60,7 @@ class Microphone:
 
 @dataclass(frozen=True)
 class Receiver:
-    """What listens: see :meth:`omni`, :meth:`binaural`, :meth:`array` and :meth:`ambisonics`."""
+    """A receiver: see :meth:`omni`, :meth:`binaural`, :meth:`array` and :meth:`ambisonics`."""
 
     pose: dict[str, Any]
     kind: Any

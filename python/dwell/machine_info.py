@@ -1,4 +1,4 @@
-"""What this machine and this build have."""
+"""The features of this machine and this build."""
 
 from __future__ import annotations
 

@@ -296,7 +296,7 @@ def csv_rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[i
 
 
 def scale(part: CsvRow, key: str, at: str) -> float:
-    """How many SI units one unit of a column has; 1 where the map does not say."""
+    """The SI value of one unit of a column; 1 where the map does not say."""
     value = part.get(key)
     found = 1.0 if value is None else finite(f"{at}: {key}", value)
     if found == 0:
@@ -435,7 +435,7 @@ def write_starts(
     frames: tuple[str, bool],
     units: tuple[float, float],
 ) -> None:
-    """Where episodes are rolled out from; units are those of the table."""
+    """The starts of roll-outs of the episodes; units are those of the table."""
     (up, in_body), (metres, radians) = frames, units
     table = MeasuredTable(part, tables, at)
     linear = columns_of(part, "velocity", 3, at)

@@ -52,7 +52,7 @@ def of_response(
 
 
 def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> dict[str, Any]:
-    """What two ears make of one impulse (ISO 3382-1:2009, annex B).
+    """Interaural measures of one impulse (ISO 3382-1:2009, annex B).
 
     Args:
         ears: The impulse responses (2, samples), left first.

@@ -1,4 +1,4 @@
-"""Where one can walk: places, ways, doors."""
+"""Navigation: walkable places, routes, doors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True)
 class Walker:
-    """Who walks, and how finely that is looked at.
+    """The body that walks, and the resolution of the grid.
 
     Attributes:
         cell_m: Edge of a cell, m; 0.02 to 1.
@@ -79,7 +79,7 @@ class Occupancy:
 
 
 class Navigation:
-    """Where one can walk in a house as it stands at one moment; all storeys at once.
+    """The navigation grid of a house as it stands at one moment; all storeys at once.
 
     A pickle holds the house, the walker and where everything stands.
     """
@@ -92,7 +92,7 @@ class Navigation:
 
     @classmethod
     def _again(cls, house: House, walker_json: str, state: bytes | None) -> Navigation:
-        """What was pickled."""
+        """Restores a pickle."""
         native = _native.Navigation(house.native, walker_json, state)
         return cls(house, walker_json, native)
 
@@ -101,7 +101,7 @@ class Navigation:
         return Navigation._again, (self._house, self._walker_json, self._native.state())
 
     def __repr__(self) -> str:
-        """How many places there are to stand."""
+        """The number of walkable places."""
         return f"Navigation(places={len(self.points())})"
 
     def points(self, start: Sequence[float] | None = None) -> NDArray[np.float32]:

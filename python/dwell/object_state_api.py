@@ -1,4 +1,4 @@
-"""What a world tells of its agents and things."""
+"""States of a world's agents and objects."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class StateApi:
     _native: _native.World
 
     def agents(self) -> list[dict[str, Any]]:
-        """What agents are like now: a mapping for each, with angles in degrees and in radians.
+        """The states of all agents: a mapping for each, with angles in degrees and in radians.
 
         Returns:
             ``position``: the point between its feet, m. ``yaw_deg``, ``yaw_rad``: where it faces,
@@ -32,7 +32,7 @@ class StateApi:
         return agent_states(self._native.agents_json())
 
     def objects(self) -> list[dict[str, Any]]:
-        """What there is, as it is now: a mapping for each object.
+        """The states of all objects: a mapping for each.
 
         Returns:
             ``id``: its number in instance images. ``name``: its name, for :meth:`act` and kin.
@@ -58,7 +58,7 @@ class StateApi:
         return objects
 
     def object(self, name: str | int) -> dict[str, Any]:
-        """What one object is like now, as a row of :meth:`objects`.
+        """The state of one object, as a row of :meth:`objects`.
 
         Args:
             name: Its name, or its ``id``.

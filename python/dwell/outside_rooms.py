@@ -1,4 +1,4 @@
-"""What stands outside of every room is told once: it is allowed, and mostly a mistake."""
+"""The warning of a place outside of every room, given once: allowed, and mostly a mistake."""
 
 from __future__ import annotations
 

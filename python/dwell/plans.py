@@ -120,7 +120,7 @@ def dollhouse(
 
 
 def levels_of(house: House) -> int:
-    """How many storeys a house has."""
+    """Number of storeys of a house."""
     return int(house.info()["levels"])
 
 
@@ -185,7 +185,7 @@ def house_tile(name: str) -> tuple[str, Image.Image]:
 
 
 def room_view(world: World, room: dict[str, Any], camera: Camera) -> Image.Image:
-    """What one sees of a room from its viewpoint, a row of ``House.rooms()``."""
+    """The view of a room from its viewpoint, a row of ``House.rooms()``."""
     seen = world.render(
         position=room["eye"], yaw_deg=room["yaw_deg"], pitch_deg=-6.0, camera=camera
     )

@@ -1,4 +1,4 @@
-"""What environments are put together from in Python: what tasks, rewards and sensors share."""
+"""The common base of environments' parts in Python: tasks, rewards and sensors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _Part = TypeVar("_Part", bound="PluginPart")
 
 
 class PluginPart:
-    """What an environment plays with in an episode. Every environment makes its own.
+    """A part of an environment in Python. Every environment makes its own.
 
     Attributes:
         state: What the part remembers within an episode, by name; empty at each start. It goes into
@@ -31,7 +31,7 @@ class PluginPart:
 def factory(
     at: str, given: object, kind: type[_Part], settings: Mapping[str, Any] | None = None
 ) -> Callable[[], _Part]:
-    """What makes parts of a kind: a class, a function, or ``"module:Name"`` of a class.
+    """The factory of parts of a kind: a class, a function, or ``"module:Name"`` of a class.
 
     What a name stands for is called only if it is a class of the kind.
 

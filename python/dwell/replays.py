@@ -148,7 +148,7 @@ class Replay:
             )
 
     def _stated(self) -> dict[str, Any]:
-        """What a file states, by field, but for its check sums."""
+        """The fields of a file, but for its check sums."""
         row = {"format": _FORMAT, "version": _VERSION}
         row |= {name: getattr(self, name) for name in _FIELDS if name not in (*row, "sums")}
         row["config"] = json.loads(self.config)
@@ -264,7 +264,7 @@ class Replay:
         return None
 
     def differences(self, **parts: Any) -> list[str]:  # noqa: ANN401 - as :meth:`play`
-        """What the replay states and what does not hold, a sentence each that begins with a field.
+        """The stated fields that do not hold, a sentence each that begins with the field.
 
         Every field is held against its check sum, so that nothing was changed by accident since it
         was recorded; and the episode is played: the hash after each step, the instruction and the
@@ -291,7 +291,7 @@ class Replay:
         return told
 
     def _played_otherwise(self, parts: Mapping[str, Any]) -> Iterator[str]:
-        """What is not as stated when the episode is played."""
+        """The stated fields that do not hold when the episode is played."""
         differs = False
         for moment in self.play(**parts):
             if moment.step == 0 and moment.instruction != self.instruction:

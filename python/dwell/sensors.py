@@ -46,7 +46,7 @@ class Sensor(PluginPart, abc.ABC):
 
     @abc.abstractmethod
     def observe(self, world: World, rng: np.random.Generator) -> Any:  # noqa: ANN401 - of its space
-        """What is observed now: an element of :attr:`space`.
+        """The observation now: an element of :attr:`space`.
 
         Args:
             world: The environment's world.

@@ -17,7 +17,7 @@ _ANGLES = {"degree": 1.0, "degrees": 1.0, "radian": 180.0 / np.pi, "radians": 18
 
 @dataclass(frozen=True)
 class HeadFile:
-    """What stands in a file, in the head's axes (x right, y up, z back).
+    """The content of a file, in the head's axes (x right, y up, z back).
 
     Attributes:
         sources: Shape (direction, 3), m from the head's centre.
@@ -100,7 +100,7 @@ class _Reader:
             raise self.fault("DataType", f"{data!r}; allowed is 'FIR'")
 
     def left_is_second(self) -> bool:
-        """Whether the second receiver is the left ear."""
+        """Returns whether the second receiver is the left ear."""
         ears = self.numbers("ReceiverPosition")
         if ears.ndim not in (2, 3) or ears.shape[:2] != (2, 3):
             raise self.fault(
@@ -116,7 +116,7 @@ class _Reader:
         return bool((left < 0.0).all())
 
     def sources(self, count: int) -> NDArray[np.float64]:
-        """Where the sources are, in the head's axes. Shape (M, 3)."""
+        """Positions of the sources, in the head's axes. Shape (M, 3)."""
 
         def place(name: str, like: str | None = None) -> NDArray[np.float64]:
             return self.cartesian(name, self.rows(name, count, 3), like)

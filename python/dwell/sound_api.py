@@ -24,7 +24,7 @@ def _played(
     level_db: float | None,
     loop: bool,
 ) -> dict[str, Any]:
-    """What ``World.play`` asks of the native side.
+    """The native side's request for ``World.play``.
 
     Raises:
         ConfigError: For what is no name, place, level or flag.
@@ -54,7 +54,7 @@ def emitter_sound(
     loop: bool,
     start_s: float,
 ) -> dict[str, Any]:
-    """What an edit notes of a sound: a signal or a file, its level, and when it sounds.
+    """An edit's description of a sound: a signal or a file, its level, and when it sounds.
 
     Raises:
         ConfigError: For neither or both of them, and a file without a level.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclasses.dataclass(frozen=True)
 class Ask:
-    """What an episode asks for.
+    """The goal of an episode, as an instruction.
 
     Attributes:
         instruction: What the sensor ``instruction`` gives: 1 to 120 letters of English, spaces, and
@@ -35,7 +35,7 @@ class Ask:
 
 @dataclasses.dataclass(frozen=True)
 class Verdict:
-    """How a step is judged.
+    """The verdict on a step.
 
     Attributes:
         reward: The step's reward.
@@ -118,7 +118,7 @@ class Task(PluginPart):
         return verdict
 
     def observe(self, world: World, rng: np.random.Generator) -> Mapping[str, Any]:
-        """What the task observes now: an element of each of :attr:`spaces`, by name.
+        """The task's observations now: an element of each of :attr:`spaces`, by name.
 
         Args:
             world: The environment's world.

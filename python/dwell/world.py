@@ -247,7 +247,7 @@ class World(ActionApi, GuideApi, SoundApi):
         warn_outside_rooms(self.house, "an agent", position)
 
     def events(self) -> list[dict[str, Any]]:
-        """What touched in the last step: impacts, scrapes and rolling.
+        """The contacts of the last step: impacts, scrapes and rolling.
 
         Each has kind, phase, time_s, duration_s, position, a, b, substance_a, substance_b,
         impulse_n_s, tangential_impulse_n_s, relative_normal_speed_m_s,
@@ -327,7 +327,7 @@ class World(ActionApi, GuideApi, SoundApi):
         return image, (x, z), scale
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
-        """Where one can walk in the house as it stands now."""
+        """The navigation grid of the house as it stands now."""
         walks = walker_json(walker)
         return Navigation(self.house, walks, self._native.navigation(walks))
 
@@ -396,7 +396,7 @@ class World(ActionApi, GuideApi, SoundApi):
         self._native.set_joints(rows)
 
     def body(self, object: str, *, part: str | None = None) -> dict[str, tuple[float, ...]]:
-        """Where a thing is and how it moves.
+        """A thing's pose and velocities.
 
         Args:
             object: Its name.
@@ -462,7 +462,7 @@ class World(ActionApi, GuideApi, SoundApi):
         self._native.set_bodies([row])
 
     def parameter(self, address: str) -> dict[str, Any]:
-        """What stands at an address: value, unit, low, high."""
+        """The parameter at an address: value, unit, low, high."""
         parameter: dict[str, Any] = json.loads(
             self._native.parameter_json(text("address", address))
         )

@@ -1,4 +1,4 @@
-"""What a world is told beside its house: laws, parameters, rates."""
+"""Settings of a world beside its house: laws, parameters, rates."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _EXPECTED = (
 
 @functools.cache
 def _laws() -> dict[str, dict[str, Any]]:
-    """What is known of each law, by id."""
+    """The table of laws, by id."""
     return {law["id"]: law for law in json.loads(_native.laws_json())}
 
 
@@ -46,7 +46,7 @@ def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value
 
 
 def _is_path(laws: str) -> bool:
-    """Whether text means a file rather than a law."""
+    """Returns whether text means a file rather than a law."""
     is_like_one = laws.endswith(".json") or os.path.basename(laws) != laws
     return laws not in _laws() and (is_like_one or (laws != "" and Path(laws).exists()))
 

@@ -40,7 +40,7 @@ STOPPED = "a call was stopped before its work was done"
 
 
 def in_the_middle() -> bool:
-    """Whether a handler of signals runs in the middle of a call of the engines."""
+    """Returns whether a handler of signals runs in the middle of a call of the engines."""
     try:
         _native.seed_range("builtin:studio")
     except dwell.UsageError:
@@ -254,7 +254,7 @@ def heap(count: int) -> dwell.House:
 
 
 def describe() -> Call:
-    """What can be said of a heap."""
+    """A description of a heap."""
     house = heap(300)
     return lambda: house.describe("graph")
 

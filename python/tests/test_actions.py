@@ -1,4 +1,4 @@
-"""What hands do, through the package."""
+"""Actions of hands, through the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is made in the background before it is wanted."""
+"""Things that are made in the background before they are wanted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What users hand over is checked where it enters, and refused with a sentence of dwell's tree."""
+"""Arguments are checked where they enter, and refused with a sentence of dwell's tree."""
 
 from __future__ import annotations
 

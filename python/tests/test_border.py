@@ -306,7 +306,7 @@ CALLS = [
 
 @pytest.fixture(scope="module")
 def names() -> dict[str, Any]:
-    """What the calls speak of."""
+    """The objects that the calls speak of."""
     house = dwell.House.open("builtin:apartment")
     world = dwell.World(house)
     env = DwellEnv()

@@ -33,7 +33,7 @@ def one_object(done: subprocess.CompletedProcess[str]) -> dict[str, object]:
 
 @pytest.fixture(scope="module")
 def two_points() -> tuple[str, str]:
-    """Where one looks from in the living room, and over where one stands, for the command line."""
+    """A viewpoint in the living room and the point below it, for the command line."""
     from dwell import House
 
     room = next(room for room in House.open(HOUSE).rooms() if "living room" in room["kinds"])

@@ -121,7 +121,7 @@ def test_nothing_is_logged_where_nobody_asked() -> None:
 
 
 def address(array: np.ndarray[Any, Any]) -> int:
-    """Where an array's numbers lie."""
+    """The address of an array's numbers."""
     return int(array.__array_interface__["data"][0])
 
 

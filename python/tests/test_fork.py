@@ -36,7 +36,7 @@ def senses(world: dwell.World) -> list[Any]:
 
 
 def in_child(work: Callable[[], Any]) -> Any:  # noqa: ANN401 - whatever the work gives
-    """What ``work`` gives in a forked child; EOFError, should it end without giving anything."""
+    """The result of ``work`` in a forked child; EOFError, should it end without giving anything."""
     fork = multiprocessing.get_context("fork")
     ours, theirs = fork.Pipe()
     process = fork.Process(target=lambda: theirs.send(work()))

@@ -52,7 +52,7 @@ def _free_field(rate_hz: int) -> dwell.AcousticScene:
 def _heard(
     scene: dwell.AcousticScene, towards: NDArray[np.float64], head: dwell.Head | None = None
 ) -> NDArray[np.float64]:
-    """What a head hears from a direction in SOFA's axes, re the centre: shape (2, sample)."""
+    """A head's response from a direction in SOFA's axes, re the centre: shape (2, sample)."""
     centre = np.array([30.0, 15.0, 30.0])
     x, y, z = towards * FAR_M
     receiver = dwell.Receiver.binaural(tuple(centre), head=head)

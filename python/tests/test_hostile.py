@@ -69,7 +69,7 @@ def test_a_camera_nowhere_is_refused(shoebox: dwell.House, position: object) -> 
 
 
 def test_ears_and_sources_inside_of_walls_give_finite_sound(apartment: dwell.House) -> None:
-    """What is heard is what passes the wall: finite, often silent."""
+    """The ears receive the sound that passes the wall: finite, often silent."""
     scene = dwell.AcousticScene(apartment, rays=300, max_duration_s=0.4)
     for source, mic in (
         ((0.0, 1.5, 1.0), (2.0, 1.5, 2.0)),

@@ -43,7 +43,7 @@ def test_ctrl_c_ends_a_long_call(name: str, tmp_path: Path) -> None:
 
 
 class Raised(BaseException):
-    """What a handler raises: no Exception, as Ctrl-C, which may come in the middle of a log."""
+    """A handler's exception: no Exception, as Ctrl-C, which may come in the middle of a log."""
 
 
 def cut_off(work: Callable[[], object], at: int = 1) -> Literal["stopped", "ended", "done"]:

@@ -243,7 +243,7 @@ def test_a_channel_is_named_by_text(tmp_path: Path) -> None:
 
 
 def refused(*tables: Path, tmp_path: Path, mapping: dict[str, object]) -> str:
-    """What an import of tables is refused with."""
+    """The error with which an import of tables is refused."""
     path = tmp_path / "map.json"
     path.write_text(json.dumps(mapping))
     with pytest.raises(ValueError, match=r".") as caught:

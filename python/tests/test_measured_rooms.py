@@ -344,7 +344,7 @@ MICROPHONES_M = (
 
 
 def azimuth_deg(responses: NDArray[Any], rate_hz: float) -> float:
-    """Where sound comes from, clockwise from the front: the largest of steered response power.
+    """The direction of a sound, clockwise from the front: the peak of steered response power.
 
     SRP-PHAT (DiBiase 2000) in the plane of the array in steps of 1 degree, 500 Hz to 4 kHz.
 

@@ -1,4 +1,4 @@
-"""Where one can walk, through the package."""
+"""Navigation through the package."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pip sees: the package is typed, named as the workspace, and light."""
+"""The package for pip: typed, named as the workspace, and light."""
 
 import importlib
 import importlib.metadata

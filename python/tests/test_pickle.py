@@ -1,4 +1,4 @@
-"""What can be rebuilt travels to other processes; what cannot says so."""
+"""Objects that can be rebuilt travel to other processes; others say that they cannot."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who renders: ``renderer=``, ``DWELL_RENDERER``, and what both back ends agree about."""
+"""Back ends: ``renderer=``, ``DWELL_RENDERER``, and the agreement of both."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_whether_pictures_overlap_is_a_bool(apartment: dwell.House) -> None:
 
 
 def _in_a_child(pipe: Connection, world: dwell.World, chosen: str) -> None:
-    """What a forked process hears that uses its parent's world, and one of its own."""
+    """Sends the errors of a forked process that uses its parent's world, and one of its own."""
     try:
         world.render(position=(1.0, 1.0, 1.0), channels=("depth",))
         pipe.send("it rendered")

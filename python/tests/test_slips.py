@@ -1,4 +1,4 @@
-"""What people get wrong about tables of measurements: each slip is told with what to change."""
+"""Common mistakes in tables of measurements: each is reported with its remedy."""
 
 from __future__ import annotations
 
@@ -153,7 +153,7 @@ def brought(
 
 
 def refused(folder: Path, *arguments: Any, **more: Any) -> str:  # noqa: ANN401 - as those of `brought`
-    """What is said of it."""
+    """The error's sentence."""
     with pytest.raises(ValueError) as caught:  # noqa: PT011 - the caller looks at the sentence
         brought(folder, *arguments, **more)
     assert not (folder / "o.measured").exists()

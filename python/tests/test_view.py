@@ -33,7 +33,7 @@ def test_without_the_sdk_one_sentence_says_how_to_get_it(tmp_path: Path) -> None
 
 
 def recorded(*arguments: str | Path) -> dict[str, list[tuple[str, Any]]]:
-    """What ``dwell view`` wrote: for each column its chunks' entity paths and cells."""
+    """The recording of ``dwell view``: for each column its chunks' entity paths and cells."""
     chunk = pytest.importorskip("rerun.chunk", reason="needs the Rerun SDK of `make demo`")
     out = arguments[-1]
     command = [sys.executable, "-m", "dwell.cli", "view", *map(str, arguments), "--json"]

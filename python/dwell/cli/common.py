@@ -1,4 +1,4 @@
-"""What several commands share: JSON on standard output, points, progress."""
+"""Shared parts of commands: JSON on standard output, points, progress."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def add_back_end(parser: argparse.ArgumentParser) -> None:
 
 
 def back_end(args: argparse.Namespace) -> str:
-    """What ``--backend`` and ``--path`` say together, as ``renderer=`` takes it."""
+    """The meaning of ``--backend`` and ``--path`` together, as ``renderer=`` takes it."""
     said = args.backend or os.environ.get("DWELL_RENDERER")
     if args.path is None:
         return said or "cpu"
@@ -192,7 +192,7 @@ class Printable:
 
 
 def sentence(error: BaseException) -> str:
-    """What an error says to people."""
+    """The sentence of an error for people."""
     if isinstance(error, MemoryError):
         return "not enough memory"
     said = str(error)

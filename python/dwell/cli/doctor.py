@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _threads(facts: dict[str, Any]) -> str:
-    """How many threads are used, and what decided it."""
+    """The number of threads that are used, and the reason for it."""
     cores, machine, most = (
         facts[key] for key in ("available_cores", "machine_threads", "threads_variable")
     )

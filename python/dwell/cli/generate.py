@@ -176,7 +176,7 @@ def _again(args: argparse.Namespace, row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _is_there(args: argparse.Namespace, row: dict[str, Any]) -> bool:
-    """Whether the house stands where the row says, with as many bytes."""
+    """Returns whether the house is at the row's path, with as many bytes."""
     path = Path(args.out, str(row.get("path")))
     return path.exists() and row.get("bytes", _bytes(path)) == _bytes(path)
 
@@ -230,7 +230,7 @@ def _house(args: argparse.Namespace, seed: int) -> dict[str, Any]:
 
 
 def _statistics(info: dict[str, Any]) -> dict[str, Any]:
-    """What the manifest says of a house."""
+    """The manifest's row of a house."""
     rooms = info["rooms"]
     kinds = Counter(kind for room in rooms for kind in room["kinds"][:1])
     given_up = [row["sentence"] for row in info["report"].get("warnings", [])]

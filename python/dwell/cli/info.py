@@ -73,7 +73,7 @@ def _write_new(path: Path, text: str) -> None:
 
 
 def _unmapped(names: dict[str, list[dict[str, Any]]]) -> list[str]:
-    """What the house's names did not say, the largest first."""
+    """The names of the house without a known meaning, the most frequent first."""
     lines = []
     for what, rows in names.items():
         if not rows:

@@ -106,7 +106,7 @@ def _alone(out: Path) -> Iterator[None]:
 
 
 def _job(args: argparse.Namespace) -> dict[str, Any]:
-    """What the responses depend on, beside the house."""
+    """The settings on which the responses depend, beside the house."""
     sources = args.sources or "1"
     if args.source is not None and args.sources is not None:
         raise ValueError("--source is one place and --sources how many are drawn; give one of them")

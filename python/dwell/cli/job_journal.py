@@ -104,7 +104,7 @@ class Journal:
             raise
 
     def _read(self, job: dict[str, Any]) -> int:
-        """How many bytes of the old journal are whole; 0 for none."""
+        """Number of bytes of the old journal that are whole; 0 for none."""
         keep = at = 0
         for k, line in enumerate(lines(self._file, self._path)):
             at += len(line)

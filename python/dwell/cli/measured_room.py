@@ -25,7 +25,7 @@ _AIR = {"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}
 
 @dataclass(frozen=True)
 class MeasuredRoom:
-    """What a scene file says beside its walls. ``docs/formats/measured-room.md``."""
+    """The content of a scene file beside its walls. ``docs/formats/measured-room.md``."""
 
     path: Path
     rate_hz: int
@@ -73,7 +73,7 @@ class MeasuredRoom:
 
 
 def is_measured_room(house: str) -> bool:
-    """Whether a HOUSE string names a scene file with materials and receivers."""
+    """Returns whether a HOUSE string names a scene file with materials and receivers."""
     path = Path(house)
     if path.suffix.lower() != ".json" or not path.is_file():
         return False

@@ -196,7 +196,7 @@ def _whole(args: argparse.Namespace, world: World) -> list[str]:
 
 
 def _views(args: argparse.Namespace, world: World, channels: list[Channel]) -> list[str]:
-    """What sensors give from a place, or from the viewpoint of every room."""
+    """The sensors' observations from a place, or from the viewpoint of every room."""
     camera = _camera(args)
     views: list[tuple[str, Any, float]] = [("view", args.at, args.yaw_deg or 0.0)]
     if args.at is None:

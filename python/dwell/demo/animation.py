@@ -1,4 +1,4 @@
-"""What an agent saw, as an animation."""
+"""An agent's views as an animation."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ class DemoAgent:
         self.log: list[dict[str, Any]] = []
 
     def position(self) -> list[float]:
-        """Where it stands, m."""
+        """The agent's position, m."""
         place: list[float] = self.world.agents()[0]["position"]
         return place
 
@@ -61,7 +61,7 @@ class DemoAgent:
         return outcome
 
     def tired(self) -> bool:
-        """Whether the errand has become too long."""
+        """True if the errand has become too long."""
         return len(self.way) > _LONGEST
 
     def note(self, what: str, outcome: Outcome) -> None:

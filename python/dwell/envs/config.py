@@ -1,4 +1,4 @@
-"""What an environment is told, as JSON for the native side."""
+"""Settings of an environment, as JSON for the native side."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Houses = str | os.PathLike[str] | House | Sequence[str | os.PathLike[str] | Hous
 
 
 class EnvSettings(TypedDict, total=False):
-    """What :class:`dwell.envs.DwellEnv` may be told beside its task, and explains."""
+    """The settings of :class:`dwell.envs.DwellEnv` beside its task; it explains them."""
 
     houses: Houses
     sensors: Sensors
@@ -113,7 +113,7 @@ class HouseCache:
 
     @property
     def has_objects(self) -> bool:
-        """Whether houses were handed over that a HOUSE string does not open."""
+        """True if some houses are objects that no HOUSE string opens."""
         return bool(self._given)
 
     def __getitem__(self, index: int) -> House:
@@ -134,7 +134,7 @@ class HouseCache:
         return house
 
     def episode_id(self, index: int, seed: int) -> str:
-        """What an episode of a seed in house ``index`` modulo their number is called."""
+        """The id of an episode with a seed in house ``index`` modulo their number."""
         return f"{self.names[index % len(self.names)]}#{seed}"
 
     def episode(self, episode_id: object) -> tuple[int, int]:

@@ -29,7 +29,7 @@ class HouseAssignment:
         return self._names[self._houses[env]]
 
     def episode_id(self, env: int, seed: int) -> str:
-        """What an episode of a seed in an environment is called."""
+        """The id of an episode with a seed in an environment."""
         return self._stock.shelf.episode_id(self._houses[env], seed)
 
     def move(self, episodes: Mapping[int, tuple[int, int | None]]) -> set[int]:

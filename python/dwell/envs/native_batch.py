@@ -90,7 +90,7 @@ class NativeBatch:
                 play.begin(seed)
 
     def loaded(self, env: int, parts: bytes) -> dict[str, dict[str, Any]] | None:
-        """What the parts of an environment remembered, out of its snapshot.
+        """The states of the parts of an environment, out of its snapshot.
 
         Raises:
             ConfigError: They are of other parts, or were cut.
@@ -102,7 +102,7 @@ class NativeBatch:
         return None
 
     def saved_parts(self, env: int) -> bytes:
-        """What the parts of an environment remember; nothing where there are none."""
+        """The states of the parts of an environment as bytes; empty where there are none."""
         return self.plays[env].save() if self.plays else b""
 
     def restore(self, snapshot: bytes, parts: bytes, seed: int, *, env: int = 0) -> None:
@@ -131,7 +131,7 @@ class NativeBatch:
         return answer, further
 
     def expert_actions(self) -> NDArray[np.int64]:
-        """What the experts of the tasks would do now."""
+        """The actions of the tasks' experts now."""
         own = [play.expert() for play in self.plays]
         if own and None not in own:
             return np.array(own, np.int64)

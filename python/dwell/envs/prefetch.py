@@ -43,7 +43,7 @@ class Prefetcher(Generic[_Key, _Prepared]):
             self._begin()
 
     def want(self, keys: Iterable[_Key]) -> None:
-        """What will be wanted, the soonest first; what was wanted before is dropped."""
+        """Sets the keys that will be wanted, the soonest first; others are dropped."""
         self._refresh()
         with self._changed:
             self._wanted = list(dict.fromkeys(keys))[: self._most]
@@ -77,7 +77,7 @@ class Prefetcher(Generic[_Key, _Prepared]):
             del one
 
     def take(self, key: _Key) -> _Prepared | None:
-        """What was made of a key, once it is done; ``None`` where nobody has begun.
+        """The result for a key, once it is done; ``None`` where nobody has begun.
 
         Raises:
             BaseException: What making it raised.

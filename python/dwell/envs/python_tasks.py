@@ -43,7 +43,7 @@ _SPACES = (spaces.Box, spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary
 
 @dataclasses.dataclass(frozen=True)
 class PythonTask:
-    """What makes the Python parts of an environment; empty for most."""
+    """The factories of an environment's parts in Python; empty for most."""
 
     task: Callable[[], Task] | None = None
     reward: Callable[[], Reward] | None = None
@@ -56,7 +56,7 @@ class PythonTask:
 
 @dataclasses.dataclass(frozen=True)
 class NativeSettings:
-    """What the engine is told of task and sensors."""
+    """The engine's settings of task and sensors."""
 
     task: str
     settings: Mapping[str, Any] | None = None
@@ -251,7 +251,7 @@ class PythonEpisode:
         return found
 
     def observe(self) -> dict[str, Any]:
-        """What task and sensors observe now, by name, each in its space."""
+        """The observations of task and sensors now, by name, each in its space."""
         step = self._world.native.step_count
         seen = {}
         if self._task is not None and self._task.spaces:
@@ -268,7 +268,7 @@ class PythonEpisode:
         return seen
 
     def save(self) -> bytes:
-        """What the parts remember.
+        """The states of the parts.
 
         Raises:
             ConfigError: It would come back as something else.
@@ -282,7 +282,7 @@ class PythonEpisode:
         return f"{{{', '.join(rows)}}}".encode()
 
     def loaded(self, saved: bytes) -> dict[str, dict[str, Any]]:
-        """What :meth:`save` wrote, by part.
+        """The states that :meth:`save` wrote, by part.
 
         Raises:
             ConfigError: It is of other parts, or was cut.
@@ -335,12 +335,12 @@ def _checked(task: str, verdict: object) -> Verdict:
 
 @functools.cache
 def _asks(base: str) -> bool:
-    """Whether a task of the engine asks for something, so that its expert knows what to do."""
+    """Returns whether a task of the engine has a goal, so that its expert knows what to do."""
     return any(row["name"] == base and row["asks"] for row in json.loads(_native.tasks_json()))
 
 
 def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: ANN401 - of the space
-    """What was observed, in the form of its space.
+    """The observation in the form of its space.
 
     Raises:
         ConfigError: It is no element; the message begins with ``at``.

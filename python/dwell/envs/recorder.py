@@ -81,7 +81,7 @@ class _EpisodeInProgress:
 
     @property
     def is_full(self) -> bool:
-        """Whether no file holds a further step."""
+        """True if no file holds a further step."""
         return len(self._actions) == MOST_STEPS
 
 

@@ -206,11 +206,11 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         )
 
     def _steps(self) -> int:
-        """How many steps the episode has had."""
+        """Number of steps of the episode so far."""
         return int(self._runner.batch.steps()[0])
 
     def render(self) -> NDArray[np.uint8] | None:
-        """What the agent sees, (240, 320, 3) uint8; ``None`` without a render mode."""
+        """The agent's view, (240, 320, 3) uint8; ``None`` without a render mode."""
         self._refuse_closed()
         if self.render_mode is None:
             return None
@@ -224,7 +224,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         self._closed = True
 
     def expert_action(self) -> int:
-        """What the task's scripted expert would do now."""
+        """The action of the task's scripted expert now."""
         return int(self._runner.expert_actions()[0])
 
     def state_hash(self) -> int:
@@ -274,7 +274,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._observation(), self._info()
 
     def instruction(self) -> str:
-        """What the episode asks for."""
+        """The instruction of the episode."""
         return self._runner.batch.instruction(0)
 
     def agents(self) -> list[dict[str, Any]]:
@@ -301,7 +301,7 @@ def _run(
     custom: PythonTask,
     heads: Sequence[Head],
 ) -> NativeBatch:
-    """What runs in a house of a shelf."""
+    """The runner in a house of a shelf."""
     return NativeBatch([shelf[house]], config, threads, custom=custom, heads=heads)
 
 

@@ -43,7 +43,7 @@ class BatchSnapshot:
 
     @classmethod
     def of_bytes(cls, name: str, snapshot: object) -> BatchSnapshot:
-        """What :meth:`to_bytes` wrote; ``name``: what it is called, for errors.
+        """The snapshot that :meth:`to_bytes` wrote; ``name``: its name for errors.
 
         Raises:
             ConfigError: It is something else.

@@ -89,7 +89,7 @@ def shareable(space: spaces.Space[Any]) -> spaces.Space[Any]:
 
 @dataclasses.dataclass(frozen=True)
 class SensorSpace:
-    """What a sensor's observation looks like; the table of docs and spaces."""
+    """The specification of a sensor's observation; the table of docs and spaces."""
 
     name: str
     shape: tuple[int, ...]
@@ -101,12 +101,12 @@ class SensorSpace:
 
     @property
     def is_text(self) -> bool:
-        """Whether the observation is a string."""
+        """True if the observation is a string."""
         return self.dtype == "text"
 
     @property
     def is_tokens(self) -> bool:
-        """Whether the observation is a row of numbers below ``high``: MultiDiscrete."""
+        """True if the observation is a row of numbers below ``high``: MultiDiscrete."""
         return self.unit == "token"
 
     def space(self) -> spaces.Space[Any]:

@@ -27,7 +27,7 @@ from dwell.world_settings import Laws, with_head
 
 
 class Recorder(Protocol):
-    """Who writes down what several environments play."""
+    """A recorder of several environments."""
 
     def began(self, envs: Sequence[int]) -> None:
         """Episodes have begun in these environments."""
@@ -478,7 +478,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             raise UsageError("these environments are closed; make new ones")
 
     def expert_actions(self) -> NDArray[np.int64]:
-        """What the task's scripted expert would do now, in every environment."""
+        """The actions of the task's scripted expert now, in every environment."""
         return self._runner.expert_actions()
 
     def state_hashes(self) -> list[int]:
@@ -486,7 +486,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         return [self._runner.batch.state_hash(k) for k in range(self.num_envs)]
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """What each agent sees, (240, 320, 3) uint8 each; ``None`` without a render mode."""
+        """The agents' views, (240, 320, 3) uint8 each; ``None`` without a render mode."""
         self._refuse_closed()
         if self.render_mode is None:
             return None

@@ -1,4 +1,4 @@
-"""What a recording tells: a house as it stands, and an episode."""
+"""Contents of a recording: a house as it stands, and an episode."""
 
 from __future__ import annotations
 

@@ -171,7 +171,7 @@ class Recording:
         self._log([*path, "ids"], rr.SegmentationImage(ids))
 
     def way(self, name: str, way: Sequence[Sequence[float]]) -> None:
-        """Where an agent went: positions (x, y, z), m."""
+        """Logs an agent's path: positions (x, y, z), m."""
         self._log(["world", "ways", name], self._rr.LineStrips3D([way], radii=[0.02]))
 
     def step(
