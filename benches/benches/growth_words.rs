@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 const SIZES: [usize; 3] = [100, 1_000, 10_000];
 /// A row that took longer is not tried with more things.
 const LONGEST_S: f64 = 20.0;
-/// When a row is stopped.
+/// Time after which a row is stopped.
 const STOP_S: f64 = 150.0;
 const KINDS: [&str; 12] = [
     "desk",

@@ -40,7 +40,7 @@ use twin::{FlightTwin, RoomTwin, ServoTwin, Twin};
 
 /// Compares the measured bundle in the folder `path` with its simulation and reports what the simulation lacks.
 ///
-/// `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go on.
+/// `progress` gets a fraction (0 to 1) and the current activity, and answers whether to go on.
 ///
 /// # Errors
 /// [`CalibrationError`] for a bundle that cannot be read, options out of range, a situation that cannot be simulated, and

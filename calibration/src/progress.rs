@@ -21,7 +21,7 @@ pub(crate) trait ProgressReporter {
     fn check(&self) -> Result<(), CalibrationError>;
 }
 
-/// The caller, by a function that is told.
+/// A reporter that calls back the caller.
 pub(crate) struct CallbackProgress<'a> {
     now: RefCell<(ProgressCallback<'a>, f32, String)>,
 }

@@ -52,7 +52,7 @@ fn borrow_buffers<'py, T: numpy::Element>(
     let array = out
         .cast::<PyArrayDyn<T>>()
         .map_err(|_| refused(sensor, dtype))?;
-    // A slice would be had of an array in Fortran's order, too, and be filled in the wrong one.
+    // A slice also exists of an array in Fortran's order, but would be filled in the wrong one.
     if !array.is_c_contiguous() {
         return Err(refused(sensor, dtype));
     }

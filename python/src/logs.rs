@@ -19,7 +19,7 @@ use tracing::level_filters::LevelFilter;
 use tracing::span::{Attributes, Id, Record as Values};
 use tracing::{Event, Level, Metadata, Subscriber};
 
-/// Records that wait at most; what comes after is counted and told.
+/// Largest number of waiting records; further ones are counted and reported.
 const MOST_WAITING: usize = 10_000;
 /// The level of Python's root logger where nobody has set it.
 const WARNING: i64 = 30;
@@ -95,7 +95,7 @@ impl Visit for MessageText {
     }
 }
 
-/// Takes events; spans are not told.
+/// A subscriber to events; spans are ignored.
 struct LogSubscriber;
 
 impl Subscriber for LogSubscriber {

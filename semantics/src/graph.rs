@@ -6,7 +6,7 @@ use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 
-/// Of how many things left and right are told: each has a side of each other.
+/// Largest number of things with relations of left and right: each has a side of each other.
 const MOST_IN_FRONT: usize = 1000;
 
 /// A scene graph. Ids are those of sensors; rooms are counted from 0.

@@ -18,7 +18,7 @@ const LEAST_M: f32 = 0.6;
 /// A place this close to a door's box belongs to the door, m.
 const DOORWAY_M: f32 = 0.15;
 
-/// For each room the rooms that open passages lead to, rising. What is told of one side holds for the other.
+/// For each room the rooms that open passages lead to, rising; the relation is symmetric.
 ///
 /// A passage is where at least 0.6 m of a room's border can be crossed at three heights without meeting a wall or a thing,
 /// and another room lies half a metre beyond. `doors`: the boxes of what closes openings; there are no passages there.

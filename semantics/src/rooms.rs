@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// Number of sample points of a room's floor.
 const POINTS: usize = 256;
-/// From how many of them its walls are looked at.
+/// Number of them from which its walls are looked at.
 const LOOKS: usize = 12;
 /// In how many directions from each.
 const DIRECTIONS: usize = 48;

@@ -7,7 +7,7 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, IdVec, MaterialId, ObjectId, SurfaceOwner};
 use glam::Vec3;
 
-/// From how many sides a thing is looked at.
+/// Number of sides from which a thing is looked at.
 const SIDES: usize = 8;
 /// Number of parallel rays from each side.
 const RAYS: usize = 32;

@@ -1,4 +1,4 @@
-//! Heaps: many things in one place have as many relations as can be told, and what is said of them stays true.
+//! Heaps: many things in one place have as many relations as can be listed, and their descriptions stay true.
 
 mod common;
 

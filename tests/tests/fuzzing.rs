@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use dwell_scene::random::RandomKey;
 use dwell_tests::hostile::{NAMES, OTHERS, live_in, mutated, read, sample, seeds};
 
-/// Of how many houses that opened one is lived in.
+/// One of so many opened houses is run.
 const LIVED_IN: usize = 4;
 
 /// Mutations of one sample, from its own stream of random numbers; gives back how many opened and those that panicked.

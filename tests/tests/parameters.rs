@@ -177,7 +177,7 @@ fn a_body_that_begins_too_large_is_refused_and_one_in_the_way_put_aside() {
         .iter()
         .map(|a| a.agent)
         .collect();
-    // The other one, that was told the same place, stands beside it.
+    // The other one, with the same target position, stands beside it.
     assert_eq!(moved, [AgentId(0), AgentId(1)]);
     let apart_m = agents[AgentId(0)]
         .position

@@ -1,4 +1,4 @@
-//! Sounds that a world is told to play, and what its agents hear of them.
+//! Sounds played in a world, and what its agents hear of them.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -278,7 +278,7 @@ fn wrong_requests_are_answered_and_change_nothing() {
     assert_eq!(world.hash(), before);
 }
 
-/// Sounds of files and signals go on with the same bits in a world of their own, and so does what was told to objects.
+/// Sounds of files and signals go on with the same bits in another world, and so do overrides of objects' sounds.
 #[test]
 fn a_restored_world_sounds_the_same() {
     let folder = tempfile::tempdir().unwrap();

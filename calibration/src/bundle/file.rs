@@ -211,7 +211,7 @@ pub struct ChannelManifest {
     pub name: String,
     /// The SI unit: `m` or `rad`.
     pub unit: String,
-    /// Whose clock stamps it; channels of one clock share its offset.
+    /// The clock that stamps it; channels of one clock share its offset.
     pub clock: String,
     /// Standard deviation of its noise in `unit`; `null`: it is estimated.
     pub noise_sd: Option<f64>,

@@ -202,12 +202,12 @@ impl Mismatch {
         self.other_left += (other - from_poses).length_squared();
     }
 
-    /// Returns how many times as large as the poses show the told velocities are.
+    /// Returns the ratio of the stated velocities to those that the poses show.
     fn factor(&self) -> f64 {
         self.along / self.shown
     }
 
-    /// The share of the motion that the told velocities miss; `None` where too little moves.
+    /// The share of the motion that the stated velocities miss; `None` where too little moves.
     fn share(&self) -> Option<f64> {
         (self.count >= FEWEST_TELLING).then(|| (self.left / self.told).sqrt())
     }
@@ -227,7 +227,7 @@ fn velocities(
             let moved = (pair[2].position - pair[0].position) / (2.0 * step_s);
             linear.add(moved, rates.linear, rates.linear);
             let turned = turn(pair[0].rotation, pair[2].rotation) / (2.0 * step_s);
-            // What was told, read in the other frame.
+            // The stated velocities, read in the other frame.
             let other = match frame {
                 AngularFrame::Body => pair[1].rotation.inverse() * rates.angular,
                 AngularFrame::World => pair[1].rotation * rates.angular,

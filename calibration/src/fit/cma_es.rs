@@ -7,7 +7,7 @@
 use dwell_scene::random::{RandomKey, RandomStream};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// A search in the unit cube. Points are asked for, judged by the caller, and told.
+/// A search in the unit cube. It proposes points, and takes their losses from the caller.
 pub(crate) struct CmaEs {
     mean: DVector<f64>,
     sigma: f64,

@@ -15,7 +15,7 @@ const MOST_DAMPINGS: usize = 6;
 /// Fall of the loss, in mean squared residuals, at which the iteration ends: a fiftieth of what one datum brings.
 const TOLERANCE: f64 = 0.02;
 
-/// Which causes are fitted, by position; nuisances always are.
+/// The causes that are fitted, by position; nuisances always are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CauseSet {
     pub(crate) causes: Vec<usize>,

@@ -1,6 +1,6 @@
 //! Samples far from the rest count less.
 
-/// From how many robust standard deviations on a residual counts less.
+/// Number of robust standard deviations from which on a residual counts less.
 const TURN: f64 = 3.0;
 
 /// Huber's loss, scaled so that it equals the square inside.

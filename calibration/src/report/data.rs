@@ -81,7 +81,7 @@ pub struct CandidateCause {
     pub gain: HeldOutGain,
     /// True if both speak for it.
     pub passes: bool,
-    /// Why it is not plausible; `null` where it is.
+    /// The reason why it is not plausible; `null` where it is.
     pub implausible: Option<String>,
     /// The experiment that separates it from its rivals.
     pub separating_experiment: String,

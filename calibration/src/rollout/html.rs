@@ -50,7 +50,7 @@ pub(crate) fn windows(out: &mut String, model: &str, scores: &[WindowScore]) {
     out.push_str("</table></div>");
 }
 
-/// Which residuals are the solver's.
+/// Writes which residuals are the solver's.
 pub(crate) fn solver(out: &mut String, sentences: &[String]) {
     out.push_str("<h2>Steps</h2>");
     for sentence in sentences {

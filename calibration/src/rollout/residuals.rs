@@ -9,7 +9,7 @@ const SPEEDS: usize = 5;
 /// Windows below which a group is not shown.
 const FEWEST: usize = 10;
 
-/// Which residual.
+/// The kind of residual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Residual {
     /// Distance, mm.

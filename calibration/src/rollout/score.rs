@@ -107,7 +107,7 @@ pub fn diverging(
         let (known, plain) = (estimate(None), last(&track.start_motion)?);
         for nudge in 0..NUDGES {
             let other = estimate(Some(key.child(which[k] as u64).child(nudge)));
-            // The start that is told, moved as the noise moves an estimate of it.
+            // The stated start, moved as the noise moves an estimate of it.
             let turned = other.rotation * known.rotation.inverse();
             let start = MeasuredMotion {
                 position: track.start_motion.position + other.position - known.position,

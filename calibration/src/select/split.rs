@@ -1,4 +1,4 @@
-//! Which episodes are held out from all fitting.
+//! The split of episodes into those that are fitted and those held out from all fitting.
 
 use crate::twin::EpisodeData;
 use dwell_scene::random::RandomKey;

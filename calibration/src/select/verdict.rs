@@ -37,7 +37,7 @@ pub(crate) struct SingleCause {
     pub(crate) judged: ScoredModel,
     pub(crate) against: ModelAdvantage,
     pub(crate) passes: bool,
-    /// Why it is not plausible, if it is not.
+    /// The reason why it is not plausible, if it is not.
     pub(crate) implausible: Option<String>,
 }
 
@@ -202,7 +202,7 @@ fn estimate_noise(
     Ok(fit.point)
 }
 
-/// Why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
+/// The reason why a fitted cause is not plausible: a parameter at its bound, or outside of what a physicist would believe.
 fn implausible(twin: &dyn Twin, judged: &ScoredModel, cause: usize) -> Option<String> {
     let found = estimates(twin, &judged.fit, judged.effective_count, cause);
     let parameters = &twin.causes()[cause].parameters;
@@ -279,7 +279,7 @@ fn decide(
     }
 }
 
-/// Why no cause passes, with the one that comes nearest.
+/// The reason why no cause passes, with the one that comes nearest.
 fn nearest(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
     let best = singles
         .iter()

@@ -79,7 +79,7 @@ pub(crate) trait Twin: Sync {
     fn episodes_mut(&mut self) -> &mut [EpisodeData];
     /// Returns what the channels mean.
     fn channels(&self) -> &[ChannelInfo];
-    /// Returns how noise is told from structure.
+    /// The structure by which noise and model error are distinguished.
     fn structure(&self) -> ResidualStructure;
     /// Returns what may be wrong.
     fn causes(&self) -> &[Cause];

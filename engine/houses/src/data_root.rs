@@ -139,7 +139,7 @@ impl UserFile {
     /// # Errors
     /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
     pub(crate) fn read(path: &Path, max_bytes: u64) -> Result<Self, HousesError> {
-        // A file that is not there is told with its whole path, not with a folder that is missing.
+        // A missing file is reported with its whole path, not with a missing folder.
         std::fs::metadata(path).map_err(HousesError::io(path))?;
         let root = DataRoot::new(path.parent().unwrap_or_else(|| Path::new("")))?;
         let name = path.file_name().unwrap_or_default();

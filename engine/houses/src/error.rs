@@ -1,4 +1,4 @@
-//! Why a house could not be opened or written.
+//! Errors of opening and writing houses.
 
 use std::path::PathBuf;
 
@@ -192,7 +192,7 @@ impl HousesError {
         }
     }
 
-    /// Why something could not be read, without the path, for a report that names it anyway.
+    /// The reason why something could not be read, without the path, for a report that names it anyway.
     pub(crate) fn reason(&self) -> String {
         match self {
             Self::Io { source, .. } => source.to_string(),

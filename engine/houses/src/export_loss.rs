@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct ExportLoss {
     /// The lost content, and its replacement.
     pub what: String,
-    /// For how many things.
+    /// Number of affected things.
     pub count: usize,
 }
 

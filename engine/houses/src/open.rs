@@ -125,7 +125,7 @@ mod tests {
             let told = seed_range(wrong).unwrap_err().to_string();
             assert!(told.starts_with("seed: found"), "{told}");
         }
-        // What no house of it can have is told before any of them is made.
+        // An impossible value for every house is reported before any of them is made.
         let told = seed_range("seed:0..3?home=studio&storeys=99").unwrap_err();
         assert_eq!(told.to_string(), "storeys: found 99; possible: 1 to 3");
     }

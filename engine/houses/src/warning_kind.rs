@@ -40,7 +40,7 @@ pub enum WarningKind {
     UnreadableMesh {
         /// Relative to the data root.
         path: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A mesh file without a triangle.
@@ -60,7 +60,7 @@ pub enum WarningKind {
     UnreadableTexture {
         /// Relative to the data root.
         path: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// An image that ends too early; what is missing of it is grey.
@@ -80,7 +80,7 @@ pub enum WarningKind {
     UnreadableMaterialFile {
         /// Relative to the data root.
         path: String,
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A material that no material file defines; grey is used.
@@ -158,7 +158,7 @@ pub enum WarningKind {
     BadIndex {
         /// The value in the file.
         found: String,
-        /// Why it is not usable.
+        /// The reason why it is not usable.
         reason: String,
     },
     /// A node claimed by two rooms; the first keeps it.
@@ -216,7 +216,7 @@ pub enum WarningKind {
     /// A metadata row that could not be read.
     #[error("a row could not be read ({reason}); left out")]
     BadRow {
-        /// Why.
+        /// The reason.
         reason: String,
     },
     /// A group of a room's mesh that names no wall, floor or ceiling.

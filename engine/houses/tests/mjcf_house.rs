@@ -222,7 +222,7 @@ fn materials_show_their_images_on_meshes_with_texture_coordinates() {
     let shown = |name: &str| house.materials[part(name).materials[0]].texture.is_some();
     assert!(shown("rug_1") && !shown("box_1"));
     assert!(!house.meshes[part("rug_1").mesh].uvs.is_empty());
-    // A missing image is told of; the colour stays.
+    // A missing image is reported; the colour stays.
     let (material, _) = floor("floor_office");
     assert!(
         material.texture.is_none() && material.base_color[0] > 0.9 && material.base_color[1] < 0.1

@@ -64,7 +64,7 @@ impl View {
     }
 }
 
-/// Which images are wanted.
+/// The set of images to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[expect(clippy::struct_excessive_bools, reason = "a set of images")]

@@ -53,7 +53,7 @@ static TABLE: LazyLock<ClassTable> = LazyLock::new(|| {
     table
 });
 
-/// Which names things are classed by.
+/// The table of classes of semantic images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ClassSet {

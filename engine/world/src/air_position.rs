@@ -78,8 +78,8 @@ pub(crate) fn air_position(rays: &RayScene, place: Vec3) -> Vec3 {
     best.1
 }
 
-/// From where the house's own sounds are heard, in the frames of their parts, m: things' meshes are closed around many of them. Shape
-/// (emitter,).
+/// The points from which the house's own sounds are heard, in the frames of their parts, m: things' meshes are closed around many of
+/// them. Shape (emitter,).
 pub(crate) fn emitter_places(house: &Arc<House>) -> Vec<Vec3> {
     let rays = RayScene::new(house.clone());
     let place = |emitter: &SoundEmitter| {

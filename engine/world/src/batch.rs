@@ -20,7 +20,7 @@ pub struct Batch {
     overlaps: bool,
     /// Pictures under way, or the error at their start.
     under_way: Vec<Result<PendingPictures, WorldError>>,
-    /// Whose pictures are under way and still show the world as it is. Shape (environment,).
+    /// True for environments whose pictures are under way and still show the world as it is. Shape (environment,).
     is_started: Vec<bool>,
 }
 
@@ -60,9 +60,9 @@ impl Batch {
         })
     }
 
-    /// Returns whether an adapter takes the pictures of worlds that have stepped or begun while others still step. Observations are
-    /// the same, of the same step; what goes wrong with a picture is told by [`Self::observe`], which waits for it. Who
-    /// steps without observing pays for pictures all the same. By the processor nothing changes.
+    /// Sets whether an adapter takes the pictures of worlds that have stepped or begun while others still step. Observations are
+    /// the same, of the same step; the error of a picture is returned by [`Self::observe`], which waits for it. A caller that
+    /// steps without observing pays for pictures all the same. On the processor nothing changes.
     #[must_use]
     pub fn overlapping(mut self, overlaps: bool) -> Self {
         self.overlaps = overlaps;
@@ -110,7 +110,7 @@ impl Batch {
             let what = format!("put: the sensors differ from those of environment {index}");
             return Err(WorldError::Usage(what));
         }
-        // They are told apart by their places, of which the other has others.
+        // Pictures belong to environments by their indices, and the other one has other indices.
         let mut waiting = self.under_way.iter().flatten();
         if waiting.any(|own| own.owners().any(|number| number == index)) {
             self.finish_pictures()?;
@@ -200,7 +200,7 @@ impl Batch {
                 }
                 self.under_way.extend(some.into_iter().map(Ok));
             }
-            // One is told, however many steps nobody observes.
+            // One error is kept, however many steps nobody observes.
             Err(_) if self.under_way.iter().any(Result::is_err) => {}
             Err(error) => self.under_way.push(Err(error)),
         }

@@ -171,7 +171,7 @@ pub(crate) fn take<'a>(
 pub(crate) struct PendingPictures {
     renderer: Arc<Renderer>,
     submitted: PendingBatch,
-    /// Whose they are: the environment, and the picture's place there. In the order of their work.
+    /// The pictures with the index of their environment and their place there. In the order of their work.
     takes: Vec<(usize, usize, PendingPicture)>,
 }
 
@@ -211,7 +211,7 @@ pub(crate) fn start<'a>(
 }
 
 impl PendingPictures {
-    /// Whose pictures these are.
+    /// The environments of these pictures.
     pub(crate) fn owners(&self) -> impl Iterator<Item = usize> + '_ {
         self.takes.iter().map(|(number, ..)| *number)
     }

@@ -133,7 +133,7 @@ mod tests {
     use crate::engines::Engines;
     use std::sync::Arc;
 
-    /// Whoever asks for one is told what whoever asks for all is, and both what the state says.
+    /// The state of one object is that among the states of all, and both are what the world's state says.
     #[test]
     fn one_object_is_told_as_all_are() {
         let (house, _) = dwell_houses::open("builtin:studio").unwrap();

@@ -33,7 +33,7 @@ pub struct Engines {
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
     heads: Mutex<BTreeMap<HeadId, Head>>,
     recordings: Recordings,
-    /// From where the house's own sounds are heard. Shape (emitter,).
+    /// The points from which the house's own sounds are heard. Shape (emitter,).
     emitter_places: OnceLock<Vec<Vec3>>,
     /// Of the house as it starts, by walker, the latest at the end.
     grids: Mutex<Vec<Arc<NavGrid>>>,
@@ -170,7 +170,7 @@ impl Engines {
         self.recordings.open(root, name, rate_hz)
     }
 
-    /// From where the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
+    /// The points from which the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
     pub(crate) fn emitter_places(&self) -> &[Vec3] {
         self.emitter_places
             .get_or_init(|| emitter_places(&self.house))

@@ -69,7 +69,7 @@ pub struct Env {
     pub(crate) world: World,
     task: Box<dyn Task>,
     pub(crate) kind: &'static TaskKind,
-    /// Whom the task is about.
+    /// The agent that the task is about.
     pub(crate) agent: AgentId,
     stride: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,

@@ -39,7 +39,7 @@ pub enum WorldError {
         of: &'static str,
         /// The found value.
         found: String,
-        /// Why not.
+        /// The reason.
         error: serde_json::Error,
     },
     /// A name that nothing registered has.
@@ -59,7 +59,7 @@ pub enum WorldError {
         task: &'static str,
         /// The house.
         house: String,
-        /// Why not, and what would help.
+        /// The reason, and what would help.
         why: String,
     },
     /// A bench was stopped by its caller.

@@ -7,7 +7,7 @@ use dwell_scene::{AgentId, Pose, State};
 /// A checked camera on an agent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EyeCamera {
-    /// Which agent's eyes.
+    /// The agent that carries it.
     pub agent: AgentId,
     /// The camera.
     pub camera: Camera,

@@ -8,9 +8,9 @@ use dwell_scene::AgentId;
 /// A view that some sensor wants.
 #[derive(Clone, Debug)]
 pub struct ViewRequest {
-    /// From where.
+    /// The camera.
     pub eye: EyeCamera,
-    /// Which images.
+    /// The images.
     pub channels: ImageChannels,
 }
 
@@ -47,7 +47,7 @@ impl Requests {
 /// The images of one view; those that nobody asked for are empty.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// From where.
+    /// The camera that was asked for.
     pub eye: EyeCamera,
     /// The camera as it was for this picture.
     pub camera: Camera,

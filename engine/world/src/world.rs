@@ -309,7 +309,7 @@ impl World {
         Ok(())
     }
 
-    /// Tells a joint's motor something, from the next step until it is told otherwise. A joint without a motor is moved by
+    /// Commands a joint's motor, from the next step until the next command. A joint without a motor is moved by
     /// hand and takes positions only.
     ///
     /// # Errors

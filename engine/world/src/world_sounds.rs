@@ -48,8 +48,8 @@ impl World {
         self.sound.set_level(self.engines.house(), handle, level_db)
     }
 
-    /// All sources: those of the house's objects, whose handles are their numbers, then what was told to play. What contacts
-    /// make is not among them.
+    /// All sources: those of the house's objects, whose handles are their numbers, then those played on request. Sounds of contacts
+    /// are not among them.
     pub fn sounds(&self) -> Vec<SoundState> {
         self.sound.list(self.engines.house(), &self.state)
     }

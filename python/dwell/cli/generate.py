@@ -161,8 +161,8 @@ def _make_again(args: argparse.Namespace, manifest: Path) -> int:
                 # Older manifests have fewer fields.
                 if {key: new[key] for key in new if key in row} != row:
                     raise ValueError(
-                        f"{manifest}: {row.get('path')} was missing or changed, and seed {row.get('seed')} "
-                        "gives another house now than the manifest says; remove "
+                        f"{manifest}: {row.get('path')} was missing or changed, and seed "
+                        f"{row.get('seed')} gives another house now than the manifest says; remove "
                         f"{args.out} and make all anew, or use the version that made it"
                     )
                 made += 1

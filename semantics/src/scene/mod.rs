@@ -24,7 +24,7 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Of how many things around it a thing is beside, on, or hung before one: where more lie in each other, those about its
+/// Largest number of neighbours that a thing is beside, on, or hung before: where more lie in each other, those about its
 /// middle count.
 pub(crate) const MOST_NEAR: usize = 128;
 

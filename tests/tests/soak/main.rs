@@ -1,5 +1,5 @@
 //! Long random play: three agents on legs and one on wheels move, run into things, and use their hands with and without
-//! sense, while joints of doors and of a robot's arm are told this and that, parameters change, laws come and go, and things
+//! sense, while joints of doors and of a robot's arm get random commands, parameters change, laws come and go, and things
 //! are set to other velocities and joints to other places. Nothing may panic, leave the house, pass a wall, become no number,
 //! keep more memory than its state needs, or differ when it is played again; and a snapshot in the middle changes nothing.
 //!
@@ -130,7 +130,7 @@ impl Play {
         self.world.step(&self.controls).unwrap();
     }
 
-    /// Remembers what was told, unless it was refused, which has a reason.
+    /// Remembers a command, unless it was refused, which has a reason.
     fn note(&mut self, refused: Option<String>, told: impl Fn() -> String) {
         match refused {
             Some(reason) => assert!(!reason.is_empty(), "{} says nothing", told()),

@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Edge of the room, m: the robot starts in the middle of it.
 const ROOM_M: f32 = 16.0;
-/// Wheels are where they are told to be at once: what they did is measured.
+/// Wheels reach their commanded positions at once: their motion is measured.
 const AT_ONCE_RAD_S2: f32 = 1e6;
 const FASTEST_RAD_S: f32 = 1000.0;
 /// Radius and height of the robot's body, m; nothing is in its way.

@@ -92,13 +92,13 @@ pub struct SeriesReport {
     pub models: Vec<ModelOutcome>,
     /// Distributions of the residuals.
     pub residuals: Vec<ResidualGroups>,
-    /// Which residuals are the solver's, a sentence for each model.
+    /// The residuals that are the solver's, a sentence for each model.
     pub solver: Vec<String>,
     /// The best model with the median of what its folds chose, for the simulator.
     pub found: FoundEffects,
 }
 
-/// Compares models of a subject. `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go
+/// Compares models of a subject. `progress` gets a fraction (0 to 1) and the current activity, and answers whether to go
 /// on.
 ///
 /// # Errors

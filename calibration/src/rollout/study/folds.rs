@@ -1,4 +1,4 @@
-//! Which episodes choose parameters, and which judge them.
+//! Folds: the episodes that choose parameters, and those that judge them.
 
 use dwell_scene::random::RandomKey;
 use std::collections::BTreeSet;

@@ -119,7 +119,7 @@ pub struct StudyReport {
     pub noise: TrackerNoise,
     /// In a sentence.
     pub sentence: String,
-    /// Which residuals are the solver's, a sentence for each model.
+    /// The residuals that are the solver's, a sentence for each model.
     pub solver: Vec<String>,
     /// The models, in the order of [`models`].
     pub models: Vec<ModelReport>,
@@ -129,7 +129,7 @@ pub struct StudyReport {
     pub found: FoundEffects,
 }
 
-/// Studies the tracks. `progress` is told a fraction (0 to 1) and what is being done, and answers whether to go on.
+/// Studies the tracks. `progress` gets a fraction (0 to 1) and the current activity, and answers whether to go on.
 ///
 /// # Errors
 /// [`CalibrationError::Field`] for options out of range, [`CalibrationError::TooFew`] for fewer episodes than twice the

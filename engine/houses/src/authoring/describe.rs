@@ -9,7 +9,7 @@ use super::place;
 use crate::error::HousesError;
 use crate::import::{CategoryRow, category, convex_pieces};
 
-/// Writes what is told about an object.
+/// Sets the given attributes of an object.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an unknown category, a mass that is not above 0, or what an object with joints cannot be.

@@ -1,4 +1,4 @@
-//! Edits as plain data: what can be told to a house, in JSON or from code. `docs/authoring.md` lists them with their fields.
+//! Edits of a house as plain data, in JSON or from code. `docs/authoring.md` lists them with their fields.
 
 use dwell_scene::Mobility;
 use serde::{Deserialize, Serialize};
@@ -95,7 +95,7 @@ pub enum ObjectSource {
         /// Metres for one unit of the file.
         #[serde(default = "one")]
         scale: f32,
-        /// Which axis of the file points up.
+        /// The axis of the file that points up.
         #[serde(default)]
         up: UpAxis,
     },
@@ -139,7 +139,7 @@ pub struct Placement {
     pub on: Option<String>,
     /// Heading, degrees to the left; `None`: unchanged.
     pub yaw_deg: Option<f32>,
-    /// Which of its points `at` is.
+    /// The point of the object that `at` gives.
     pub anchor: Anchor,
 }
 
@@ -210,7 +210,7 @@ pub struct SoundSpec {
     /// True if it begins again when it is over.
     #[serde(default = "yes")]
     pub loops: bool,
-    /// When it begins, s after the start of a world; 0 to 86400.
+    /// Start time, s after the start of a world; 0 to 86400.
     #[serde(default)]
     pub start_s: f32,
 }
@@ -235,10 +235,10 @@ pub struct MoveObject {
     /// The new place; without place and height it only turns.
     #[serde(default)]
     pub place: Placement,
-    /// By how much it is shifted after that, m.
+    /// Translation after that, m.
     #[serde(default)]
     pub by: [f32; 3],
-    /// By how much it is turned about its anchor after that, degrees to the left.
+    /// Rotation about its anchor after that, degrees to the left.
     #[serde(default)]
     pub turn_deg: f32,
     /// True to move what stands on it or lies in it along.
@@ -254,7 +254,7 @@ const fn yes() -> bool {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeMaterial {
-    /// Which surfaces.
+    /// The surfaces to change.
     pub of: SurfaceSelector,
     /// Their new style.
     pub look: SurfaceStyle,
@@ -280,7 +280,7 @@ pub enum SurfaceSelector {
     Room {
         /// The room's name.
         name: String,
-        /// Which of its sides.
+        /// The side of the room.
         side: RoomSide,
     },
 }
@@ -379,7 +379,7 @@ pub struct SetAgentStart {
     pub room: Option<String>,
     /// Heading, degrees to the left of -Z.
     pub yaw_deg: f32,
-    /// Which agent, counted from 0; `None`: the first that has no start yet.
+    /// The agent, counted from 0; `None`: the first that has no start yet.
     pub agent: Option<u32>,
 }
 

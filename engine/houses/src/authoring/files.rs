@@ -1,4 +1,4 @@
-//! Which files an edit may name.
+//! Access of edits to files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
-/// Which files an edit may name.
+/// The files that an edit may name.
 #[derive(Clone, Debug)]
 pub enum FileAccess {
     /// Any: the edits come from the user.

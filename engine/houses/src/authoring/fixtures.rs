@@ -23,7 +23,7 @@ const DISC_M: [f32; 3] = [0.06, 0.02, 0.01];
 const WARM_WHITE: [f32; 3] = [1.0, 0.86, 0.68];
 /// Lamps fade with the square of the distance.
 const ATTENUATION: [f32; 3] = [0.0, 0.0, 1.0];
-/// Power of a light of which nothing is told, W.
+/// Power of a light without a stated one, W.
 const USUAL_W: f32 = 10.0;
 
 /// Gives an object a sound from its middle; it starts switched on.

@@ -14,11 +14,11 @@ use crate::import::convex_pieces;
 const FRICTION_N_M: f32 = 0.6;
 const DAMPING_N_M_S: f32 = 1.5;
 
-/// The hinge of a node. All is told in the axes of the house: x, y up, z.
+/// The hinge of a node. All values are in the axes of the house: x, y up, z.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NodeHinge {
-    /// Which way the axis points.
+    /// Direction of the axis.
     #[serde(default)]
     pub axis: HingeAxis,
     /// The side of the box around the node in whose middle the axis lies; not beside `at`.

@@ -14,7 +14,7 @@ pub(super) struct ObjectIndex {
     numbers: BTreeMap<String, u64>,
     /// Of the first objects. Shape (object,).
     boxes: Vec<Aabb>,
-    /// Whose boxes are not true any more.
+    /// Objects whose boxes are out of date.
     moved: BTreeSet<ObjectId>,
     joints: BTreeMap<ObjectId, Vec<JointId>>,
     /// Objects and joints that were taken in.

@@ -13,7 +13,7 @@ use super::place::{points, triangles, world_box};
 const DEEP_M: f32 = 0.01;
 /// Points of a thing that are looked at, at most.
 const LOOKED_AT: usize = 64;
-/// With how many things one is compared, at most.
+/// Largest number of things with which one is compared.
 const MOST_COMPARED: usize = 32;
 /// Ways out: what is inside is left through a surface an odd number of times on each of them. Askew, so that they meet no edge.
 const WAYS: [Vec3; 6] = [

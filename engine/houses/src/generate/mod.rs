@@ -242,7 +242,7 @@ struct UnfurnishedPlan {
 }
 
 impl UnfurnishedPlan {
-    /// Returns what was wanted and could not be had, in sentences.
+    /// Returns the omissions, in sentences.
     fn given_up(&self) -> Vec<String> {
         let missing_connections = self.plan.missing_connections.iter().map(|pair| {
             let [a, b] = pair.map(|kind| kind.traits().words[0]);

@@ -1,4 +1,4 @@
-//! Which rooms a house has, on which storey, and how large.
+//! The room programme of a house: its rooms, their storeys and sizes.
 
 use super::rooms::GeneratedRoomKind;
 use super::spec::{HomeKind, HouseSpec, MAX_ROOMS};

@@ -115,7 +115,7 @@ struct HabitatReader<'a> {
     names: UniqueNames,
     /// Names by semantic id.
     lexicon: BTreeMap<i64, String>,
-    /// From where places count when an instance does not say.
+    /// Origin of the translations of instances that state none.
     origin: Option<String>,
 }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 /// Triangles that hang together.
 #[derive(Debug, Clone)]
 pub(crate) struct Component {
-    /// Which triangles, rising.
+    /// Indices of its triangles, rising.
     pub(crate) triangles: Vec<u32>,
     /// The box around them, mesh space.
     pub(crate) bounds: Aabb,

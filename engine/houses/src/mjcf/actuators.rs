@@ -1,4 +1,4 @@
-//! Actuators: motors told an effort, a position or a velocity.
+//! Actuators: motors driven by an effort, a position or a velocity.
 
 use dwell_scene::Servo;
 use mjcf_rs::Model;

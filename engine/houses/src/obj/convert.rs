@@ -28,7 +28,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("obj"))
 }
 
-/// Opens an OBJ file with its materials and textures. Every `o` is a thing of its own; without one the file is.
+/// Opens an OBJ file with its materials and textures. Every `o` is an object; without one the file is.
 ///
 /// Units are metres and +Y is up, as in SUNCG; the format says neither.
 ///

@@ -44,7 +44,7 @@ pub struct FaceGroup {
     pub group: String,
     /// The last `usemtl`.
     pub material: Option<String>,
-    /// Which faces.
+    /// The range of its faces.
     pub faces: Range<usize>,
 }
 

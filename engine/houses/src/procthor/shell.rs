@@ -53,7 +53,7 @@ struct FaceHole {
 
 /// A wall that was read.
 struct ConvertedWall {
-    /// Which of the file's.
+    /// Index of the wall in the file.
     k: usize,
     face: WallFace,
     holes: Vec<FaceHole>,

@@ -68,7 +68,7 @@ fn an_own_mesh_stands_where_it_is_put_with_the_mass_that_was_told() {
     let part = &steel.parts[steel.objects[steel.object_named("steel").unwrap()].first_part];
     assert_eq!((part.mass_kg, part.density_kg_m3), (None, 900.0));
     assert_eq!(steel.materials[part.materials[0]].substance, "steel");
-    // Up along z: it lies on its side unless told.
+    // Up along z: it lies on its side by default.
     let lying = edited(
         &house,
         add(

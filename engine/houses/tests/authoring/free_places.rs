@@ -1,4 +1,4 @@
-//! Things that are put on others find room there, and what is in something else is told.
+//! Free places for things that are put on others, and warnings of overlaps.
 
 use super::{edited, edits, refused};
 use dwell_houses::authoring::{FileAccess, HousePlan, build, edit};

@@ -137,7 +137,7 @@ impl CpuRenderer {
     }
 }
 
-/// From what casts shadows to a point; nothing for a flat surface that faces away, which light meets only by its rounded normal.
+/// The shadow ray of a caster to a point; `None` for a flat surface that faces away, which light meets only by its rounded normal.
 fn ray_from(caster: &LampCluster, point: Vec3, facing: Vec3) -> Option<Ray> {
     let way = point - caster.center;
     let distance = way.length();

@@ -106,7 +106,7 @@ pub(super) fn ready<T>(future: impl Future<Output = T>) -> T {
     }
 }
 
-/// Which adapter is meant.
+/// The choice of an adapter.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum AdapterChoice<'a> {
     /// The likely quickest that is not software.
@@ -227,7 +227,7 @@ pub fn adapters() -> Vec<Adapter> {
 /// The hint for GL that was used before a fork.
 const NOT_GL: &str = "it cannot be opened again here: start workers with \"spawn\", or use `cpu`";
 
-/// Returns what a process is told that was forked from one that has opened an adapter.
+/// Returns the error for a process that was forked from one that has opened an adapter.
 pub(super) fn forked(adapter: &Adapter) -> RenderError {
     let instead = if adapter.interface == "gl" {
         NOT_GL

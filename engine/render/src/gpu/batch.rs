@@ -336,7 +336,7 @@ impl GpuBatch {
     }
 }
 
-/// From where each agent is to where it was.
+/// The displacement of each agent to its previous position, m.
 fn agents_back<'a>(
     state: &'a State,
     before: &'a PreviousFrame<'_>,

@@ -1,4 +1,4 @@
-//! Which parts of a house can be seen from a place, never too few.
+//! Culling: the parts of a house that can be seen from a place, never too few.
 //!
 //! Static geometry is cut into chunks, subtrees of its tree. A chunk is left out where it lies outside the picture, or
 //! wholly behind one wall, floor or ceiling as seen from the camera: what remains are the camera's room and what its doors
@@ -17,7 +17,7 @@ const CHUNK_BLOCKS: u32 = 32;
 const SHADOWS: usize = 24;
 /// The least solid angle of a wall that is tried, sr.
 const LEAST_SR: f32 = 0.02;
-/// By how much planes give way, m, and for each metre from the camera: more than rounding.
+/// Slack of the planes, m, and for each metre from the camera: more than rounding.
 pub(super) const SLACK_M: f32 = 1e-3;
 const SLACK_PER_M: f32 = 1e-5;
 

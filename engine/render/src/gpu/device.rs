@@ -20,7 +20,7 @@ pub struct Gpu {
     /// By the links that their stacks hold.
     kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
     raster: OnceLock<wgpu::RenderPipeline>,
-    /// Which path is quicker here; see [`VisibilityPathSpeeds::measure`].
+    /// The measured speeds of both paths here; see [`VisibilityPathSpeeds::measure`].
     speeds: OnceLock<VisibilityPathSpeeds>,
     /// The process that opened it.
     process: u32,

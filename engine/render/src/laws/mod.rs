@@ -103,7 +103,7 @@ impl DepthContext<'_> {
     }
 }
 
-/// When the rows of a picture are taken.
+/// The times at which the rows of a picture are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shutter {
     /// Delay of each row after the one above, s; the last one is taken at the picture's time.

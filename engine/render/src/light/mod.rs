@@ -286,7 +286,7 @@ pub(crate) struct ShadingPoint {
     pub(crate) normal: Vec3,
     /// The point at which its room is looked up, see [`room_lookup_point`].
     pub(crate) room_lookup: Vec3,
-    /// Whose surface it is.
+    /// The entity of the surface.
     pub(crate) entity: i32,
 }
 

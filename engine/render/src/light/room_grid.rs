@@ -1,4 +1,4 @@
-//! Which room a point lies in, by table.
+//! The room around a point, by table.
 
 use dwell_scene::{House, Id, RoomId, Structure, StructureKind};
 use glam::{Vec2, Vec3};

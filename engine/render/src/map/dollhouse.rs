@@ -23,7 +23,7 @@ const SLAB_M: f32 = 0.35;
 /// Edge of the pixels by which walls are found at the cut, m.
 const PLAN_PIXEL_M: f32 = 0.015;
 
-/// From where a doll's house is seen.
+/// The view of a doll's house.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DollhouseConfig {

@@ -6,17 +6,17 @@
 
 use dwell_render::{Camera, Frame, VisibilityPath};
 
-/// By how much depths may differ, m.
+/// Tolerance of depths, m.
 const DEPTH_M: f32 = 1e-3;
 /// Surfaces as near to one another as this coincide: either may be seen, m.
 const COINCIDENT_M: f32 = 1e-4;
-/// By how much depth jumps between pixels that are not compared alone, as a share of the nearest.
+/// Jump of depth between pixels that are not compared alone, as a share of the nearest.
 const JUMP: f32 = 0.02;
-/// By how much normals may turn, degrees.
+/// Tolerance of normals, degrees.
 const TURN_DEG: f32 = 0.1;
-/// By how much flow may differ: pixels, and as a share of it.
+/// Tolerance of flow: pixels, and as a share of it.
 const FLOW: [f32; 2] = [0.02, 1e-3];
-/// By how much reflectances may differ.
+/// Tolerance of reflectances.
 const ALBEDO: f32 = 0.01;
 /// Levels of 255 by which colours may differ.
 const LEVELS: f32 = 2.0;

@@ -11,7 +11,7 @@ impl<T: Send + 'static> Drop for DropInBackground<T> {
     fn drop(&mut self) {
         if std::thread::panicking() {
             let items = std::mem::take(&mut self.0);
-            // Without a thread to be had they are dropped here: late, but dropped.
+            // If no thread can be started they are dropped here: late, but dropped.
             drop(std::thread::Builder::new().spawn(move || drop(items)));
         }
     }

@@ -15,7 +15,7 @@ use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 pub struct PictureRequest {
     /// The camera as it should be; laws of the agent's cameras make it what it is.
     pub camera: Camera,
-    /// From where.
+    /// The camera's mount.
     pub place: CameraMount,
     /// The amount of light transport.
     pub preset: Preset,

@@ -13,7 +13,7 @@ const EXPOSED: u16 = 16;
 /// Moments between which things stand still while a shutter rolls; the camera moves from row to row.
 const MOMENTS: usize = 16;
 
-/// When a picture's rows are taken, in steps of the world.
+/// The times at which a picture's rows are taken, in steps of the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RowTiming {
     /// Delay of each row after the one above.

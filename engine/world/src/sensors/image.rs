@@ -123,7 +123,7 @@ impl ImageContext<'_> {
         self.world.optics(&self.request.place)
     }
 
-    /// From where.
+    /// The view of the picture.
     pub(super) fn view(&self) -> View {
         self.world.shot(&self.request).view
     }

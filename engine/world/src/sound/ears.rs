@@ -18,7 +18,7 @@ const INAUDIBLE_DB: f32 = 15.0;
 pub(super) struct AgentEars {
     pub(super) agent: AgentId,
     pub(super) stream: Stream,
-    /// On which they are; `None`: the built-in sphere.
+    /// The head of these ears; `None`: the built-in sphere.
     pub(super) head: Option<HeadId>,
     /// The newest samples. Shape (2, length), oldest first.
     pub(super) window: Vec<f32>,

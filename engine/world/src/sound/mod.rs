@@ -44,7 +44,7 @@ pub(crate) struct WorldSound {
     rate_hz: u32,
     block: usize,
     preset: String,
-    /// On which all ears are; `None`: the built-in sphere.
+    /// The head of all ears; `None`: the built-in sphere.
     head: Option<HeadId>,
     /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,

@@ -1,4 +1,4 @@
-//! Sounds that were told to play.
+//! Sounds played on request.
 
 use super::fade::GainRamp;
 use crate::engines::Engines;
@@ -183,7 +183,7 @@ impl Playback {
             || (self.told.stopped && self.told.fade.is_silent())
     }
 
-    /// From where it is heard, m: of an object, not from within it, but from above.
+    /// The point from which it is heard, m: of an object, not from within it, but from above.
     pub(super) fn heard_from(&self, house: &House, state: &State) -> Vec3 {
         let SoundPlace::Object(object) = self.told.request.place else {
             return self.position(house, state);
@@ -215,7 +215,7 @@ impl Playback {
     }
 }
 
-/// The level that a sound has when none is told: that of a signal; files have none.
+/// The level of a sound without a stated one: that of a signal; files have none.
 ///
 /// # Errors
 /// [`WorldError::Acoustics`] for a signal that does not exist.

@@ -1,4 +1,4 @@
-//! Which module uses which, and the shortest circles.
+//! The graph of modules by use, and its shortest circles.
 
 use super::module_files::ModuleFile;
 use super::root_names::RootNames;

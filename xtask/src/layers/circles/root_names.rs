@@ -1,4 +1,4 @@
-//! Which module a name below a crate's root belongs to: itself, or the one that the root re-exports it from.
+//! The module of a name below a crate's root: itself, or the one that the root re-exports it from.
 
 use super::references::FileReferences;
 use std::collections::{BTreeMap, BTreeSet};

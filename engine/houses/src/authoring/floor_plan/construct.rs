@@ -224,7 +224,7 @@ impl StoreyBuilder<'_> {
         ))
     }
 
-    /// The coverings of a room: as usual for its kind, and as it is told.
+    /// Returns the finishes of a room: as usual for its kind, where the plan does not state others.
     fn look(&self, k: usize, room: &RoomPlan) -> Result<RoomFinishes, HousesError> {
         let word = kind_of(room).replace(' ', "_");
         let kind: GeneratedRoomKind =

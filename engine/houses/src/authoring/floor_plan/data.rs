@@ -10,9 +10,9 @@ pub const OUTSIDE: &str = "outside";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BuildingPlan {
-    /// The style of coverings and woodwork that are not told; `None`: one for training, drawn by the seed.
+    /// The style of coverings and woodwork that are not stated; `None`: one for training, drawn by the seed.
     pub style: Option<String>,
-    /// Draws what is not told.
+    /// The seed for all that is not stated.
     pub seed: u64,
     /// Thickness of walls to the outside, m; 0.05 to 1. Walls between rooms are what is left between their floors.
     pub outer_wall_m: f32,

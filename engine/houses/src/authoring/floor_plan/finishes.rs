@@ -50,7 +50,7 @@ pub(super) fn finish(covering: &SurfaceFinish) -> Result<Finish, HousesError> {
     Ok(Finish::tiled(name, name, recipe, colors, *tile_m))
 }
 
-/// A room's look with what is told of it.
+/// Returns a room's finishes with those that the plan states.
 pub(super) fn with_plan_finishes(
     room: &RoomPlan,
     usual: RoomFinishes,

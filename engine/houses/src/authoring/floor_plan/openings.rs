@@ -22,7 +22,7 @@ pub(super) enum OpeningFill<'a> {
 /// A hole in a stretch of wall.
 #[derive(Debug)]
 pub(super) struct PlanOpening<'a> {
-    /// Which stretch.
+    /// Index of the stretch.
     pub(super) stretch: usize,
     pub(super) opening: WallOpening,
     pub(super) filling: OpeningFill<'a>,
@@ -99,7 +99,7 @@ fn of_door<'a>(
     let fits = |stretch: &WallSegment| lies(stretch, own, other, door.side);
     let (stretch, along) = place(stretches, fits, (&between, door.at_m, width))?;
     let inward = stretches[stretch].sides[1] == PlanCell::Room(own);
-    // The model looks along +Z into the room; its left is where hinges are unless told otherwise.
+    // The model looks along +Z into the room; its left is where hinges are by default.
     let low_is_left = inward == stretches[stretch].along_x;
     let at_low = (door.hinge == super::data::HingeSide::Left) == low_is_left;
     let [from, to] = stretches[stretch].span().map(metres);

@@ -74,7 +74,7 @@ pub(crate) struct FurnishingRule {
     /// Rooms with less floor do not get it, m².
     #[serde(default)]
     pub(crate) from_m2: f32,
-    /// Why.
+    /// The reason for the rule.
     pub(crate) reason: String,
 }
 
@@ -113,7 +113,7 @@ pub(crate) struct SmallItemRule {
     pub(crate) turn_deg: f32,
     /// Its probability; `clutter` scales it.
     pub(crate) chance: f32,
-    /// Why.
+    /// The reason for the rule.
     #[cfg_attr(not(test), expect(dead_code, reason = "for readers; tests ask for it"))]
     pub(crate) reason: String,
 }

@@ -1,4 +1,4 @@
-//! Which room lies where on a storey, and the walls between rooms.
+//! Cells of a storey by room, and the walls between rooms.
 
 use super::{GeneratedRoom, GridRect, GridSteps};
 

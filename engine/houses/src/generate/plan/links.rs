@@ -1,4 +1,4 @@
-//! Which rooms are joined: all with the hallway or the living room, never through a bedroom or a bathroom.
+//! Connections of rooms: all with the hallway or the living room, never through a bedroom or a bathroom.
 
 use super::{
     ConnectionKind, GeneratedRoom, GeneratedStorey, GridSteps, RoomBoundary, RoomConnection,

@@ -35,7 +35,7 @@ impl StoreyFrame {
     }
 }
 
-/// Which room stands where on a storey.
+/// The layout of a storey: the rooms of its strips and ends.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StripLayout {
     /// Rooms of the northern and the southern strip from west to east.

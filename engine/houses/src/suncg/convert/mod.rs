@@ -102,7 +102,7 @@ struct Converter<'a> {
     structure_names: UniqueNames,
     /// Bounds of the parts made so far, to see what rests on what.
     stands: Vec<(PartId, Aabb)>,
-    /// Which elements of `arch.json` some room has.
+    /// True for each element of `arch.json` that some room has.
     arch_used: Vec<bool>,
     /// Corners of all rooms' meshes so far.
     corners_shown: u64,
