@@ -22,20 +22,20 @@ const WAYS: [Vec3; 6] = [
     Vec3::NEG_Z,
     Vec3::NEG_Y,
 ];
-/// Rays that look around from a place.
+/// Rays from a place that measure its openness.
 const LOOKS: usize = 16;
-/// A way that leads to something is worth so much, one to the sky half of it: over a roof nothing is heard of what is below.
+/// Weights of rays that reach something and that reach the sky: over a roof nothing is heard of what is below.
 const OPEN: usize = 2;
 const SKY: usize = 1;
-/// A place as open as this will do: less than half of all ways, since sounds may stand before a wall; more than just over a roof.
+/// Sufficient openness: less than half of all rays, since sounds may stand before a wall; more than just over a roof.
 const ENOUGH: usize = 14;
-/// A way is open that leads so far, m.
+/// Length from which on a ray counts as free, m.
 const OPEN_M: f32 = 0.1;
 const TURNS_A_LOOK: f32 = 0.618_034;
-/// A place is as open as the least open one so far beside it, m: on a surface a rounding decides on which side of it one is.
+/// Distance of the neighbours whose least openness is that of a place, m: on a surface rounding decides on which side a point is.
 const GRAZE_M: f32 = 1e-3;
 
-/// Returns how open it is at `place` and around it.
+/// Returns the openness at `place` and around it.
 fn openness(rays: &RayScene, place: Vec3) -> usize {
     let open = openness_at(rays, place);
     if open < ENOUGH {

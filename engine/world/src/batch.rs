@@ -27,7 +27,7 @@ pub struct Batch {
 /// Waves in which worlds step where pictures overlap with it: the adapter takes those of one while the next steps.
 const WAVES: usize = 4;
 
-/// One environment of a batch, and what its part of a step came to.
+/// One environment of a batch, and the result of its part of a step.
 struct EnvSlot<'a, R> {
     env: &'a mut Env,
     active: bool,
@@ -74,7 +74,7 @@ impl Batch {
         &self.envs
     }
 
-    /// One environment, to look at closely.
+    /// One environment, for reading.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for an environment that does not exist.
@@ -91,7 +91,7 @@ impl Batch {
     /// [`WorldError::Usage`] for an environment that does not exist.
     pub fn env_mut(&mut self, index: usize) -> Result<&mut Env, WorldError> {
         let count = self.envs.len();
-        // Whoever may change a world makes its pictures old.
+        // A world that may be changed has outdated pictures.
         if let Some(is_started) = self.is_started.get_mut(index) {
             *is_started = false;
         }
@@ -100,7 +100,7 @@ impl Batch {
             .ok_or_else(|| WorldError::Usage(format!("no environment {index}; there are {count}")))
     }
 
-    /// Puts another environment in the place of one, which is given back: an episode may begin in another house.
+    /// Replaces an environment and returns the old one: an episode may begin in another house.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for an environment that does not exist or whose sensors differ, [`WorldError::Render`] for a
@@ -119,7 +119,7 @@ impl Batch {
         Ok(std::mem::replace(&mut self.envs[index], env))
     }
 
-    /// Goes to a snapshot of one environment.
+    /// Restores a snapshot in one environment.
     ///
     /// Stopped by [`interrupt`], its episode is over.
     ///
@@ -131,7 +131,7 @@ impl Batch {
         self.or_over(&active, |batch| batch.env_mut(index)?.restore(bytes))
     }
 
-    /// Returns what the scripted expert would do now in each environment.
+    /// Returns the scripted expert's action now in each environment.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
@@ -141,12 +141,12 @@ impl Batch {
         Ok(actions.into_iter().flatten().collect())
     }
 
-    /// Returns what every environment's sensors give.
+    /// Returns the specifications of every environment's sensors.
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.envs[0].specs()
     }
 
-    /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
+    /// Does `work` in the environments of `active`; then starts their pictures, where requested.
     fn change<R: Send>(
         &mut self,
         active: &[bool],
@@ -297,7 +297,7 @@ impl Batch {
         })
     }
 
-    /// Returns what the environments that begin will sound like and nobody has made yet; all have one rate.
+    /// Returns the signals that the starting environments will play and nobody has made yet; all have one rate.
     fn signals_to_make(&self, active: &[bool]) -> (Vec<String>, u32) {
         let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
@@ -355,7 +355,7 @@ impl Batch {
                 specs.len()
             )));
         }
-        // Episodes go on whatever stops this: worlds are only looked at.
+        // Episodes go on whatever stops this: worlds are only read.
         self.or_over(&vec![false; self.envs.len()], |batch| {
             batch.finish_pictures()?;
             let chosen = batch.envs.iter_mut().enumerate();

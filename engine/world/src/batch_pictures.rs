@@ -13,11 +13,11 @@ use std::sync::Arc;
 /// colours meanwhile.
 const MOST_OPEN: usize = 64;
 
-/// A picture that is to be taken.
+/// A picture to be taken.
 struct PictureOrder<'a> {
-    /// Of the environment.
+    /// Index of the environment.
     number: usize,
-    /// Among the environment's pictures.
+    /// Index among the environment's pictures.
     place: usize,
     world: &'a World,
     request: PictureRequest,
@@ -39,7 +39,7 @@ struct RendererGroup<'a> {
     orders: Vec<PictureOrder<'a>>,
 }
 
-/// Returns what environments, with their numbers, ask for, by renderer.
+/// Returns the picture orders of environments, with their indices, by renderer.
 fn gather<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
 ) -> Result<Vec<RendererGroup<'a>>, WorldError> {
@@ -71,7 +71,7 @@ fn gather<'a>(
     Ok(groups)
 }
 
-/// The first orders of which not too many have an open shutter, and how many have.
+/// The first orders, as many as may have an open shutter, and how many have.
 fn first_orders<'a>(
     orders: &mut impl Iterator<Item = PictureOrder<'a>>,
 ) -> (Vec<PictureOrder<'a>>, usize) {
@@ -87,7 +87,7 @@ fn first_orders<'a>(
     (taken, open)
 }
 
-/// Stands the cameras of some orders up, `open` of them with an open shutter.
+/// Sets up the cameras of some orders, `open` of them with an open shutter.
 fn set_up_cameras(
     (orders, open): (Vec<PictureOrder<'_>>, usize),
     threads: Threads,
@@ -132,7 +132,7 @@ fn jobs<'a>(taking: &'a mut [PictureInProgress<'_>]) -> Vec<RenderJob<'a>> {
     jobs
 }
 
-/// Makes one picture of each that was exposed.
+/// Develops the pictures that were exposed.
 fn develop<'a>(
     pairs: impl Iterator<Item = (&'a mut PendingPicture, &'a mut Picture)>,
     threads: Threads,
@@ -143,7 +143,7 @@ fn develop<'a>(
     });
 }
 
-/// Takes all pictures that environments ask for.
+/// Takes all pictures that environments order.
 pub(crate) fn take<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
@@ -175,7 +175,7 @@ pub(crate) struct PendingPictures {
     takes: Vec<(usize, usize, PendingPicture)>,
 }
 
-/// Starts the pictures that environments ask for. None of those by the processor, which would keep nobody free.
+/// Starts the pictures that environments order. Not those on the processor, which would be busy with them.
 pub(crate) fn start<'a>(
     envs: impl Iterator<Item = (usize, &'a mut Env)>,
     threads: Threads,
@@ -216,7 +216,7 @@ impl PendingPictures {
         self.takes.iter().map(|(number, ..)| *number)
     }
 
-    /// Waits for the pictures and gives them to their environments.
+    /// Waits for the pictures and hands them to their environments.
     pub(crate) fn finish(self, envs: &mut [Env], threads: Threads) -> Result<(), WorldError> {
         let Self {
             renderer,

@@ -46,7 +46,7 @@ pub struct WorldConfig {
     pub parameters: BTreeMap<String, f64>,
 }
 
-/// Files of worlds that `cpu` renders do not mention it.
+/// Returns whether a back end is the default, which files do not mention.
 fn is_default(back_end: &BackEnd) -> bool {
     *back_end == BackEnd::Cpu
 }
@@ -128,7 +128,7 @@ impl WorldConfig {
         Ok(())
     }
 
-    /// Looks whether the folder of sound files is there.
+    /// Checks that the folder of sound files exists.
     ///
     /// # Errors
     /// [`WorldError::Config`] with what the system says.
@@ -136,7 +136,7 @@ impl WorldConfig {
         let Some(folder) = &self.sound_root else {
             return Ok(());
         };
-        // What is listed is a folder that may be read.
+        // A folder is readable if it can be listed.
         let Err(told) = std::fs::read_dir(folder) else {
             return Ok(());
         };
@@ -158,7 +158,7 @@ impl WorldConfig {
     }
 }
 
-/// Returns what is wrong with the body of one of the agents, with its place among them.
+/// Returns the message for a fault of an agent's body, with its index.
 fn of_agent(number: usize, error: SceneError) -> SceneError {
     match error {
         SceneError::Range {

@@ -5,7 +5,7 @@ use dwell_scene::{Aabb, AgentId, AgentState, Id, ObjectId};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
-/// The agents as they are now: their bodies have the numbers that are in force, whatever set them.
+/// The agents as they are now: their bodies have the values in force, whatever set them.
 pub fn effective_agents(world: &World) -> Vec<AgentState> {
     let state = world.state();
     let agents = state.agents.iter().enumerate();

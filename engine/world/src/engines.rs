@@ -25,19 +25,19 @@ const KEPT_GRIDS: usize = 8;
 pub struct Engines {
     house: Arc<House>,
     renderer: OnceLock<Arc<CpuRenderer>>,
-    /// By back end.
+    /// Renderers by back end.
     pictures: Mutex<BTreeMap<BackEnd, Arc<Renderer>>>,
     semantics: OnceLock<Semantics>,
     physics: OnceLock<Arc<PhysicsModel>>,
-    /// By preset and sample rate.
+    /// Scenes by preset and sample rate.
     acoustics: Mutex<BTreeMap<(String, u32), AcousticScene>>,
     heads: Mutex<BTreeMap<HeadId, Head>>,
     recordings: Recordings,
     /// The points from which the house's own sounds are heard. Shape (emitter,).
     emitter_places: OnceLock<Vec<Vec3>>,
-    /// Of the house as it starts, by walker, the latest at the end.
+    /// Grids of the house as it starts, by walker, the latest at the end.
     grids: Mutex<Vec<Arc<NavGrid>>>,
-    /// Of the latest config, as long as a world of it is left.
+    /// The initial state of the latest config, as long as a world of it is left.
     start: Mutex<Option<(WorldConfig, Weak<InitialWorld>)>>,
     /// The last field: it is dropped after all others.
     _heap: ReleaseOnDrop,
@@ -77,7 +77,7 @@ impl Engines {
             .get_or_init(|| Arc::new(CpuRenderer::new(&self.house)))
     }
 
-    /// A back end over the house, made when it is first asked for.
+    /// A back end over the house, made at first use.
     ///
     /// # Errors
     /// [`WorldError::Render`] for a graphics adapter that is not there, fails, or is too small for the house.
@@ -91,7 +91,7 @@ impl Engines {
         Ok(renderer)
     }
 
-    /// Returns what can be said about the house.
+    /// Returns the semantics of the house.
     pub fn semantics(&self) -> &Semantics {
         self.semantics.get_or_init(|| Semantics::new(&self.house))
     }
@@ -102,7 +102,7 @@ impl Engines {
             .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
     }
 
-    /// Returns where worlds of a config begin; worlds that run side by side share it.
+    /// Returns the initial state of worlds of a config; worlds that run side by side share it.
     pub(crate) fn start(&self, config: &WorldConfig) -> Result<Arc<InitialWorld>, WorldError> {
         let mut latest = self.start.lock().unwrap_or_else(PoisonError::into_inner);
         let shared = latest.as_ref().filter(|(of, _)| of == config);
@@ -141,7 +141,7 @@ impl Engines {
             .clone())
     }
 
-    /// One more head on which agents may have their ears; [`WorldConfig::sound_head`] names it.
+    /// Adds a head for the agents' ears; [`WorldConfig::sound_head`] names it.
     pub fn add_head(&self, head: &Head) {
         let mut heads = self.heads.lock().unwrap_or_else(PoisonError::into_inner);
         heads.entry(head.id()).or_insert_with(|| head.clone());
@@ -181,7 +181,7 @@ impl Engines {
         self.recordings.of_house(&self.house, id, rate_hz)
     }
 
-    /// Refuses a house with a sound file that is none, before somebody hears it.
+    /// Refuses a house with an invalid sound file, before it is heard.
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] with the file and what plays it.
@@ -189,7 +189,7 @@ impl Engines {
         self.recordings.check_house(&self.house)
     }
 
-    /// Returns where a body can walk in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
+    /// Returns the navigation grid of a body in the house as it starts, with all doors open; shared as that of [`Engines::grid`].
     ///
     /// # Errors
     /// As [`Engines::grid`].
@@ -203,7 +203,7 @@ impl Engines {
         })
     }
 
-    /// Returns where a walker can walk in the house as it starts. Grids of the latest eight walkers are kept and shared.
+    /// Returns the navigation grid of a walker in the house as it starts. Grids of the latest eight walkers are kept and shared.
     ///
     /// # Errors
     /// [`WorldError::Scene`] for a setting out of range, or a house too large for the grid.
@@ -216,7 +216,7 @@ impl Engines {
         if let Some(grid) = kept(&mut self.grids()) {
             return Ok(grid);
         }
-        // Without the lock: others go on meanwhile, and who is stopped leaves nothing behind.
+        // Without the lock: other threads go on meanwhile, and a stopped build leaves nothing behind.
         let built = NavGrid::build(&self.house, &State::new(&self.house), config)?;
         let mut grids = self.grids();
         if let Some(first) = kept(&mut grids) {
@@ -250,7 +250,7 @@ mod tests {
         let first = engines.grid(&walker(0)).unwrap();
         assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
         for k in 1..=KEPT_GRIDS {
-            // Who is asked for again stays longest.
+            // The grid that is requested again stays longest.
             assert!(Arc::ptr_eq(&first, &engines.grid(&walker(0)).unwrap()));
             assert_eq!(engines.grid(&walker(k)).unwrap().config(), &walker(k));
         }

@@ -39,7 +39,7 @@ pub struct EnvConfig {
     pub sensors: Option<Vec<SensorConfig>>,
 }
 
-/// A sensor that is asked for.
+/// A requested sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorConfig {
@@ -137,7 +137,7 @@ impl Env {
         }
         let mut world_config = config.world.clone();
         world_config.settle_s.get_or_insert(SETTLE_S);
-        // What `agent/N/camera/fov_deg` reads is what the agent sees with: its first camera with a field of view.
+        // `agent/N/camera/fov_deg` reads the value of the agent's first camera with a field of view.
         for (k, body) in world_config.agents.iter_mut().enumerate() {
             let eyes = sensors.iter().filter_map(|sensor| sensor.eye());
             let mut own = eyes.filter(|eye| eye.agent.index() == k);
@@ -173,12 +173,12 @@ impl Env {
         self.kind
     }
 
-    /// Returns how far movement actions go.
+    /// Returns the step sizes of movement actions.
     pub fn stride(&self) -> &StepSizes {
         &self.stride
     }
 
-    /// Returns what the sensors give, in order.
+    /// Returns the specifications of the sensors, in order.
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.sensors.iter().map(|sensor| sensor.spec()).collect()
     }
@@ -188,7 +188,7 @@ impl Env {
         &self.world
     }
 
-    /// The world, to look at closely or to change between episodes.
+    /// The world, for changes between episodes.
     pub fn world_mut(&mut self) -> &mut World {
         self.is_new = false;
         &mut self.world
@@ -199,7 +199,7 @@ impl Env {
         self.episode.as_ref()
     }
 
-    /// Returns how many steps the episode has had; 0 where none runs.
+    /// Returns the number of steps of the episode; 0 where none runs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
@@ -210,7 +210,7 @@ impl Env {
     /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
     pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
         let key = RandomKey::root(seed).child("episode");
-        // What fails from here on leaves no episode behind that could go on.
+        // A failure from here on leaves no episode behind that could go on.
         self.abandon_episode();
         // A copy of the start beside the first one would only take its time and memory.
         if std::mem::take(&mut self.is_new) {
@@ -223,7 +223,7 @@ impl Env {
         Ok(self.episode.insert(episode))
     }
 
-    /// [`Self::reset`], with the ears open that the sensors ask for, as a [`Batch`](crate::Batch) begins an episode.
+    /// [`Self::reset`], with the ears open that the sensors need, as a [`Batch`](crate::Batch) begins an episode.
     ///
     /// # Errors
     /// Those of [`Self::reset`], [`WorldError::Acoustics`] for a source that cannot be simulated.
@@ -253,7 +253,7 @@ impl Env {
         Ok(())
     }
 
-    /// Ends the episode: what happens to the world from here on belongs to none.
+    /// Ends the episode: later changes of the world belong to none.
     pub(crate) fn abandon_episode(&mut self) {
         self.episode = None;
         self.steps = 0;
@@ -273,12 +273,12 @@ impl Env {
         Err(WorldError::Usage(format!("step: {what}; call reset first")))
     }
 
-    /// Samples of sound that were cut off in the latest observation, because they were louder than it can hold.
+    /// Number of samples of sound in the latest observation that were clipped.
     pub fn clipped(&self) -> u64 {
         self.sensors.iter().map(|sensor| sensor.clipped()).sum()
     }
 
-    /// Makes one control step with `action`, without looking: a [`Batch`](crate::Batch) observes afterwards.
+    /// Makes one control step with `action`, without observing: a [`Batch`](crate::Batch) observes afterwards.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset and after the end of an episode.
@@ -312,7 +312,7 @@ impl Env {
         })
     }
 
-    /// Returns what the scripted expert would do now.
+    /// Returns the scripted expert's action now.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
@@ -325,17 +325,17 @@ impl Env {
         Ok(self.task.expert(&mut self.world, episode))
     }
 
-    /// Opens the ears that the sensors ask for, where they are not open yet.
+    /// Opens the ears that the sensors need, where they are not open yet.
     pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
         self.world.listen(&self.requests.ears)
     }
 
-    /// Returns what the sensors ask of the engines.
+    /// Returns the sensors' requests to the engines.
     pub(crate) fn requests(&self) -> &Requests {
         &self.requests
     }
 
-    /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
+    /// The signals that will be heard once an agent listens, and their rate; none where no sensor listens.
     pub(crate) fn signals(&self) -> (Vec<String>, u32) {
         if self.requests.ears.is_empty() {
             return (Vec::new(), 0);
@@ -415,7 +415,7 @@ mod tests {
         Env::new(Engines::new(Arc::new(house)), &config).unwrap()
     }
 
-    /// Nothing has yet to fall in an episode's first moment, in any episode; whoever wants that says so.
+    /// Nothing has yet to fall in an episode's first moment, in any episode, unless the config says so.
     #[test]
     fn episodes_begin_when_things_have_come_to_rest() {
         let mut env = env();
@@ -441,7 +441,7 @@ mod tests {
         assert!(falling.world.physics.awake_count() > 100);
     }
 
-    /// The first episode of a world has not gone through a reset of what had happened in it.
+    /// The first episode of a world starts without a reset.
     #[test]
     fn the_first_episode_is_that_of_any_later_reset() {
         let play = |env: &mut Env| {
@@ -464,7 +464,7 @@ mod tests {
         assert_eq!(play(&mut changed), first);
     }
 
-    /// The second agent does, sees and is judged as the first does where the first alone plays; the other stands still.
+    /// The second agent acts, senses and is judged as the first does where the first alone plays; the other stands still.
     #[test]
     fn an_environment_is_about_the_agent_that_it_names() {
         let sensors = ["gps", "compass", "gyro", "wheel_odometry"];

@@ -50,7 +50,7 @@ impl Env {
         Ok([MAGIC, &body].concat())
     }
 
-    /// Goes to where [`Self::snapshot`] was taken in an environment of the same make; the next steps give the same bits as
+    /// Restores [`Self::snapshot`] in an environment of the same make; the next steps give the same bits as
     /// they did then. Only the scripted expert forgets a manoeuvre that it was about.
     ///
     /// # Errors

@@ -11,10 +11,10 @@ use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
 use dwell_semantics::vocabulary;
 
 impl Env {
-    /// Asks something else of the episode that has just begun: what a task outside of this crate does, once it has arranged
+    /// Sets another goal of the episode that has just begun: for a task outside of this crate, once it has arranged
     /// the world. The agent starts where it stands now.
     ///
-    /// `asked`: the instruction, and the way to the goal, m, where there is a goal to go to; `None`: as the task asks.
+    /// `asked`: the instruction, and the distance to the goal, m, where there is a goal to go to; `None`: as the task sets it.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a text that the sensors of instructions
@@ -42,7 +42,7 @@ impl Env {
         Ok(())
     }
 
-    /// Judges the latest step anew, in place of the task; `distance_m` is the way to the goal that is left, m, the last known
+    /// Judges the latest step anew, in place of the task; `distance_m` is the remaining distance to the goal, m, the last known
     /// one where it is `None`. Gives back the measures of the episode.
     ///
     /// # Errors

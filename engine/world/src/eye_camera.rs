@@ -11,7 +11,7 @@ pub struct EyeCamera {
     pub agent: AgentId,
     /// The camera.
     pub camera: Camera,
-    /// Its horizontal field of view, degrees; nothing for a camera that was given by its projection.
+    /// Its horizontal field of view, degrees; `None` for a camera that was given by its projection.
     pub fov_deg: Option<f32>,
     /// Its pose relative to the eyes.
     pub eye_from_camera: Pose,
@@ -20,7 +20,7 @@ pub struct EyeCamera {
 }
 
 impl EyeCamera {
-    /// The camera as a world's parameters have it: once `agent/N/camera/fov_deg` is set it goes before its own
+    /// The camera under a world's parameters: once `agent/N/camera/fov_deg` is set it takes precedence over its own
     /// field of view. A camera that was given by its projection keeps it.
     pub fn camera_in(&self, state: &State) -> Camera {
         let (Some(fov_deg), Some(_)) = (state.overridden_fov_deg(self.agent), self.fov_deg) else {
@@ -34,7 +34,7 @@ impl EyeCamera {
 }
 
 impl EyeCamera {
-    /// The picture that it asks for.
+    /// Its request for a picture.
     pub fn request(&self, state: &State) -> PictureRequest {
         PictureRequest {
             camera: self.camera_in(state),

@@ -14,7 +14,7 @@ pub struct NavigationMetrics {
     pub start_distance_m: Option<f64>,
     /// Geodesic distance to the goal now, m; `None` when it cannot be reached from here.
     pub distance_m: Option<f64>,
-    /// Length of the way so far: the sum of straight steps, m.
+    /// Length of the path so far: the sum of straight steps, m.
     pub path_m: f64,
     /// Steps that were cut short by something in the way.
     pub collisions: u64,
@@ -33,7 +33,7 @@ impl NavigationMetrics {
         }
     }
 
-    /// Takes in one step and returns by how much the distance fell, m (0 where it is unknown).
+    /// Adds one step and returns by how much the distance fell, m (0 where it is unknown).
     pub fn advance(&mut self, position: Vec3, distance_m: Option<f64>, collided: bool) -> f64 {
         self.path_m += f64::from((position - self.last_position).length());
         self.last_position = position;

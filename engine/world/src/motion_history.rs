@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 /// The motion of the last step: what has moved, with its previous pose.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionHistory {
-    /// Parts that have moved, by part.
+    /// Previous poses of the parts that have moved, by part.
     pub moved: Vec<(PartId, Pose)>,
     /// True if there was a step since the world began.
     pub known: bool,
-    /// The agents' eyes. Shape (agent,); empty where nothing has been before.
+    /// The agents' eyes. Shape (agent,); empty before the first step.
     pub eyes: Vec<Pose>,
-    /// The agents' feet, m. Shape (agent,); empty where nothing has been before.
+    /// The agents' feet, m. Shape (agent,); empty before the first step.
     pub feet: Vec<Vec3>,
 }
 
 impl MotionHistory {
-    /// Remembers what `before` has otherwise than `now`.
+    /// Records the differences of `before` from `now`.
     pub(crate) fn remember(&mut self, before: &PreviousState, now: &State) {
         self.known = true;
         self.moved.clear();
@@ -30,7 +30,7 @@ impl MotionHistory {
         self.feet.clone_from(&before.feet);
     }
 
-    /// Forgets all: nothing has been before.
+    /// Clears the history.
     pub(crate) fn clear(&mut self) {
         self.known = false;
         self.moved.clear();
@@ -38,7 +38,7 @@ impl MotionHistory {
         self.feet.clear();
     }
 
-    /// Returns where an agent's eyes were; where they are, when nothing has been before.
+    /// Returns the previous pose of an agent's eyes; the current one before the first step.
     pub fn eye(&self, agent: AgentId, now: &State) -> Option<Pose> {
         let is = now.agents.get(agent)?.world_from_eye();
         Some(self.eyes.get(agent.index()).copied().unwrap_or(is))
@@ -50,7 +50,7 @@ impl MotionHistory {
         self.moved.is_empty() && feet.into_iter().all(|(was, is)| *was == is.position)
     }
 
-    /// Puts parts and agents of a copy of the present to where they were the part `share` of a step ago.
+    /// Moves parts and agents of a copy of the present back by the part `share` of a step.
     pub(crate) fn rewind(&self, state: &mut State, share: f32) {
         for (part, was) in &self.moved {
             let is = &mut state.part_pose[*part];

@@ -1,4 +1,4 @@
-//! Settings from JSON, refused in people's words: the field, what was found, what is allowed.
+//! Settings from JSON, refused in plain words: the field, what was found, what is allowed.
 
 use crate::error::WorldError;
 use serde::de::DeserializeOwned;
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 /// [`WorldError::Settings`] names the field that cannot be read.
 pub(crate) fn read<T: DeserializeOwned>(of: &'static str, value: &Value) -> Result<T, WorldError> {
     serde_json::from_value(value.clone()).map_err(|error| {
-        // Whoever reads all says not where it stopped; who reads one field alone says it.
+        // A reader of the whole object does not report the field; reading one field alone does.
         let mut alone = value
             .as_object()
             .into_iter()

@@ -1,6 +1,6 @@
-//! Faults of JSON in people's words.
+//! Errors of JSON in plain words.
 
-/// Returns what a reader of JSON says, in people's words and without the place in a text that nobody wrote.
+/// Returns the message of a JSON reader in plain words and without the position in a text that nobody wrote.
 pub fn plain_json_error(error: &serde_json::Error) -> String {
     let text = dwell_houses::plain_parse_error(error);
     let text = text.split(" at line ").next().unwrap_or_default();

@@ -10,17 +10,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use xxhash_rust::xxh3::Xxh3;
 
-/// Samples that are kept; beyond it all are forgotten, and those that are played again are read again: 256 MiB.
+/// Number of samples that are kept; beyond it all are dropped, and those that are played again are read again: 256 MiB.
 const MOST_KEPT: usize = 1 << 26;
 
-/// By root, path and rate.
+/// Decoded files by root, path and rate.
 type LoadedSounds = BTreeMap<(String, String, u32), (Signal, u64)>;
 
-/// The house's own sounds, by number and rate. They sound in every block, so none is forgotten.
+/// The house's own sounds, by number and rate. They sound in every block, so none is dropped.
 #[derive(Debug, Default)]
 struct HouseSounds {
     signals: BTreeMap<(SoundFileId, u32), Signal>,
-    /// Of all of them.
+    /// Number of all samples.
     samples: usize,
 }
 
@@ -77,7 +77,7 @@ impl Recordings {
         Ok(found)
     }
 
-    /// Decodes every sound file that something in the house plays; once, where none is refused.
+    /// Decodes every sound file that something in the house plays; once, where all are valid.
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] for what is no sound, with the file and what plays it.

@@ -1,4 +1,4 @@
-//! Memory that a house took goes back to the system when the house is forgotten.
+//! Return of a house's memory to the system when the house is dropped.
 
 /// Gives memory back when it is dropped: the last field of what holds much.
 ///

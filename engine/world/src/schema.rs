@@ -76,7 +76,7 @@ pub fn variants<T: JsonSchema>() -> Vec<VariantSchema> {
 /// The names of a struct's fields, in the order in which it declares them; none where it reads anything else.
 pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
-    // It never gives a value: that `T` asked for a struct is all that is wanted.
+    // It never returns a value: only the request of `T` for a struct is wanted.
     let _ = T::deserialize(FieldNames(&mut names));
     names
 }
@@ -106,7 +106,7 @@ fn take_about(schema: &mut Value) -> String {
     about
 }
 
-/// Hears the names of fields for which a struct asks, and gives nothing.
+/// A deserializer that records the field names that a struct requests, and gives no value.
 struct FieldNames<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for FieldNames<'_> {

@@ -14,17 +14,17 @@ pub struct ViewRequest {
     pub channels: ImageChannels,
 }
 
-/// All that the sensors of one world want in one step. Equal wishes are merged.
+/// All requests of one world's sensors in one step. Equal ones are merged.
 #[derive(Clone, Debug, Default)]
 pub struct Requests {
     /// Pictures.
     pub views: Vec<ViewRequest>,
-    /// Agents who listen, with the longest window asked for, samples.
+    /// Agents that listen, with the longest requested window, samples.
     pub ears: Vec<(AgentId, usize)>,
 }
 
 impl Requests {
-    /// Asks for images of a view.
+    /// Requests images of a view.
     pub fn view(&mut self, eye: &EyeCamera, channels: ImageChannels) {
         match self.views.iter_mut().find(|view| view.eye == *eye) {
             Some(view) => view.channels = view.channels.and(channels),
@@ -35,7 +35,7 @@ impl Requests {
         }
     }
 
-    /// Asks for the sound at an agent's ears.
+    /// Requests the sound at an agent's ears.
     pub fn ears(&mut self, agent: AgentId, samples: usize) {
         match self.ears.iter_mut().find(|(other, _)| *other == agent) {
             Some((_, longest)) => *longest = samples.max(*longest),
@@ -44,10 +44,10 @@ impl Requests {
     }
 }
 
-/// The images of one view; those that nobody asked for are empty.
+/// The images of one view; those that were not requested are empty.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// The camera that was asked for.
+    /// The requested camera.
     pub eye: EyeCamera,
     /// The camera as it was for this picture.
     pub camera: Camera,
@@ -68,7 +68,7 @@ impl Results {
         self.pictures.iter().find(|picture| picture.eye == *eye)
     }
 
-    /// Makes room for what is asked for; allocates only when that is other than the last time.
+    /// Allocates the buffers for the requests, if these are other than the last time.
     pub(crate) fn prepare(&mut self, requests: &Requests, world: &World) {
         self.pictures.truncate(requests.views.len());
         for (k, request) in requests.views.iter().enumerate() {

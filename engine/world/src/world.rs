@@ -122,14 +122,14 @@ impl World {
         self.sound.advance(&self.engines, &self.rays, &self.state)
     }
 
-    /// Lets an agent do something with its hand.
+    /// Performs an action of an agent's hand.
     pub fn act(&mut self, agent: AgentId, action: &dyn HandAction) -> ActionOutcome {
         let outcome = self.physics.act(&mut self.state, &self.rays, agent, action);
         self.rays.update(&self.state);
         outcome
     }
 
-    /// Puts an agent somewhere, at rest.
+    /// Places an agent, at rest.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for an agent that does not exist.
@@ -152,7 +152,7 @@ impl World {
         Ok(())
     }
 
-    /// Puts agents to poses and velocities, at once, together with what they hold.
+    /// Sets poses and velocities of agents, at once, together with what they hold.
     ///
     /// # Errors
     /// [`WorldError::Physics`] for an agent that does not exist and for numbers that are not finite or that its body cannot
@@ -163,8 +163,8 @@ impl World {
         Ok(())
     }
 
-    /// From now on these agents listen, until the next reset, each with a window of at least so many samples: every step
-    /// computes what they hear. Who begins to listen hears the last step's sound at once; who listens already hears nothing
+    /// Opens the ears of these agents until the next reset, each with a window of at least so many samples: every step
+    /// computes what they hear. A new listener hears the last step's sound at once; an earlier one hears nothing
     /// twice.
     ///
     /// # Errors
@@ -179,7 +179,7 @@ impl World {
         )
     }
 
-    /// The signals of what is switched on, each once, and the rate at which they are heard, Hz.
+    /// The signals of what is switched on, each once, and their sample rate, Hz.
     pub(crate) fn signals(&self) -> (Vec<String>, u32) {
         self.sound.signals(self.engines.house(), &self.state)
     }
@@ -195,7 +195,7 @@ impl World {
         }
     }
 
-    /// Returns what all worlds over the house share.
+    /// Returns the shared engines of all worlds over the house.
     pub fn engines(&self) -> &Arc<Engines> {
         &self.engines
     }
@@ -220,7 +220,7 @@ impl World {
         &self.rays
     }
 
-    /// Returns where things were before the last step.
+    /// Returns the poses before the last step.
     pub fn past(&self) -> &MotionHistory {
         &self.past
     }
@@ -239,12 +239,12 @@ impl World {
         &self.events
     }
 
-    /// The contact events of the last step beyond its limit: how many, and how strong together.
+    /// The contact events of the last step beyond its limit: their number, and their impulse together.
     pub fn merged_events(&self) -> dwell_physics::MergedEvents {
         self.physics.merged_events()
     }
 
-    /// Returns how many pairs of collision pieces physics keeps.
+    /// Returns the number of pairs of collision pieces in physics.
     pub fn pair_counts(&self) -> dwell_physics::PairCounts {
         self.physics.pair_counts()
     }
@@ -254,7 +254,7 @@ impl World {
         &self.start.report
     }
 
-    /// Returns what stands at an address now.
+    /// Returns the parameter at an address.
     ///
     /// # Errors
     /// [`WorldError::Scene`] for an unknown address.
@@ -262,7 +262,7 @@ impl World {
         Ok(crate::laws::parameter(&self.state, self.house(), address)?)
     }
 
-    /// Every parameter with an address, and what stands there now: those of the scene, then those of laws, installed or not.
+    /// Every parameter with its address and value now: those of the scene, then those of laws, installed or not.
     pub fn parameters(&self) -> Vec<(Address, Parameter)> {
         let known: Vec<&LawInfo> = crate::laws::all().collect();
         let mut addresses = self.state.addresses(self.house());
@@ -282,7 +282,7 @@ impl World {
         self.set_parameters(&[(address.clone(), value)])
     }
 
-    /// Sets parameters together from now on: all of them, or none. What bounds each other (a joint's limits, a part's three
+    /// Sets parameters together from now on: all of them, or none. Mutual bounds (a joint's limits, a part's three
     /// moments of inertia, an agent's height and radius) is checked when all are set.
     ///
     /// # Errors
@@ -331,7 +331,7 @@ impl World {
         if !command.is_finite() {
             return refuse("the command is no finite number");
         }
-        // What is in force: an address may have changed the house's own.
+        // The servo in force: an address may have changed the house's own.
         let servo = self.state.joint_values(&house, joint).servo;
         let gain = servo.map(|servo| servo.velocity_gain);
         match command {
@@ -350,7 +350,7 @@ impl World {
         Ok(())
     }
 
-    /// Puts joints to positions and velocities, rad or m and per second, at once; what hangs on them moves along.
+    /// Sets positions and velocities of joints, rad or m and per second, at once; what hangs on them moves along.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for a joint that does not exist; [`WorldError::Physics`] for numbers that are not finite, a position
@@ -374,7 +374,7 @@ impl World {
         Ok(())
     }
 
-    /// Puts things that move freely, and the bases of robots that stand free, to poses and velocities, at once. What hangs on
+    /// Sets poses and velocities of bodies that move freely, and of the bases of free robots, at once. What hangs on
     /// them by joints moves along; agents are put by [`World::place_agent`].
     ///
     /// # Errors

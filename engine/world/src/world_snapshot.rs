@@ -1,7 +1,7 @@
-//! Worlds as bytes.
+//! Snapshots of worlds as bytes.
 //!
 //! A world begins like all worlds of its house and agents; most of it stays as it was. Its bytes are packed beside those of the
-//! beginning, which who restores it has as well: what has not changed since takes next to nothing.
+//! initial state, which a restoring process has as well: unchanged parts take next to nothing.
 
 use crate::error::WorldError;
 use crate::initial_state::{SnapshotBase, SnapshotParts, body};
@@ -21,7 +21,7 @@ struct SnapshotHeader {
     house: u64,
     /// The agents' bodies as the world was made with them.
     agents: Vec<AgentBody>,
-    /// Of the bytes of the beginning.
+    /// Hash of the initial state's bytes.
     base: u64,
 }
 
@@ -55,7 +55,7 @@ impl World {
         bytes
     }
 
-    /// Goes to where [`World::snapshot`] was taken; the next steps give the same bits as they did then.
+    /// Restores [`World::snapshot`]; the next steps give the same bits as they did then.
     ///
     /// # Errors
     /// [`WorldError`] with the reason; the world is then as it was before.

@@ -21,7 +21,7 @@ impl World {
         self.sound.play((&self.engines, root, &self.state), request)
     }
 
-    /// Silences a sound within 5 ms of the next step. One that was played is forgotten; one of an object of the house begins
+    /// Silences a sound within 5 ms of the next step. One that was played is dropped; one of an object of the house begins
     /// again with [`World::start_sound`].
     ///
     /// # Errors

@@ -39,7 +39,7 @@ impl World {
         }))
     }
 
-    /// Returns what the hand does, to the thing that the agent looks at; `None` for an action of the feet or neck.
+    /// Returns the hand's action on the thing that the agent looks at; `None` for an action of the feet or neck.
     fn use_hand(
         &mut self,
         agent: AgentId,

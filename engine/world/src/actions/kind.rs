@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
-/// The field of a hand's action that says what it is done to.
+/// The field of a hand's action that states its target.
 const TARGET: &str = "target";
 
 /// A kind of action.
@@ -32,7 +32,7 @@ enum About {
 /// The velocities of the body in a step of so many seconds.
 pub(super) type Control = fn(&StepSizes, f64) -> AgentControl;
 
-/// Reads an action of the hand.
+/// The reader of an action of the hand.
 #[derive(Clone, Copy, Debug)]
 struct HandReader {
     field_names: fn() -> &'static [&'static str],
@@ -74,7 +74,7 @@ where
     }
 }
 
-/// The velocities of an action that moves nothing but the hand.
+/// Returns zero velocities: those of an action that moves nothing but the hand.
 pub(super) fn stand_still(_: &StepSizes, _: f64) -> AgentControl {
     AgentControl::default()
 }
@@ -88,7 +88,7 @@ impl ActionKind {
         }
     }
 
-    /// Returns whether the hand does it, so that a request can ask for it.
+    /// Returns whether it is an action of the hand, which requests can name.
     pub fn is_of_hand(&self) -> bool {
         self.hand.is_some()
     }
@@ -98,19 +98,19 @@ impl ActionKind {
         (self.control)(stride, step_s)
     }
 
-    /// Returns whether it is done to a thing.
+    /// Returns whether it has a target.
     pub fn takes_target(&self) -> bool {
         self.all_field_names().contains(&TARGET)
     }
 
-    /// The fields of a request for it, beside those that say what it is done to.
+    /// The fields of a request for it, beside those of the target.
     pub fn fields(&self) -> Vec<FieldSchema> {
         let mut fields = self.hand.map_or_else(Vec::new, |hand| (hand.fields)());
         fields.retain(|field| field.name != TARGET);
         fields
     }
 
-    /// The doc comment of what it is done to; `None` where it is done to nothing.
+    /// The doc comment of its target; `None` without one.
     pub fn target_about(&self) -> Option<String> {
         let fields = self.hand.map_or_else(Vec::new, |hand| (hand.fields)());
         let target = fields.into_iter().find(|field| field.name == TARGET)?;
@@ -127,9 +127,9 @@ impl ActionKind {
         self.hand.map_or(&[], |hand| (hand.field_names)())
     }
 
-    /// Returns what the hand does.
+    /// Returns the hand's action.
     ///
-    /// `target`: what it is done to, where that is said.
+    /// `target`: its target, if one is stated.
     /// `fields`: the fields of the kind.
     ///
     /// # Errors

@@ -8,9 +8,9 @@ use dwell_scene::{AgentId, Pose};
 use glam::{Vec2, Vec3};
 
 impl World {
-    /// Returns what a pixel of a camera at an agent's eye shows, as a target.
+    /// Returns the thing that a pixel of a camera at an agent's eye shows, as a target.
     ///
-    /// `eye_from_camera`: where the camera is mounted.
+    /// `eye_from_camera`: the camera's mount.
     /// `pixel`: column and row, counted from 0 at the top left; the middle of the pixel is meant.
     ///
     /// # Errors

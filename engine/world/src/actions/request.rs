@@ -1,4 +1,4 @@
-//! Actions of the hand as people and programs write them: a kind, what it is done to, and its fields.
+//! Actions of the hand as people and programs write them: a kind, its target, and its fields.
 
 use super::target::TargetRequest;
 use super::{ActionKind, all};
@@ -38,7 +38,7 @@ impl ActionRequest {
     }
 }
 
-/// Returns the names of what a request for a kind may say.
+/// Returns the names of the fields that a request for a kind may have.
 fn allowed_fields(kind: &ActionKind) -> Vec<&'static str> {
     let of_target: &[&str] = if kind.takes_target() {
         schema::field_names::<TargetRequest>()
@@ -92,10 +92,10 @@ impl World {
         kind.read(target.resolve(self, agent)?, own)
     }
 
-    /// Lets an agent do what a request says, without a step of time.
+    /// Performs an agent's requested action, without a step of time.
     ///
     /// # Errors
-    /// As [`World::read_action`]; an action that cannot be is no error but an outcome that says why.
+    /// As [`World::read_action`]; an impossible action is no error but an outcome with the reason.
     pub fn act_on(
         &mut self,
         agent: AgentId,
@@ -105,7 +105,7 @@ impl World {
         Ok(self.act(agent, &*action))
     }
 
-    /// Returns what became, in the last step, of actions that take time.
+    /// Returns the outcomes, in the last step, of actions that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
         self.physics().notices()
     }

@@ -80,7 +80,7 @@ pub struct TargetRequest {
 }
 
 impl TargetRequest {
-    /// Returns what is meant; `None` where nothing is said.
+    /// Returns the target; `None` where none is stated.
     ///
     /// # Errors
     /// [`WorldError::Unknown`] for an object or part that no one has; [`WorldError::Config`] for several ways at once or a
@@ -163,7 +163,7 @@ impl TargetRequest {
     }
 }
 
-/// The names that may have been meant.
+/// The similar names.
 fn similar_names<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
     let near = dwell_houses::nearest(name, known, NAMES);
     near.into_iter().map(str::to_owned).collect()

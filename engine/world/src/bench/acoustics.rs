@@ -103,7 +103,7 @@ pub(super) fn run(
     Ok(Value::Object(rates))
 }
 
-/// Rooms in which a stream is measured, at most.
+/// Largest number of rooms in which a stream is measured.
 const ROOMS: usize = 4;
 /// Samples of a block: 50 ms at 16 kHz.
 const BLOCK: usize = 800;
@@ -113,7 +113,7 @@ const BLOCKS: usize = 200;
 /// A walk with a radio.
 struct WalkBench {
     times_real_time: f64,
-    /// Mean over the octaves from 250 Hz to 4 kHz of what its end's measures are off the reference; nothing where a band lacks one.
+    /// Mean deviation of its end's measures from the reference over the octaves from 250 Hz to 4 kHz; `None` where a band lacks one.
     t30_off_percent: Option<f64>,
     c80_off_db: Option<f64>,
 }
@@ -136,7 +136,7 @@ impl WalkFigure {
     /// Free distance that paths need beyond their ends, m.
     const ROOM_M: f32 = 0.15;
 
-    /// The first turn around `spot` for which nothing stands in the two ways, nor between the two who go them.
+    /// The first rotation around `spot` for which both paths are free, and the line between the walkers.
     fn free(rays: &RayScene, spot: Vec3) -> Option<Self> {
         let mut turned = (0..Self::TURNS).map(|k| {
             let angle = std::f32::consts::TAU * k as f32 / Self::TURNS as f32;
@@ -170,7 +170,7 @@ impl WalkFigure {
         )
     }
 
-    /// Returns where a listener is at the end of block `k`, who walks to and fro at 1 m/s and turns, and a radio that is carried about as
+    /// Returns the poses at the end of block `k` of a listener that walks to and fro at 1 m/s and turns, and of a radio that moves as
     /// fast.
     fn place(&self, k: usize) -> (Vec3, Pose) {
         let way_m = (0.05 * k as f32 + Self::REACH_M).rem_euclid(4.0 * Self::REACH_M);
@@ -180,7 +180,7 @@ impl WalkFigure {
     }
 }
 
-/// Returns what the reference has for the end of the walk.
+/// Returns the reference's measures for the end of the walk.
 fn wanted(
     engines: &Engines,
     rays: &RayScene,

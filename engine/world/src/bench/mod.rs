@@ -158,7 +158,7 @@ fn median(sorted: &[f64]) -> f64 {
     sorted[sorted.len() / 2]
 }
 
-/// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`. `listener` hears how far it is.
+/// Measures one stage over a house: `load`, `render`, `physics`, `acoustics` or `env`. `listener` receives the progress.
 ///
 /// # Errors
 /// [`WorldError`] for an unknown stage, a wrong option or a house that cannot be opened; [`WorldError::Stopped`] where the listener does

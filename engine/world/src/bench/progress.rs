@@ -2,7 +2,7 @@
 
 use crate::error::WorldError;
 
-/// Takes a fraction (0 to 1) and what is measured next, and answers whether to go on.
+/// A callback with a fraction (0 to 1) and what is measured next, which answers whether to go on.
 pub type BenchListener<'a> = &'a mut dyn FnMut(f64, &str) -> bool;
 
 /// Counts the parts of a bench, between which nothing is timed, and tells a listener.
@@ -21,7 +21,7 @@ impl<'a> BenchProgress<'a> {
         }
     }
 
-    /// Says how many parts there are.
+    /// Sets the number of parts.
     pub(super) fn begin(&mut self, parts: usize) {
         self.parts = parts.max(1);
     }
@@ -36,7 +36,7 @@ impl<'a> BenchProgress<'a> {
         self.tell(fraction.min(1.0), what)
     }
 
-    /// Says that all is measured.
+    /// Reports that all is measured.
     ///
     /// # Errors
     /// As [`Self::part`].

@@ -1,4 +1,4 @@
-//! Pictures a second by size of batch and picture, each view of a world of its own: what a graphics card is asked for.
+//! Pictures a second by size of batch and picture, each view of a world of its own: the workload of a graphics card.
 
 use super::{BenchOptions, BenchProgress, median, open, render, timed};
 use crate::engines::Engines;
@@ -11,7 +11,7 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Pose, State};
 use serde_json::{Value, json};
 
-/// Worlds in one house, and from where each is looked at.
+/// Worlds in one house, and the viewpoint in each.
 struct RenderBenchStage {
     poses: Vec<Pose>,
     worlds: Vec<(RayScene, State)>,
@@ -24,7 +24,7 @@ struct BenchSize {
     resolution: u32,
 }
 
-/// Both paths of an adapter unless one is asked for.
+/// Both paths of an adapter unless one is named.
 fn back_ends(asked: &BackEnd) -> Vec<BackEnd> {
     match asked {
         BackEnd::Gpu { name, path: None } => VisibilityPath::ALL

@@ -2,8 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// A vector whose items are dropped on a thread of their own when the stack unwinds: thousands of worlds take seconds, and who pressed
-/// Ctrl-C waits for none of them.
+/// A vector whose items are dropped on a thread of their own when the stack unwinds: thousands of worlds take seconds, and Ctrl-C
+/// should wait for none of them.
 #[derive(Debug)]
 pub(super) struct DropInBackground<T: Send + 'static>(pub(super) Vec<T>);
 

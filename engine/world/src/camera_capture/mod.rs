@@ -1,4 +1,4 @@
-//! Pictures of worlds: the views that sensors and callers ask for, taken as the laws of the cameras say.
+//! Pictures of worlds: the views that sensors and callers request, taken as the laws of the cameras say.
 
 mod shutter;
 
@@ -10,10 +10,10 @@ use dwell_render::{Camera, Frame, ImageChannels, Optics, Preset, PreviousFrame, 
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, AgentState, EntityId, Pose};
 
-/// A picture that is asked for.
+/// A requested picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureRequest {
-    /// The camera as it should be; laws of the agent's cameras make it what it is.
+    /// The ideal camera; laws of the agent's cameras turn it into the real one.
     pub camera: Camera,
     /// The camera's mount.
     pub place: CameraMount,
@@ -24,13 +24,13 @@ pub struct PictureRequest {
 /// The mount of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CameraMount {
-    /// On an agent, against its eyes: it moves along, does not see the body that carries it, and obeys the laws of its cameras.
+    /// On an agent, relative to its eyes: it moves along, does not see the body that carries it, and obeys the laws of its cameras.
     Agent(AgentId, Pose),
     /// Anywhere in the world, at rest and without laws.
     World(Pose),
 }
 
-/// A view with what its camera did before.
+/// A view with its camera's previous pose.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimedView {
     pub(crate) view: View,
@@ -39,7 +39,7 @@ pub(crate) struct TimedView {
 }
 
 impl World {
-    /// The laws of the cameras of a place.
+    /// The laws of a mount's cameras.
     pub(crate) fn optics(&self, place: &CameraMount) -> Optics<'_> {
         match place {
             CameraMount::Agent(agent, _) => Optics::of(&self.state().laws, *agent),
@@ -90,7 +90,7 @@ impl World {
         Ok((take.camera(), frame))
     }
 
-    /// Nothing where nothing has been before.
+    /// Returns the previous frame; `None` in the first step.
     pub(crate) fn before(&self, world_from_camera: Pose) -> Option<PreviousFrame<'_>> {
         let past = self.past();
         past.known.then_some(PreviousFrame {

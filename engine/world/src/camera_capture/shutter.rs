@@ -96,7 +96,7 @@ impl PendingPicture {
         }
     }
 
-    /// Appends where the images of [`Self::jobs`] go, in their order.
+    /// Appends the destinations of the images of [`Self::jobs`], in their order.
     pub(crate) fn frames<'a>(&'a mut self, frame: FrameMut<'a>, frames: &mut Vec<FrameMut<'a>>) {
         let Self {
             shot,
@@ -108,7 +108,7 @@ impl PendingPicture {
         frames.extend(parts.into_iter().map(|part| part.frame));
     }
 
-    /// Lets go of what only [`Self::jobs`] needs.
+    /// Drops the data that only [`Self::jobs`] needs.
     pub(crate) fn drop_past_states(&mut self) {
         self.moments.copies = Vec::new();
     }

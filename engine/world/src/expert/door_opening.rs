@@ -1,4 +1,4 @@
-//! Doors that swing towards whoever opens them: where to stand so that the leaf passes.
+//! Doors that swing towards the agent that opens them: where to stand so that the leaf passes.
 
 use crate::world::World;
 use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
@@ -21,7 +21,7 @@ pub(super) struct DoorOpening {
     pub(super) door: ObjectId,
     openness: f32,
     still: u32,
-    /// The way to where the leaf does not reach, once it was held up.
+    /// The path to where the leaf does not reach, once it was held up.
     pub(super) clear_cells_field: Option<Arc<DistanceField>>,
 }
 
@@ -35,7 +35,7 @@ impl DoorOpening {
         }
     }
 
-    /// One more order to open: steps aside where the door stands still for long.
+    /// Notes one more order to open: steps aside where the door stands still for long.
     pub(super) fn ordered(&mut self, world: &World, grid: &NavGrid, agent: AgentId) {
         let now = world
             .state()

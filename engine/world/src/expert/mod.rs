@@ -1,4 +1,4 @@
-//! A guide who knows the house: follows shortest ways, opens doors, turns to things.
+//! A guide that knows the house: it follows shortest paths, opens doors, turns to things.
 
 mod door_opening;
 
@@ -20,7 +20,7 @@ const AIM_AHEAD_M: f32 = 1.0;
 /// A door is open enough to pass from this share on.
 const PASSABLE: f32 = 0.8;
 
-/// A way for one agent to a set of cells.
+/// A path of one agent to a set of cells.
 #[derive(Clone, Debug)]
 pub struct ShortestPathFollower {
     agent: AgentId,
@@ -31,7 +31,7 @@ pub struct ShortestPathFollower {
     blocked: u32,
     /// Steps of the manoeuvre that frees it, counted down.
     escape: u32,
-    /// Manoeuvres so far; they turn left and right by turns.
+    /// Number of manoeuvres so far; they alternate left and right.
     escapes: u32,
     /// The door that it opens now.
     opening: Option<DoorOpening>,
@@ -74,7 +74,7 @@ impl ShortestPathFollower {
         self.field.at(cell)
     }
 
-    /// The next step of the way; `None` when it stands on a goal or there is no way.
+    /// The next step of the path; `None` when it stands on a goal or there is no path.
     pub fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
         let agent = *world.state().agents.get(self.agent)?;
         let here = self.grid.nearest(agent.position, 0.6)?;
@@ -107,7 +107,7 @@ impl ShortestPathFollower {
         )
     }
 
-    /// Out of the way of a door that swings towards it, and from there opens it wholly; `None` when no door is held up.
+    /// Steps out of the way of a door that swings towards it, and from there opens it wholly; `None` when no door is held up.
     fn avoid_swinging_door(&mut self, world: &World, here: NavCell) -> Option<DiscreteAction> {
         let opening = self.opening.take()?;
         let open = world.state().openness(world.house(), opening.door);
@@ -124,7 +124,7 @@ impl ShortestPathFollower {
         self.follow(&clear_cells_field, &agent, here)
     }
 
-    /// Grazing a corner or a door: some turns away from the way and a few steps usually free it.
+    /// Frees the agent after grazing a corner or a door: some turns away from the path and a few steps usually suffice.
     fn escape(&mut self, collided: bool) -> Option<DiscreteAction> {
         self.blocked = if collided {
             self.blocked + 1
@@ -147,7 +147,7 @@ impl ShortestPathFollower {
         })
     }
 
-    /// The point of the way that it walks to next: the furthest one within reach of the eye.
+    /// The point of the path that it walks to next: the furthest one within reach of the eye.
     fn aim(&self, field: &DistanceField, here: NavCell, position: Vec3) -> Option<Vec3> {
         let way = self.grid.follow_gradient(field, here)?;
         let near = way
@@ -223,7 +223,7 @@ fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &StepSizes) -> Option<Dis
     })
 }
 
-/// The turn or nod that brings a point into the middle of an agent's view; `None` when it already is there.
+/// The turn or tilt that brings a point into the middle of an agent's view; `None` when it already is there.
 fn face_point(
     world: &World,
     agent: AgentId,
@@ -246,7 +246,7 @@ fn face_point(
     })
 }
 
-/// The turn or nod that brings an object into the middle of an agent's view; `None` when it already is there.
+/// The turn or tilt that brings an object into the middle of an agent's view; `None` when it already is there.
 pub fn face(
     world: &World,
     agent: AgentId,

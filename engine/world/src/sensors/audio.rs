@@ -42,7 +42,7 @@ struct AudioSensor {
     name: String,
     agent: AgentId,
     samples: usize,
-    /// Samples of the latest observation that were louder than it can hold.
+    /// Number of clipped samples of the latest observation.
     clipped: AtomicU64,
 }
 

@@ -72,7 +72,7 @@ impl Default for CameraConfig {
     }
 }
 
-/// Returns where a camera is against the eyes, from its settings.
+/// Returns the pose of a camera relative to the eyes, from its settings.
 pub(crate) fn mount(position_m: [f32; 3], [yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Pose {
     let turned = rotation_from_yaw_pitch(yaw_deg.to_radians(), pitch_deg.to_radians());
     let (sine, cosine) = math::sin_cos(0.5 * roll_deg.to_radians());

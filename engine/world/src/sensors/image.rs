@@ -23,7 +23,7 @@ pub(crate) struct ImageSensorKind {
     pub(super) dtype: Dtype,
     pub(super) unit: &'static str,
     pub(super) low: f64,
-    /// For depth the camera's far end.
+    /// Highest value; for depth the camera's far end.
     pub(super) high: f64,
     /// The images that it is made of.
     pub(super) channels: ImageChannels,
@@ -31,7 +31,7 @@ pub(crate) struct ImageSensorKind {
     pub(super) write: fn(ImageContext<'_>, ObservationBuffer<'_>),
 }
 
-/// The sensor of pictures whose classes, where it gives any, are those of a table.
+/// The image sensor for a table of classes, if its classes depend on one.
 pub(crate) type ImageOfClasses = fn(ClassSet) -> &'static ImageSensorKind;
 
 /// The style in which an observation is shown to people.
@@ -210,7 +210,7 @@ pub struct Observation {
 }
 
 impl World {
-    /// Returns what sensors of pictures, by name, give for a camera: one picture for all of them.
+    /// Returns the observations of image sensors, by name, for a camera: one picture for all of them.
     ///
     /// # Errors
     /// [`WorldError::Unknown`] lists the sensors there are; [`WorldError::Config`] for a wrong `max_objects`;

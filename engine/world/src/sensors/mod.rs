@@ -1,6 +1,6 @@
 //! Sensors: what an agent observes. One file each, and one line in [`all`].
 //!
-//! A sensor works in two strokes. In the first it says what it needs ([`Sensor::plan`]); the engines then run once for
+//! A sensor works in two phases. In the first it states its requests ([`Sensor::plan`]); the engines then run once for
 //! all sensors of all worlds; in the second it writes into a buffer that the caller owns ([`Sensor::finish`]).
 
 mod albedo;
@@ -122,13 +122,13 @@ pub trait Sensor: Debug + Send + Sync {
         None
     }
 
-    /// Says what the engines must compute; most sensors that read the state need nothing.
+    /// States the requests to the engines; most sensors that read the state need nothing.
     fn plan(&self, _world: &World, _requests: &mut Requests) {}
 
     /// Writes the observation. `out` has the type and length of [`Sensor::spec`].
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>);
 
-    /// Returns how many samples of the latest observation were beyond its range and are cut off there.
+    /// Returns the number of samples of the latest observation that were clipped to its range.
     fn clipped(&self) -> u64 {
         0
     }
@@ -216,7 +216,7 @@ fn key(kind: &str, name: Option<String>) -> Result<String, WorldError> {
 pub type SensorBuilder =
     fn(&serde_json::Value, SensorSetup<'_>) -> Result<Box<dyn Sensor>, WorldError>;
 
-/// A kind of sensor that can be asked for by name.
+/// A kind of sensor, requested by name.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorKind {
     /// The name, and the observation's default key.
@@ -232,12 +232,12 @@ pub struct SensorKind {
 }
 
 impl SensorKind {
-    /// Returns whether it is one of pictures: [`World::look`] knows it.
+    /// Returns whether it is an image sensor: [`World::look`] knows it.
     pub fn shows_pictures(&self) -> bool {
         self.image.is_some()
     }
 
-    /// Returns how people are shown its observation; `None` where it is not one of pictures.
+    /// Returns the style in which its observation is shown to people; `None` for other than image sensors.
     pub fn picture_style(&self) -> Option<PictureStyle> {
         let image = self.image?;
         Some(image(ClassSet::Coarse).shown)
@@ -297,7 +297,7 @@ pub fn build(
     })
 }
 
-/// The refusal of a name that no sensor has; an earlier name leads to the setting that took its place.
+/// The error for a name that no sensor has; an earlier name leads to the setting that took its place.
 fn unknown<'a>(
     kind: &'static str,
     name: &str,

@@ -1,4 +1,4 @@
-//! Sensors that list what a picture shows.
+//! Sensors that list the contents of a picture.
 
 use super::image::ImageContext;
 use dwell_render::{VisibleObject, sightings};

@@ -11,7 +11,7 @@ use dwell_scene::math;
 const ABOUT: &str = "Where the base believes to be from its wheels and nominal geometry, since it was placed: metres \
                      forward, metres to the left, radians to the left in (-pi, pi]; zeros without wheels; shape (3,).";
 
-/// Furthest way that is shown, m.
+/// Largest distance that is shown, m.
 const FURTHEST_M: f64 = 1000.0;
 
 pub(super) const KIND: SensorKind = SensorKind {

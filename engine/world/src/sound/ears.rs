@@ -58,7 +58,7 @@ impl AgentEars {
         Ok(())
     }
 
-    /// Makes the window at least `length` long; what was heard stays at its end.
+    /// Makes the window at least `length` long; earlier samples stay at its end.
     pub(super) fn lengthen(&mut self, length: usize) {
         if length <= self.length {
             return;

@@ -79,7 +79,7 @@ impl EmitterStates {
         }
     }
 
-    /// Returns how loud each was in the block that ended last. Shape (emitter,).
+    /// Returns the gains in the block that ended last. Shape (emitter,).
     pub(super) fn fades(&self, house: &House, state: &State) -> Vec<GainRamp> {
         if self.fades.is_empty() {
             let targets = self.targets(house, state).into_iter();

@@ -19,39 +19,39 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-/// Blows weaker than this are not heard, N·s.
+/// Impulse below which impacts are not heard, N·s.
 const FAINTEST_N_S: f32 = 0.02;
-/// The most blows that begin to sound in one step; the hardest win.
+/// Largest number of impacts that begin to sound in one step; the hardest win.
 const MOST_BLOWS: usize = 16;
-/// The most pairs that scrape or roll in one step; the hardest win.
+/// Largest number of pairs that scrape or roll in one step; the hardest win.
 const MOST_RUBS: usize = 8;
-/// The most sounds of touch that ring at once; the oldest are forgotten, which have decayed the most. A heap of a hundred things
+/// Largest number of contact sounds at once; the oldest are dropped, which have decayed the most. A heap of a hundred things
 /// that falls makes as many in half a second, and snapshots have a bound.
 const MOST_RINGING: usize = 256;
-/// Source ids of blows begin here, those of pairs that rub, of joints and of agents' feet behind them.
+/// First source ids of impacts, of rubbing pairs, of joints and of agents' feet.
 const FIRST_BLOW_ID: u64 = 1 << 32;
 const FIRST_RUB_ID: u64 = 2 << 32;
 const FIRST_JOINT_ID: u64 = 3 << 32;
 const FIRST_FOOT_ID: u64 = 4 << 32;
 
-/// A floor's covering lies on boards or a slab: the least that is struck, kg/m². Walls are struck as they are.
+/// Least mass per area of a struck floor, since coverings lie on boards or a slab, kg/m². Walls are struck as they are.
 const FLOOR_KG_M2: f32 = 120.0;
 const WALL_KG_M2: f32 = 10.0;
 /// Mass per area of a door's frame and a cupboard's body at a slam, kg/m²: estimate.
 const FRAME_KG_M2: f32 = 40.0;
-/// Slower than this no door slams, rad/s or m/s.
+/// Speed below which no door slams, rad/s or m/s.
 const SLAM_SPEED: f32 = 0.05;
-/// The tongue of a latch, kg and m, and how fast it snaps, m/s: estimates.
+/// Mass, height and closing speed of the tongue of a latch, kg, m and m/s: estimates.
 const LATCH_KG: f32 = 0.05;
 const LATCH_M: [f32; 3] = [0.06, 0.02, 0.01];
 const LATCH_M_S: f32 = 0.5;
 
-/// A sound of touch that is still heard.
+/// A contact sound that is still heard.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ActiveContactSound {
     pub(super) id: u64,
     pub(super) sound: ContactSound,
-    /// The place in the air beside where it was, m.
+    /// The place in the air beside the contact, m.
     pub(super) heard_from: Vec3,
     /// The sample, since the world's start, at which it begins.
     pub(super) start: u64,
@@ -73,24 +73,24 @@ impl ActiveContactSound {
     }
 }
 
-/// The world at the end of a step, and what was before it.
+/// The world at the end of a step, and before it.
 pub(crate) struct StepContext<'a> {
     pub(crate) house: &'a House,
     pub(crate) rays: &'a RayScene,
     pub(crate) state: &'a State,
     pub(crate) events: &'a [ContactEvent],
-    /// The agents' feet before the step, m, and where they faced, rad. Shape (agent,).
+    /// The agents' feet, m, and headings, rad, before the step. Shape (agent,).
     pub(crate) agents_before: &'a [(Vec3, f32)],
     /// The joints before the step: position and velocity. Shape (joint,).
     pub(crate) joints_before: &'a [(f32, f32)],
-    /// Since the world was made, s.
+    /// Time since the world was made, s.
     pub(crate) start_s: f64,
     pub(crate) length_s: f64,
     pub(crate) key: RandomKey,
 }
 
 impl WorldSound {
-    /// Lets what touched, swung and walked in the last step sound in the block that ends now.
+    /// Adds the sounds of the last step's contacts, joints and footsteps to the block that ends now.
     pub(crate) fn add_contact_sounds(&mut self, step: &StepContext<'_>) {
         self.add_impacts(step);
         self.add_friction_sounds(step);
@@ -320,7 +320,7 @@ fn hardest<'a>(
     events.into_iter().take(most)
 }
 
-/// Returns how near to its closed position a door is closed, rad or m; as physics has it.
+/// Returns the distance from its closed position within which a door is closed, rad or m; as physics has it.
 fn closed_within(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge => 0.02,
@@ -328,7 +328,7 @@ fn closed_within(kind: JointKind) -> f32 {
     }
 }
 
-/// A number that tells touchers apart.
+/// A number that identifies a contact's body.
 fn number(toucher: ContactEntity) -> u64 {
     match toucher {
         ContactEntity::Structure(id) => id.index() as u64,
@@ -387,7 +387,7 @@ fn part(house: &House, state: &State, id: PartId) -> ContactPartner {
     )
 }
 
-/// kg; of parts without a mass of their own as if they filled half of their box.
+/// Mass of a part, kg; without a stated one as if it filled half of its box.
 fn part_mass_kg(house: &House, state: &State, id: PartId) -> f32 {
     let part = &house.parts[id];
     let nominal = part.mass_kg.unwrap_or_else(|| {
@@ -412,7 +412,7 @@ fn middle(house: &House, state: &State, id: PartId) -> Vec3 {
     state.part_pose[id].transform_point(middle)
 }
 
-/// Returns what is under a foot.
+/// Returns the floor under a foot.
 fn floor_at(step: &StepContext<'_>, foot: Vec3) -> Option<ContactPartner> {
     let ray = Ray::new(foot + Vec3::Y * 0.25, Vec3::NEG_Y).between(0.0, 0.6);
     let hit = step.rays.closest(&ray, RayMask::EAR)?;

@@ -20,7 +20,7 @@ impl GainRamp {
         }
     }
 
-    /// The block that ends now goes to `target`.
+    /// Fades to `target` in the block that ends now.
     pub(super) fn update(&mut self, target: f32) {
         (self.before, self.now) = (self.now, target);
     }

@@ -17,7 +17,7 @@ const TURN_RAD: f32 = std::f32::consts::FRAC_PI_4;
 const TURN_M_S: f32 = 0.4;
 /// Half the distance between the feet, m, of a body 1.7 m high.
 const SIDE_M: f32 = 0.08;
-/// Slower than this nobody walks, m/s.
+/// Speed below which nobody walks, m/s.
 const SLOWEST_M_S: f32 = 0.02;
 
 /// The mass of a person of a height, kg: body mass index 22.
@@ -68,7 +68,7 @@ pub(super) enum FootEvent {
 }
 
 impl GaitPhase {
-    /// Goes on from where the agent was, `feet` and `yaw_rad`, a control step ago.
+    /// Advances from the agent's `feet` and `yaw_rad` of a control step ago.
     pub(super) fn follow(
         &mut self,
         agent: &AgentState,

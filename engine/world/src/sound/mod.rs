@@ -35,7 +35,7 @@ use glam::Vec3;
 use playback::Playback;
 use std::collections::BTreeSet;
 
-/// Handles of sounds that are played begin here, and so do their source ids; those of emitters are their numbers.
+/// First handle and source id of sounds that are played; those of emitters are their numbers.
 const FIRST_PLAYED_ID: u64 = 1 << 48;
 
 /// The sounds of a world and the ears that listen.
@@ -46,7 +46,7 @@ pub(crate) struct WorldSound {
     preset: String,
     /// The head of all ears; `None`: the built-in sphere.
     head: Option<HeadId>,
-    /// Blocks that are over. The first is the one before the world's start, so that there is something to hear at once.
+    /// Number of ended blocks. The first is the one before the world's start, so that there is something to hear at once.
     blocks: u64,
     touches: Vec<ActiveContactSound>,
     next_blow: u64,
@@ -85,7 +85,7 @@ impl WorldSound {
         }
     }
 
-    /// Silence, and no one who listens.
+    /// Resets to silence without listeners.
     pub(crate) fn reset(&mut self) {
         self.blocks = 1;
         self.touches.clear();
@@ -107,7 +107,7 @@ impl WorldSound {
         (names.into_iter().cloned().collect(), self.rate_hz)
     }
 
-    /// Ends a block: every ear hears what sounded in it.
+    /// Ends a block: every ear hears its sources.
     pub(crate) fn advance(
         &mut self,
         engines: &Engines,
@@ -126,7 +126,7 @@ impl WorldSound {
             }
         }
         self.blocks += 1;
-        // What sounded in the block that has just ended is kept for ears that begin to listen after it.
+        // The sources of the block that has just ended are kept for ears that begin to listen after it.
         let ended = (self.blocks - 1) * self.block as u64;
         self.touches
             .retain(|touch| touch.start + touch.length > ended);
@@ -134,7 +134,7 @@ impl WorldSound {
         Ok(())
     }
 
-    /// From now on these agents listen, each with a window of at least so many samples. Ears that are new hear the block that
+    /// Opens the ears of these agents, each with a window of at least so many samples. New ears hear the block that
     /// has just ended; ears that listen already keep what they heard.
     pub(crate) fn listen(
         &mut self,
@@ -159,7 +159,7 @@ impl WorldSound {
             };
             let sources = self.sources(engines, rays, state, self.blocks - 1)?;
             ears.hear(engines.house(), rays, state, &sources)?;
-            // In the order of agents, whoever began first.
+            // In the order of agents, whichever began first.
             let place = self.ears.partition_point(|other| other.agent < *agent);
             self.ears.insert(place, ears);
         }
@@ -193,7 +193,7 @@ impl WorldSound {
         Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
     }
 
-    /// Returns what sounds in the block that has just ended or ends now: emitters, what plays, and what touched.
+    /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.
     fn sources(
         &self,
         engines: &Engines,
@@ -242,7 +242,7 @@ impl WorldSound {
         Ok(sources)
     }
 
-    /// The newest samples at an ear, Pa; zeros before it listened that long, and for who never listened.
+    /// The newest samples at an ear, Pa; zeros before it listened that long, and for agents that never listened.
     pub(crate) fn heard(&self, agent: AgentId, channel: usize, out: &mut [f32]) {
         out.fill(0.0);
         if let Some(ears) = self

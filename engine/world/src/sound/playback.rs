@@ -57,7 +57,7 @@ pub(super) struct PlaybackState {
     pub(super) start: u64,
     pub(super) stopped: bool,
     pub(super) fade: GainRamp,
-    /// Of the samples: a file may have changed when a snapshot is restored.
+    /// Hash of the samples: a file may have changed when a snapshot is restored.
     pub(super) print: u64,
 }
 
@@ -68,7 +68,7 @@ pub(super) struct Playback {
     signal: Signal,
 }
 
-/// Refuses levels that are none.
+/// Refuses levels out of range.
 pub(crate) fn check_level(level_db: f32) -> Result<(), WorldError> {
     if (-100.0..=200.0).contains(&level_db) {
         return Ok(());
@@ -92,7 +92,7 @@ fn open(
     }
 }
 
-/// Refuses places that are not there.
+/// Refuses places that do not exist.
 fn check_place(house: &House, state: &State, place: &SoundPlace) -> Result<(), WorldError> {
     use dwell_scene::Id;
     let (what, found, count) = match place {
@@ -138,7 +138,7 @@ impl Playback {
         Ok(Self { told, signal })
     }
 
-    /// The sound as it was remembered.
+    /// Restores the sound from its state.
     pub(super) fn restore(
         (engines, root, state): (&Engines, Option<&str>, &State),
         rate_hz: u32,
@@ -155,7 +155,7 @@ impl Playback {
         Ok(Self { told, signal })
     }
 
-    /// The pressure at 1 m that it goes to, Pa.
+    /// The target pressure at 1 m, Pa.
     pub(super) fn target(&self) -> f32 {
         if self.told.stopped {
             0.0
@@ -196,7 +196,7 @@ impl Playback {
         bounds.center().with_y(bounds.max.y)
     }
 
-    /// Returns where it sounds now, m.
+    /// Returns its position now, m.
     pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
         match self.told.request.place {
             SoundPlace::Point(point) => point,

@@ -1,4 +1,4 @@
-//! Sounds as bytes: what goes on bit for bit after a restore.
+//! Sounds as bytes: the part that goes on bit for bit after a restore.
 
 use super::ears::AgentEars;
 use super::emitters::EmitterStates;

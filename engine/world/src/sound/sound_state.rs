@@ -3,7 +3,7 @@
 use super::playback::SoundName;
 use serde::Serialize;
 
-/// A source of sound, and what it does now.
+/// A source of sound in its current state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SoundState {
     /// The handle that [`World::stop_sound`](crate::World::stop_sound) and kin take.

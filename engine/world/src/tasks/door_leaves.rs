@@ -49,7 +49,7 @@ impl DoorLeaves {
         }
     }
 
-    /// Returns whether who stands on `cell` would stand in a leaf.
+    /// Returns whether a body on `cell` would stand in a leaf.
     pub(super) fn block(&self, grid: &NavGrid, cell: NavCell) -> bool {
         let at = grid.position(cell);
         self.leaves

@@ -1,4 +1,4 @@
-//! Nothing is asked: a place to explore, to collect data in, and to build tasks upon.
+//! A task without a goal: to explore, to collect data, and to build tasks upon.
 //!
 //! The agent starts where the house says; without that, or where the settings ask for it, anywhere on the largest piece of
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
@@ -75,7 +75,7 @@ struct FreeTask {
 }
 
 impl FreeTask {
-    /// Returns where an episode starts: the place, and where to look, rad.
+    /// Returns the start of an episode: the position, and the heading, rad.
     fn start(
         &self,
         world: &World,

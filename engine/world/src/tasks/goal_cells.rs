@@ -9,10 +9,10 @@ use std::collections::BTreeMap;
 
 /// Edge of the squares by which cells are found, m.
 const SQUARE_M: f32 = 1.0;
-/// Cells between looks at whether they are still wanted.
+/// Cells between checks for cancellation.
 const CELLS_PER_CHECK: usize = 256;
 
-/// The cells of the largest island, gathered once for all goals.
+/// The cells of the largest island, collected once for all goals.
 pub(super) struct GoalCells<'a> {
     pub(super) grid: &'a NavGrid,
     /// Rising.

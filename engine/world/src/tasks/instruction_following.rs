@@ -1,6 +1,6 @@
 //! Do what the instruction says: go to a room, or find a thing; then stop.
 //!
-//! Reward: by how much the geodesic distance to the goal fell (m), minus 0.01 a step, plus 2.5 for stopping where the
+//! Reward: the decrease of the geodesic distance to the goal (m), minus 0.01 a step, plus 2.5 for stopping where the
 //! instruction is fulfilled. The episode ends with `stop`.
 
 use super::door_leaves::DoorLeaves;
@@ -27,9 +27,9 @@ const NAME: &str = "InstructionFollowing";
 /// Reward for success, and for every step (habitat-lab's defaults for navigation).
 const SUCCESS_REWARD: f64 = 2.5;
 const SLACK_REWARD: f64 = -0.01;
-/// Goals nearer than this to where the expert looked in vain are not tried again, m.
+/// Distance from a place where the expert looked in vain within which goals are not tried again, m.
 const ELSEWHERE_M: f32 = 0.3;
-/// Cells between looks at whether the goals are still wanted.
+/// Cells between checks for cancellation.
 const CELLS_PER_CHECK: usize = 256;
 
 pub(super) const KIND: TaskKind = TaskKind {
@@ -112,9 +112,9 @@ struct PlayableInstruction {
 #[derive(Clone, Debug)]
 struct ActiveInstruction {
     instruction: Instruction,
-    /// Measures the way that is left.
+    /// The guide that measures the remaining distance.
     guide: ShortestPathFollower,
-    /// Leads the expert, to those goals from which it has not looked in vain.
+    /// The expert's guide, to those goals from which it has not looked in vain.
     expert_path: ShortestPathFollower,
     goals: Vec<NavCell>,
 }
@@ -149,7 +149,7 @@ struct InstructionFollowing {
 }
 
 impl InstructionFollowing {
-    /// All at once: who is stopped on the way has found nothing.
+    /// All at once: a stopped search has found nothing.
     fn find_playable(&self, world: &World, grid: &NavGrid) -> Vec<PlayableInstruction> {
         let mut offers = Vec::new();
         let ground = GoalCells::of(grid);

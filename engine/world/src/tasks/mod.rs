@@ -1,4 +1,4 @@
-//! Tasks: what an episode asks for and how it is judged. One file each, and one line in [`all`].
+//! Tasks: goals of episodes and verdicts on steps. One file each, and one line in [`all`].
 
 mod door_leaves;
 mod free;
@@ -16,7 +16,7 @@ use std::fmt::Debug;
 
 /// A task. One value plays one episode after another in one world.
 pub trait Task: Debug + Send + Sync {
-    /// Puts the agent at a start and says what is asked.
+    /// Puts the agent at a start and sets the goal.
     ///
     /// # Determinism
     /// Everything is drawn from `key`.
@@ -28,7 +28,7 @@ pub trait Task: Debug + Send + Sync {
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;
 
-    /// Returns what a scripted expert, who knows the house, would do now.
+    /// Returns the action of a scripted expert, which knows the house, now.
     fn expert(&mut self, world: &mut World, episode: &Episode) -> DiscreteAction;
 }
 
@@ -44,12 +44,12 @@ pub struct TaskSetup {
 /// Builds a task from its settings (a JSON object; `null` gives the defaults).
 pub type TaskBuilder = fn(&serde_json::Value, TaskSetup) -> Result<Box<dyn Task>, WorldError>;
 
-/// A kind of task that can be asked for by name.
+/// A kind of task, requested by name.
 #[derive(Clone, Copy, Debug)]
 pub struct TaskKind {
     /// The name: the environment is `dwell/<name>-v<version>`.
     pub name: &'static str,
-    /// Raised whenever an episode would go another way.
+    /// The version, raised whenever an episode would go another way.
     pub version: u32,
     /// One sentence about it.
     pub about: &'static str,
@@ -57,7 +57,7 @@ pub struct TaskKind {
     pub asks: bool,
     /// Control steps after which an episode is cut off.
     pub max_steps: u64,
-    /// The sensors that its environment has when nobody says otherwise.
+    /// The sensors of its environment by default.
     pub sensors: &'static [&'static str],
     /// The fields of its settings.
     pub settings: fn() -> Vec<FieldSchema>,
@@ -65,7 +65,7 @@ pub struct TaskKind {
     pub build: TaskBuilder,
 }
 
-/// Returns where all agents stand, the one whom the task is about at `start`.
+/// Returns the poses of all agents, the one whom the task is about at `start`.
 pub(crate) fn starts(world: &World, agent: AgentId, start: Pose) -> IdVec<AgentId, Pose> {
     let agents = world.state().agents.iter_ids();
     agents
