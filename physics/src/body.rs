@@ -1,4 +1,4 @@
-//! The rigid bodies of a world: what they may do, what they weigh, and where they are.
+//! Rigid bodies of a world: their status, mass factors, and poses.
 
 use crate::convert::from_rapier;
 use crate::engine::RapierWorld;
@@ -16,17 +16,17 @@ pub(crate) struct BodyHandle {
 /// The current kind of motion of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum BodyStatus {
-    /// It moves.
+    /// Moves freely.
     Free,
-    /// It could not be freed at the start: it stands for good.
+    /// Frozen for good: it could not be freed from an overlap at the start.
     Frozen,
-    /// A shut door: it stands until it is opened.
+    /// A closed door, fixed until it is opened.
     Latched,
 }
 
-/// rapier's type for a body under a hold. What stands is kinematic with no velocity, not fixed: rapier 0.36.1 loses count
-/// of its islands when a body becomes fixed before the first step. It is not moved by position either: the velocity that
-/// rapier derives from two equal rotations is not exactly zero, and would keep what touches it awake.
+/// Rapier's body type for a status. A fixed body is kinematic with no velocity, not fixed: rapier 0.36.1 loses count of its
+/// islands when a body becomes fixed before the first step. It is not moved by position either: the velocity that rapier
+/// derives from two equal rotations is not exactly zero, and would keep bodies in contact awake.
 pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
     match hold {
         BodyStatus::Free => RigidBodyType::Dynamic,
@@ -34,9 +34,9 @@ pub(crate) fn body_type(hold: BodyStatus) -> RigidBodyType {
     }
 }
 
-/// Returns what the densities of each body's parts are multiplied with, so that overridden parts and objects weigh what they should. A
-/// part's own factor says how its mass is to the others', and the object's mass, where it is overridden, how much all weigh
-/// together. Shape (body, part).
+/// Returns the factors on the densities of each body's parts that give overridden parts and objects their mass. A part's
+/// own factor sets its mass relative to the others, and the object's mass, where it is overridden, the sum. Shape (body,
+/// part).
 pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>> {
     let house = &model.house;
     if state.overrides.is_empty() {
@@ -51,7 +51,7 @@ pub(crate) fn mass_factors(model: &PhysicsModel, state: &State) -> Vec<Vec<f32>>
     };
     let mut factors: Vec<Vec<f32>> = model.bodies.iter().map(of_parts).collect();
     let mut first = 0;
-    // An object's bodies stand one after the other.
+    // An object's bodies are consecutive.
     while let Some(object) = model.bodies.get(first).map(|body| body.object) {
         let bodies = &model.bodies[first..];
         let count = bodies
@@ -97,7 +97,7 @@ pub(crate) fn write_parts(
     }
 }
 
-/// A part's pose; the first part's is the body's, bit for bit.
+/// Returns a part's pose; the first part's is the body's, bit for bit.
 pub(crate) fn place_of(
     world_from_body: &Pose,
     part: PartId,
@@ -119,7 +119,7 @@ pub(crate) fn colliders<'a>(engine: &'a RapierWorld, body: &BodyHandle) -> &'a [
         .map_or(&[], |rigid| rigid.colliders())
 }
 
-/// Returns what a person calls an object: its finest category, else its name.
+/// Returns the name of an object for people: its finest category, else its name.
 pub(crate) fn name_of(house: &House, object: ObjectId) -> String {
     let object = &house.objects[object];
     let category = &object.category;
@@ -129,7 +129,7 @@ pub(crate) fn name_of(house: &House, object: ObjectId) -> String {
     word.map_or_else(|| "thing".to_owned(), |word| word.replace('_', " "))
 }
 
-/// Returns where a body is, in the scene's words.
+/// Returns the pose of a body, in the scene's type.
 pub(crate) fn pose_of(engine: &RapierWorld, body: &BodyHandle) -> Option<Pose> {
     engine
         .bodies

@@ -10,11 +10,12 @@ pub enum ContactFriction {
     /// One friction force for the patch, and one torque about its normal: cheaper.
     #[default]
     Patch,
-    /// Coulomb's law in every point by itself: dearer, and closer to measured tosses of a cube.
+    /// Coulomb's law in each point: more expensive, and closer to measured tosses of a cube.
     Point,
 }
 
-/// Rates and tolerances of a physics world. What agents can do stands in their bodies ([`dwell_scene::AgentBody`]). Every field has a default; unknown fields are refused.
+/// Rates and tolerances of a physics world. Abilities of agents are in their bodies ([`dwell_scene::AgentBody`]). Every
+/// field has a default; unknown fields are refused.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PhysicsConfig {
@@ -28,21 +29,21 @@ pub struct PhysicsConfig {
     pub contact_friction: ContactFriction,
     /// Lets bodies at rest sleep until something touches them; default true.
     pub sleeping: bool,
-    /// Depth up to which two things may overlap at the start without being moved, m; 0 to 0.05, default 0.002. The
-    /// solver pushes such overlaps apart gently.
+    /// Depth up to which two objects may overlap at the start without being moved, m; 0 to 0.05, default 0.002. The solver
+    /// pushes such overlaps apart gently.
     pub overlap_tolerance_m: f32,
     /// Largest displacement of an object at the start to free it from an overlap, m; 0 to 1, default 0.1. An object that
     /// needs more is frozen where it is.
     pub max_start_shift_m: f32,
-    /// Distance up to which two things count as touching, m; 0 to 0.02, default 0.002.
+    /// Distance up to which two objects count as touching, m; 0 to 0.02, default 0.002.
     pub touch_distance_m: f32,
     /// Normal speed from which a contact is an event, m/s; 0.01 to 10, default 0.1.
     pub event_min_speed_m_s: f32,
     /// Impulse from which a contact is an event, N·s; 1e-6 to 10, default 0.001.
     pub event_min_impulse_n_s: f32,
-    /// Speed from which slipping is scraping, and rolling is told, m/s; 0.005 to 10, default 0.02.
+    /// Speed from which slip is sliding, and rolling is reported, m/s; 0.005 to 10, default 0.02.
     pub slide_min_speed_m_s: f32,
-    /// The most events of a control step; 1 to 100,000, default 128. Impacts come before scrapes and rolling, the strongest
+    /// Most events of a control step; 1 to 100,000, default 128. Impacts come before sliding and rolling, the strongest
     /// first; the others are counted and summed.
     pub max_events_per_step: usize,
     /// Keeps doors and drawers of the building shut at their closed position until they are opened; default true.
@@ -69,10 +70,10 @@ impl Default for PhysicsConfig {
     }
 }
 
-/// A checked [`PhysicsConfig`] with what follows from it.
+/// A checked [`PhysicsConfig`] with derived values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ResolvedConfig {
-    /// The numbers.
+    /// The settings.
     pub(crate) config: PhysicsConfig,
     /// Length of a physics step, s.
     pub(crate) dt_s: f32,
@@ -84,7 +85,7 @@ impl PhysicsConfig {
     /// Checks every range.
     ///
     /// # Errors
-    /// [`PhysicsError::Range`] names the field, what was found and what is allowed.
+    /// [`PhysicsError::Range`] names the field, the value found and the allowed ones.
     pub fn check(&self) -> Result<(), PhysicsError> {
         let range =
             |field: &'static str, value: f32, low: f32, high: f32, allowed: &'static str| {

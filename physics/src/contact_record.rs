@@ -1,4 +1,4 @@
-//! The contacts of a physics step: solving them, correcting rebounds, and what is told of them.
+//! The contacts of a physics step: solution, correction of rebounds, and events.
 
 use crate::articulation::JointSystem;
 use crate::contact::{
@@ -21,13 +21,13 @@ pub(crate) struct ContactRecord {
 
 /// The effects of contacts in a physics step.
 pub(crate) struct SolvedContacts {
-    /// Bodies that flew freely and hit something.
+    /// Bodies in free flight that hit something.
     landed: Vec<RigidBodyHandle>,
     reports: Vec<ContactReport>,
 }
 
 impl ContactRecord {
-    /// Makes rapier's physics step.
+    /// Runs rapier's physics step.
     pub(crate) fn solve(&mut self, dynamics: &mut Dynamics) -> SolvedContacts {
         let flying = dynamics.engine.in_free_flight();
         record_motion(&dynamics.engine, &self.tracker, &flying, &mut self.motion);
@@ -49,7 +49,7 @@ impl ContactRecord {
         SolvedContacts { landed, reports }
     }
 
-    /// Corrects how bodies bounce that flew into something. `joints_before`: the numbers of each joint before the step.
+    /// Corrects the rebounds of bodies that hit something in free flight. `joints_before`: each joint's coordinates before the step.
     pub(crate) fn correct_rebounds(
         &self,
         dynamics: &mut Dynamics,
@@ -69,7 +69,7 @@ impl ContactRecord {
         context.correct(&mut dynamics.engine, &solved.landed, coordinates)
     }
 
-    /// Notes what touched in a physics step; what ended or is told at once goes to `events`.
+    /// Records the contacts of a physics step; events that ended or are immediate go to `events`.
     pub(crate) fn note(
         &mut self,
         dynamics: &Dynamics,
@@ -89,7 +89,7 @@ impl ContactRecord {
             .note_held_back(&dynamics.engine, &self.motion, settings.dt_s);
     }
 
-    /// Tells what is left to tell of a control step; `first`: the place of its first event.
+    /// Emits the remaining events of a control step; `first`: the index of its first event.
     pub(crate) fn tell(
         &mut self,
         dynamics: &Dynamics,

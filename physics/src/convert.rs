@@ -1,4 +1,4 @@
-//! The scene's words in rapier's, and back. Vectors and quaternions are the same type on both sides.
+//! Conversion between the scene's types and rapier's. Vectors and quaternions are the same type on both sides.
 
 use dwell_scene::Pose;
 use rapier3d::math::Pose as RapierPose;

@@ -1,6 +1,6 @@
 //! Errors of the physics engine.
 
-/// A fault of physics, with its place.
+/// An error of physics, with its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PhysicsError {
@@ -41,27 +41,27 @@ pub enum PhysicsError {
         law: &'static str,
         /// The kind of target that the law acts on.
         kind: &'static str,
-        /// The name that was asked for.
+        /// The name given.
         name: String,
         /// The first names that exist.
         known: Vec<String>,
     },
-    /// A law that what it was told to act on cannot follow.
+    /// A law that its target cannot follow.
     #[error("law {law} cannot act on {what}: {why}")]
     LawUnfit {
         /// The law's id.
         law: &'static str,
         /// The target as given.
         what: String,
-        /// Why it cannot, and what it could.
+        /// The reason, and possible targets.
         why: String,
     },
-    /// Something that cannot be put anywhere.
+    /// A body or joint that cannot be placed.
     #[error("{what} cannot be set: {why}")]
     Unmovable {
         /// The body or joint to be placed.
         what: String,
-        /// Why it cannot be.
+        /// The reason.
         why: String,
     },
     /// More than a physics world can hold.
@@ -79,7 +79,7 @@ pub enum PhysicsError {
     /// Bytes that are no snapshot of this world.
     #[error("physics snapshot refused: {0}")]
     Snapshot(String),
-    /// A fault of the scene.
+    /// An error of the scene.
     #[error(transparent)]
     Scene(#[from] dwell_scene::SceneError),
 }

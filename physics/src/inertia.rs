@@ -15,13 +15,13 @@ pub(crate) struct BodyInertia {
     pub(crate) center: Vec3,
     /// About the centre of mass, kg·m².
     pub(crate) tensor: Mat3,
-    /// Weight over mass times gravity.
+    /// Ratio of weight to mass times gravity.
     pub(crate) gravity_scale: f32,
 }
 
 impl BodyInertia {
-    /// Returns what a body's pieces have and its parts state in a world, with each part's density times its factor. Shape of
-    /// `factors`: (part,).
+    /// Returns the inertia of a body's pieces and stated parts in a world, with each part's density times its factor. Shape
+    /// of `factors`: (part,).
     pub(crate) fn of(house: &House, plan: &BodyPlan, state: &State, factors: &[f32]) -> Self {
         let given = plan.given_mass(house, state, factors);
         let mut all = given.unwrap_or_default();
@@ -51,13 +51,14 @@ impl BodyInertia {
     }
 }
 
-/// A law that changes what bodies weigh.
+/// A law that changes mass properties.
 pub(crate) trait MassLaw: Debug + Send + Sync {
     /// Changes mass, centre of mass or inertia of a body, once when laws or masses change.
     fn modify_mass_properties(&self, body: u32, inertia: &mut BodyInertia);
 }
 
-/// The inertia of each body whose parts state it or some law changes it; the colliders of such a body have no density. Shape (body,).
+/// Returns the inertia of each body whose parts state it or that a law changes; the colliders of such a body have no
+/// density. Shape (body,).
 pub(crate) fn altered(
     model: &PhysicsModel,
     state: &State,

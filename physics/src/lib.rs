@@ -21,8 +21,8 @@
 //! # Ok::<(), dwell_physics::PhysicsError>(())
 //! ```
 
-// Each module uses only those before it in this order: what rapier and the house are (convert, error, config, report, model,
-// engine, body, inertia); what acts (joints, contact, bases, laws); the parts of a world (limits, start, dynamics, outcome,
+// Each module uses only those before it in this order: rapier and the house (convert, error, config, report, model, engine,
+// body, inertia); interactions (joints, contact, bases, laws); the parts of a world (limits, start, dynamics, outcome,
 // articulation, contact_record, agents, hands, actions); world, which joins them.
 pub mod actions;
 mod agents;

@@ -10,24 +10,24 @@ use rapier3d::geometry::Aabb;
 use rapier3d::parry::bounding_volume::BoundingVolume;
 use rapier3d::parry::partitioning::{Bvh, BvhBuildStrategy};
 
-/// Most rigid bodies that can move. Each takes some 15 KB in a world and the start that it shares.
+/// Most rigid bodies that can move. Each takes some 15 KB in a world and its shared initial state.
 pub(crate) const MOST_BODIES: usize = 50_000;
 /// Most collision pieces of a house, those that never move included.
 pub(crate) const MOST_PIECES: usize = 500_000;
-/// Most joints that act on each other: their efforts are found together, in a time that grows with the third power.
+/// Most joints that act on each other: their efforts are computed together, in a time that grows with the third power.
 pub(crate) const MOST_JOINTS_TOGETHER: usize = 256;
-/// Most pairs of a piece that moves and another one near it as a world begins. Each takes some 1.5 KB, in the world and in
-/// the start that it shares.
+/// Most pairs of a moving piece and another one near it as a world begins. Each takes some 1.5 KB, in the world and in its
+/// shared initial state.
 pub(crate) const MOST_NEAR_PAIRS: usize = 300_000;
-/// Most pairs of pieces whose boxes meet, of one body and of what never moves included. Each is looked at, and takes 8 bytes
-/// for a moment.
+/// Most pairs of pieces whose boxes intersect, including those of one body and of static geometry. Each is visited, and
+/// takes 8 bytes for a moment.
 pub(crate) const MOST_BOXES_THAT_MEET: usize = 10_000_000;
-/// Most pairs of a body on a joint and a piece that pass through each other: of one object, and where they overlap.
+/// Most pairs of a jointed body and a piece excluded from collision: of one object, and where they overlap.
 pub(crate) const MOST_PASSING_PAIRS: usize = 300_000;
 
 /// Margin of pieces' boxes in rapier, m: half of its prediction distance.
 const REACH_M: f32 = 0.01;
-/// Pairs from which on making a world is looked at for whether it is to stop between them.
+/// Pairs from which construction of a world checks for cancellation between them.
 const MANY_PAIRS: usize = 10_000;
 
 /// The number of pairs of pieces in a world; with many of them a flush takes long.
@@ -50,7 +50,7 @@ fn refuse<T>(
     })
 }
 
-/// Returns whether a world can hold a house as it stands in `state`.
+/// Returns whether a world can hold a house in the given state.
 pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<Crowding, PhysicsError> {
     let house = &model.house;
     let bodies = model.bodies.len();
@@ -104,7 +104,7 @@ pub(crate) fn check_trees(
     refuse(what, (count, MOST_JOINTS_TOGETHER), change)
 }
 
-/// Returns whether what passes through each other is few enough, of an object and those before it.
+/// Returns whether an object's excluded pairs, with those before it, are few enough.
 pub(crate) fn check_passing(
     house: &House,
     object: ObjectId,
@@ -121,7 +121,7 @@ pub(crate) fn check_passing(
     refuse(what, (pairs, MOST_PASSING_PAIRS), change)
 }
 
-/// Returns how many pairs of pieces rapier will keep as a world begins.
+/// Returns the number of pairs that rapier keeps as a world begins.
 fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
     /// The owner of all static pieces.
     const STANDS: u32 = u32::MAX;
@@ -179,7 +179,7 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
 mod tests {
     use super::*;
 
-    /// The page's table states every cap of this file, as it is.
+    /// The page's table gives every cap of this file.
     #[test]
     fn the_page_states_the_caps() {
         let page = include_str!("../../docs/hostile-input.md");

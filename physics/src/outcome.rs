@@ -5,46 +5,46 @@ use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Why an action did or did not work.
+/// The reason why an action succeeded or failed.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, JsonSchema,
 )]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum OutcomeCode {
-    /// It is done.
+    /// Done.
     Done,
-    /// It goes on over the next steps.
+    /// Started; it goes on over the next steps.
     Started,
-    /// Nothing was meant.
+    /// No target.
     NoTarget,
     /// A state of another house or world.
     ForeignState,
-    /// No such agent.
+    /// An agent that does not exist.
     UnknownAgent,
-    /// No such object.
+    /// An object that does not exist.
     UnknownObject,
     /// A number that is not finite or out of its range.
     BadNumber,
     /// The agent itself.
     Oneself,
-    /// A wall, a floor or somebody else: no thing for a hand.
+    /// A wall, a floor or another agent: no object for a hand.
     NotAThing,
-    /// Somebody stands on it.
+    /// An agent stands on it.
     StoodOn,
     /// Out of reach.
     TooFar,
-    /// Something stands between.
+    /// Something hides it.
     NotVisible,
     /// It is behind the agent.
     Behind,
-    /// It cannot be taken: it is fixed, or no thing to take.
+    /// It cannot be picked up: it is fixed, or not pickable.
     NotPickable,
     /// It weighs more than the agent lifts.
     TooHeavy,
     /// It is larger than a hand carries.
     TooLarge,
-    /// It is stuck in something.
+    /// It overlaps something and cannot be freed.
     Stuck,
     /// The hand holds something already.
     HandFull,
@@ -52,19 +52,19 @@ pub enum OutcomeCode {
     HandEmpty,
     /// Another agent holds it.
     HeldByOther,
-    /// There is nowhere to put it.
+    /// There is no space to put it.
     NoSpace,
-    /// Nothing carries it there.
+    /// Nothing supports it there.
     NoSupport,
-    /// It holds nothing inside.
+    /// It is no container.
     NotContainer,
     /// The container is closed.
     Closed,
     /// The container has no room left.
     Full,
-    /// It stands firm.
+    /// It is fixed.
     NotMovable,
-    /// It is shut, and stays so until it is opened.
+    /// It is latched until it is opened.
     Shut,
     /// It has no joint.
     NotOpenable,
@@ -78,7 +78,7 @@ pub enum OutcomeCode {
     Blocked,
     /// It slipped from the hand.
     Slipped,
-    /// Its place or speed was no number any more, so that it was stopped.
+    /// Its position or velocity was no longer finite, so that it was stopped.
     Lost,
 }
 
@@ -125,7 +125,7 @@ impl OutcomeCode {
 /// The thing that an agent points at.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointedTarget {
-    /// The sensors' id.
+    /// The entity id.
     pub entity: EntityId,
     /// The point, m.
     pub point: Vec3,
@@ -138,11 +138,11 @@ pub struct PointedTarget {
 pub struct ActionOutcome {
     /// True if it succeeded, or began an operation that goes on.
     pub success: bool,
-    /// Why.
+    /// The reason.
     pub code: OutcomeCode,
-    /// The same for a person, with what to do about it.
+    /// The same for people, with a remedy.
     pub sentence: String,
-    /// The object it was about.
+    /// The object concerned.
     pub object: Option<ObjectId>,
     /// The result of [`crate::actions::Point`].
     pub pointed: Option<PointedTarget>,
@@ -176,7 +176,7 @@ impl ActionOutcome {
 /// The outcome of an operation that an agent began in an earlier step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DelayedOutcome {
-    /// Whose action it was; `None` when the state asked for it.
+    /// The agent that acted; `None` for a command in the state.
     pub agent: Option<AgentId>,
     /// Its outcome.
     pub outcome: ActionOutcome,
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn the_list_of_codes_is_whole_and_in_order() {
-        // A new code at the end is missed here until the list has it.
+        // Fails for a new code at the end until the list has it.
         let last = OutcomeCode::ALL.len() - 1;
         assert_eq!(OutcomeCode::Lost as usize, last);
         for (k, code) in OutcomeCode::ALL.into_iter().enumerate() {

@@ -14,18 +14,18 @@ pub struct MovedObject {
     pub distance_m: f32,
 }
 
-/// An object that could not be freed within the bound and stands still for good.
+/// An object that could not be freed within the bound and is frozen for good.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrozenObject {
     /// The object.
     pub object: ObjectId,
-    /// The overlap that is left, m.
+    /// The remaining overlap, m.
     pub overlap_m: f32,
-    /// The name of what it overlaps most.
+    /// The name of the thing that it overlaps most.
     pub with: String,
 }
 
-/// A joint's leaf that overlaps other things where it stands: it passes through them.
+/// A joint's leaf that overlaps other things at the start: it passes through them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PassingJoint {
     /// The joint.
@@ -34,7 +34,7 @@ pub struct PassingJoint {
     pub through: Vec<String>,
 }
 
-/// An agent that would have stood in something at the start and was put where its body has room.
+/// An agent that would have overlapped something at the start and was put at a free place.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MovedAgent {
     /// The agent.
@@ -54,14 +54,14 @@ pub struct StartReport {
     pub joints: usize,
     /// Pairs of a body and another piece that overlapped by more than the tolerance.
     pub overlaps: usize,
-    /// Objects that were moved free.
+    /// Objects that were moved to free them.
     pub moved: Vec<MovedObject>,
     /// Objects that were frozen.
     pub frozen: Vec<FrozenObject>,
-    /// Leaves that pass through what they overlap.
+    /// Leaves that pass through things that they overlap.
     pub passing: Vec<PassingJoint>,
-    /// Moving objects that came without collision pieces and have convex pieces of what is seen.
+    /// Moving objects without collision pieces of their own, which got convex pieces of their visible mesh.
     pub stand_ins: Vec<ObjectId>,
-    /// Agents that were put where they have room.
+    /// Agents that were put at a free place.
     pub agents: Vec<MovedAgent>,
 }

@@ -17,8 +17,8 @@ pub enum JointKind {
 
 /// The motor of a joint with its controller.
 ///
-/// Told a position: effort = `stiffness` * (target - position) - `damping` * velocity, and with `feed_forward` what gravity
-/// asks besides. Told a velocity: effort = `velocity_gain` * (target - velocity), and the same. Told an effort: that
+/// Position command: effort = `stiffness` * (target - position) - `damping` * velocity, and with `feed_forward` the effort
+/// against gravity. Velocity command: effort = `velocity_gain` * (target - velocity), and the same. Effort command: that
 /// effort. Always within `gear * max_effort`, and never driving the joint beyond `max_velocity / gear`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -29,7 +29,7 @@ pub struct Servo {
     pub damping: f32,
     /// The motor's largest effort, N·m or N; `gear` times as much at the joint.
     pub max_effort: f32,
-    /// N·m·s/rad or N·s/m; 0: it cannot be told a velocity.
+    /// N·m·s/rad or N·s/m; 0: it takes no velocity commands.
     pub velocity_gain: f32,
     /// The motor's highest speed, rad/s or m/s; 1 / `gear` times as much at the joint. `None`: no bound.
     pub max_velocity: Option<f32>,
@@ -40,7 +40,7 @@ pub struct Servo {
 }
 
 impl Default for Servo {
-    /// A motor without strength, gear 1.
+    /// A motor with zero effort, gear 1.
     fn default() -> Self {
         Self {
             stiffness: 0.0,
@@ -55,12 +55,12 @@ impl Default for Servo {
 }
 
 impl Servo {
-    /// The largest effort at the joint, N·m or N.
+    /// Returns the largest effort at the joint, N·m or N.
     pub fn joint_effort(&self) -> f32 {
         self.gear * self.max_effort
     }
 
-    /// The highest speed it drives the joint to, rad/s or m/s; infinite without a bound.
+    /// Returns the highest speed to which it drives the joint, rad/s or m/s; infinite without a bound.
     pub fn joint_velocity(&self) -> f32 {
         self.max_velocity
             .map_or(f32::INFINITY, |velocity| velocity / self.gear)
@@ -71,19 +71,19 @@ impl Servo {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum JointCommand {
-    /// Nothing: it swings freely.
+    /// No command: the joint swings freely.
     #[default]
     Off,
-    /// Go to this position, rad or m.
+    /// Target position, rad or m.
     Position(f32),
-    /// Keep this velocity, rad/s or m/s.
+    /// Target velocity, rad/s or m/s.
     Velocity(f32),
-    /// Exert this effort, N·m or N.
+    /// Effort to exert, N·m or N.
     Effort(f32),
 }
 
 impl JointCommand {
-    /// The position it is told to go to.
+    /// Returns the target of a position command.
     pub fn position(self) -> Option<f32> {
         match self {
             Self::Position(target) => Some(target),
@@ -100,10 +100,10 @@ impl JointCommand {
     }
 }
 
-/// A joint that follows another by a linkage: `position = multiplier * leader's position + offset`.
+/// A joint coupled to another: `position = multiplier * leader's position + offset`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mimic {
-    /// The joint it follows; it stands before this one in the house and follows none itself.
+    /// The joint it follows; it comes before this one in the house and follows none itself.
     pub leader: JointId,
     /// rad or m of this joint for one of the leader.
     pub multiplier: f32,
@@ -111,8 +111,8 @@ pub struct Mimic {
     pub offset: f32,
 }
 
-/// A joint with one degree of freedom between two parts, from which physics builds constraints, eyes see parts and words
-/// know states.
+/// A joint with one degree of freedom between two parts; physics builds constraints from it, cameras show its parts, and
+/// language reads its state.
 ///
 /// `world_from_child = world_from_parent * parent_from_joint * motion(position) * child_from_joint⁻¹`, where the motion
 /// turns about or slides along `axis`.
@@ -122,11 +122,11 @@ pub struct Articulation {
     pub name: String,
     /// The object it belongs to.
     pub object: ObjectId,
-    /// The part it hangs on; `None`: the house itself (then `parent_from_joint` is `world_from_joint`).
+    /// The parent part; `None`: the house itself (then `parent_from_joint` is `world_from_joint`).
     pub parent: Option<PartId>,
-    /// The part that moves.
+    /// The child part, which moves.
     pub child: PartId,
-    /// Turning or sliding.
+    /// Hinge or slide.
     pub kind: JointKind,
     /// The axis in joint space, unit length.
     pub axis: Vec3,
@@ -138,8 +138,8 @@ pub struct Articulation {
     pub limits: Option<[f32; 2]>,
     /// The position at which it counts as closed, inside the limits.
     pub closed: f32,
-    /// The position at which it counts as fully open, inside the limits; equal to `closed` for what neither opens nor
-    /// closes, such as the joint of an arm.
+    /// The position at which it counts as fully open, inside the limits; equal to `closed` for a joint that neither opens
+    /// nor closes, such as that of an arm.
     pub open: f32,
     /// The position at the start, inside the limits.
     pub initial: f32,
@@ -147,13 +147,13 @@ pub struct Articulation {
     pub friction: f32,
     /// Viscous damping, N·m·s/rad or N·s/m.
     pub damping: f32,
-    /// Inertia that the joint itself resists with, such as a rotor's times the square of its gear, kg·m² or kg. It is that
-    /// of the servo's gear here; another gear set at run time changes it by the square.
+    /// Inertia of the joint itself, such as a rotor's times the square of its gear ratio, kg·m² or kg. It holds for the
+    /// servo's gear here; another gear set at run time changes it by the square.
     #[serde(default)]
     pub armature: f32,
     /// The motor, if it has one.
     pub servo: Option<Servo>,
-    /// The joint it follows, if it follows one.
+    /// The coupling of a mimic joint.
     #[serde(default)]
     pub mimic: Option<Mimic>,
     /// True for its object's switch, such as the lever of a tap: opening it switches the object on, closing it off.
@@ -162,12 +162,12 @@ pub struct Articulation {
 }
 
 impl Articulation {
-    /// The movement of the joint at `position` (rad or m).
+    /// Returns the displacement of the joint at `position` (rad or m).
     pub fn motion(&self, position: f32) -> Pose {
         motion_along(self.kind, self.axis, position)
     }
 
-    /// Returns where the child stands when the parent stands at `world_from_parent` and the joint at `position`.
+    /// Returns the child's pose with the parent at `world_from_parent` and the joint at `position`.
     pub fn world_from_child(&self, world_from_parent: &Pose, position: f32) -> Pose {
         *world_from_parent
             * self.parent_from_joint
@@ -205,7 +205,7 @@ impl Articulation {
             .map_or(position, |[low, high]| position.clamp(low, high))
     }
 
-    /// Returns whether it is something to open and close by hand: a door, a drawer, a lid.
+    /// Returns whether it opens and closes by hand: a door, a drawer, a lid.
     pub fn opens(&self) -> bool {
         self.open != self.closed && self.servo.is_none() && self.mimic.is_none()
     }
@@ -226,7 +226,7 @@ impl Articulation {
     }
 }
 
-/// The movement of a joint with the unit axis `axis` at `position` (rad or m).
+/// The displacement of a joint with the unit axis `axis` at `position` (rad or m).
 pub(crate) fn motion_along(kind: JointKind, axis: Vec3, position: f32) -> Pose {
     match kind {
         JointKind::Hinge => {

@@ -19,7 +19,7 @@ impl Default for Aabb {
 }
 
 impl Aabb {
-    /// A box that holds nothing and grows to whatever is added.
+    /// The empty box, which grows to whatever is added.
     pub const EMPTY: Self = Self {
         min: Vec3::splat(f32::MAX),
         max: Vec3::splat(f32::MIN),
@@ -50,7 +50,7 @@ impl Aabb {
         }
     }
 
-    /// The smallest box that holds both.
+    /// Returns the smallest box around both.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Aabb {
         }
     }
 
-    /// Half the surface, m²: what trees weigh boxes by.
+    /// Half the surface, m²: the cost of a box in the surface area heuristic.
     pub(crate) fn half_area(&self) -> f32 {
         let size = self.size();
         size.x * size.y + size.y * size.z + size.z * size.x

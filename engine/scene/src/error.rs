@@ -70,7 +70,7 @@ pub enum SceneError {
         /// The name.
         name: String,
     },
-    /// A name that nothing has.
+    /// A name that does not exist.
     #[error("{at}: no {kind} {name:?}; there are {known:?}")]
     Unknown {
         /// Path of the query.
@@ -95,7 +95,7 @@ pub enum SceneError {
     },
 }
 
-/// Refuses what is out of its range; `at`: where it stands.
+/// Refuses a value out of its range; `at`: its path.
 pub(crate) fn range(
     at: &str,
     field: &'static str,
@@ -115,7 +115,7 @@ pub(crate) fn range(
     }
 }
 
-/// A number without the many zeros of a very large one.
+/// Shortens a number with many zeros.
 fn short(found: String) -> String {
     match found.parse::<f64>() {
         Ok(number) if found.len() > 20 => format!("{number:.1e}"),

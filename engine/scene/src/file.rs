@@ -1,7 +1,7 @@
-//! The one way to read a stranger's file, and the one way to write a file or a folder of ours.
+//! Reading of untrusted files, and writing of files and folders.
 //!
-//! To open a named pipe is to wait for somebody who writes into it, and a device may have no end; so only regular files are
-//! read, to a cap. Only regular files are replaced, and what is written appears whole or not at all.
+//! Opening a named pipe waits for a writer, and a device may have no end; so only regular files are read, to a cap. Only
+//! regular files are replaced, and a file appears whole or not at all.
 
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write as _};
@@ -9,18 +9,18 @@ use std::path::{Path, PathBuf};
 
 /// Deepest nesting of JSON, `serde_json`'s own limit.
 pub const MAX_JSON_DEPTH: usize = 128;
-/// Drafts of one name that may be in the making at once.
+/// Most drafts of one name at the same time.
 const MOST_DRAFTS: usize = 10_000;
-/// Bytes that a draft's name takes from the name it is for; names have 255 at most.
+/// Bytes of the target's name that a draft's name keeps; names have 255 at most.
 const DRAFT_NAME_BYTES: usize = 200;
 
-/// Why a file was not read.
+/// The reason why a file was not read.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// The system refuses, or it is no regular file.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// More bytes than are read.
+    /// More bytes than allowed.
     #[error("{found} bytes; at most {allowed} are read")]
     TooLarge {
         /// Its size, bytes; of a file that grows, more than are allowed.
@@ -30,18 +30,18 @@ pub enum ReadError {
     },
 }
 
-/// Opens a regular file of at most `max_bytes`, without ever waiting for somebody else.
+/// Opens a regular file of at most `max_bytes`, without ever blocking.
 ///
-/// The file may still grow while it is read: who reads on [takes](io::Read::take) at most `max_bytes`.
+/// The file may still grow while it is read: callers [take](io::Read::take) at most `max_bytes`.
 ///
 /// # Errors
 /// [`ReadError::Io`] when the system refuses and for what is no regular file, [`ReadError::TooLarge`].
 pub fn open(path: &Path, max_bytes: u64) -> Result<File, ReadError> {
-    // Something may happen when a device is opened, so it is looked at before.
+    // Opening a device can have effects, so its type is checked first.
     regular(&fs::metadata(path)?)?;
     let file = without_waiting(path)?;
     let meta = file.metadata()?;
-    // Another thing may stand there by now.
+    // The path may have been replaced since.
     regular(&meta)?;
     let (found, allowed) = (meta.len(), max_bytes);
     if found > allowed {
@@ -73,7 +73,7 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>, ReadError> {
 /// A link is followed where it leads to a regular file, which is replaced.
 ///
 /// # Errors
-/// When the system refuses, and where something stands that is no regular file; it stays as it is.
+/// When the system refuses, and where the path is no regular file; it is then left as it is.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let place = place(path)?;
     let mut draft = StagedPath::file(&place)?;
@@ -81,10 +81,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     fs::rename(&draft.path, &place)
 }
 
-/// Returns where a file that is written to `path` stands afterwards: elsewhere when `path` is a link.
+/// Returns the path that a file written to `path` will have: another one when `path` is a link.
 ///
 /// # Errors
-/// When something stands there that is no regular file, or a link that leads nowhere.
+/// When the path is no regular file, or a dangling link.
 fn place(path: &Path) -> io::Result<PathBuf> {
     let meta = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(path.to_owned()),
@@ -102,14 +102,13 @@ fn place(path: &Path) -> io::Result<PathBuf> {
     Ok(real)
 }
 
-/// A file or folder in the making, beside the place it is for. It is removed when it goes out of scope and was not moved.
+/// A file or folder under construction, beside its target. It is removed when dropped before it was moved.
 ///
-/// Its lock says that its process is alive: whoever makes a draft for the same name removes those of processes that were
-/// ended before they could.
+/// Its lock shows that its process is alive: a new draft of the same name removes those of processes that were killed.
 #[derive(Debug)]
 pub struct StagedPath {
     path: PathBuf,
-    /// Holds the lock, which the system lets go when the process ends.
+    /// Holds the lock, which the system releases when the process ends.
     handle: File,
 }
 
@@ -135,7 +134,7 @@ impl StagedPath {
         Self::claim(place, make, |path| fs::remove_dir_all(path))
     }
 
-    /// Returns where it is.
+    /// Returns its path.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -149,7 +148,7 @@ impl StagedPath {
             let path = draft_name(place, number);
             let made = match make(&path) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    // Held until it is gone, so that nobody removes what comes after it.
+                    // The lock is held until it is removed, so that nobody removes its successor.
                     let Some(held) = left_behind(&path) else {
                         continue;
                     };
@@ -163,13 +162,13 @@ impl StagedPath {
             };
             match made {
                 Ok(handle) => {
-                    // Some file systems have no locks; their drafts are nobody's to remove.
+                    // Some file systems have no locks; drafts there are never removed.
                     let is_held = matches!(handle.try_lock(), Err(TryLockError::WouldBlock));
                     if !is_held && is_at(&handle, &path) {
                         return Ok(Self { path, handle });
                     }
                 }
-                // Somebody was quicker.
+                // Another process was faster.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -181,7 +180,7 @@ impl StagedPath {
 
 impl Drop for StagedPath {
     fn drop(&mut self) {
-        // Moved into place, it is no draft any more, and another one may have its name.
+        // Once moved into place it is no draft any more, and another one may have its name.
         if is_at(&self.handle, &self.path) {
             let is_folder = self.handle.metadata().is_ok_and(|meta| meta.is_dir());
             let remove = if is_folder {
@@ -189,7 +188,7 @@ impl Drop for StagedPath {
             } else {
                 fs::remove_file
             };
-            // Nobody is there to be told; the next draft of this name tries again.
+            // An error here has no receiver; the next draft of this name tries again.
             let _ = remove(&self.path);
         }
     }
@@ -202,7 +201,7 @@ fn draft_name(place: &Path, number: usize) -> PathBuf {
     place.with_file_name(format!(".{name}.partial-{number}"))
 }
 
-/// The lock of a draft whose process has ended.
+/// Returns the lock of a draft whose process has ended.
 fn left_behind(path: &Path) -> Option<File> {
     let meta = fs::symlink_metadata(path).ok()?;
     if !meta.is_file() && !meta.is_dir() {
@@ -212,7 +211,7 @@ fn left_behind(path: &Path) -> Option<File> {
     (handle.try_lock().is_ok() && is_at(&handle, path)).then_some(handle)
 }
 
-/// Returns whether a handle is that of what stands at `path` now.
+/// Returns whether a handle is that of the file now at `path`.
 #[cfg(unix)]
 fn is_at(handle: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt as _;
@@ -228,7 +227,7 @@ fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
-/// Opens for reading: folders, too, and named pipes that nobody writes into.
+/// Opens for reading without blocking: folders, too, and named pipes without a writer.
 fn without_waiting(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -246,7 +245,7 @@ fn without_waiting(path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Refuses what is no regular file.
+/// Refuses anything but a regular file.
 fn regular(meta: &Metadata) -> io::Result<()> {
     if meta.is_file() {
         return Ok(());
@@ -350,7 +349,7 @@ mod tests {
     fn drafts_of_the_living_stay_and_those_of_the_dead_go() {
         let folder = tempfile::tempdir().unwrap();
         let place = folder.path().join("house");
-        // As a process leaves it that was killed: nobody holds its lock.
+        // The draft of a killed process: nobody holds its lock.
         let left = folder.path().join(".house.partial-0");
         fs::create_dir(&left).unwrap();
         fs::write(left.join("mesh"), "half").unwrap();

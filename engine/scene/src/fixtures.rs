@@ -46,7 +46,7 @@ pub struct Light {
     pub attenuation: [f32; 3],
 }
 
-/// A place of an object from which sound comes while the object is switched on.
+/// A sound source of an object, active while the object is switched on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SoundEmitter {
     /// The object that is switched.
@@ -60,19 +60,19 @@ pub struct SoundEmitter {
     pub signal: String,
     /// Level at 1 m in the free field, dB SPL (RMS over the whole sound).
     pub level_db: f32,
-    /// The house's own sound file that sounds instead of a signal.
+    /// The house's own sound file to play instead of a signal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sound_file: Option<SoundFileId>,
     /// Starts it again when it ends.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub loops: bool,
-    /// When it begins, s after the start of a world; 0 to 86400. What loops from 0 on has always sounded.
+    /// Start time, s after the start of a world; 0 to 86400. A loop that starts at 0 has always been playing.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub start_s: f32,
 }
 
 impl SoundEmitter {
-    /// A signal that sounds over and over from the start.
+    /// Returns a signal that loops from the start.
     pub fn steady(
         object: ObjectId,
         part: PartId,
@@ -93,7 +93,7 @@ impl SoundEmitter {
     }
 }
 
-// What every emitter once was is not written, so that houses without sound files keep their bytes and fingerprints.
+// Defaults are not written, so that houses without sound files keep their bytes and fingerprints.
 const fn yes() -> bool {
     true
 }
@@ -114,7 +114,7 @@ fn is_zero(value: &f32) -> bool {
     *value == 0.0
 }
 
-/// A sound file that a house carries, as it was read: WAV, FLAC or Ogg Vorbis. `dwell_acoustics::Recording` decodes it.
+/// A sound file of a house, as it was read: WAV, FLAC or Ogg Vorbis. `dwell_acoustics::Recording` decodes it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SoundFile {
     /// The file's name, unique in the house: `"kettle.wav"`.

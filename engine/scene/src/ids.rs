@@ -69,7 +69,7 @@ ids! {
 pub struct EntityId(pub i32);
 
 impl EntityId {
-    /// Nothing: what a ray that leaves the house sees.
+    /// Nothing: the id seen by a ray that leaves the house.
     pub const VOID: Self = Self(0);
 }
 

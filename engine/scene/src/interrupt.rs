@@ -24,7 +24,7 @@ pub const INTERVAL: Duration = Duration::from_millis(25);
 pub struct Interrupted(());
 
 impl Interrupted {
-    /// Goes on unwinding, to who wanted the call to stop.
+    /// Resumes unwinding towards the caller that requested the stop.
     pub fn resume(self) -> ! {
         resume_unwind(Box::new(self))
     }
@@ -37,13 +37,13 @@ pub(crate) type CancelToken = Arc<AtomicBool>;
 type PollSchedule = Option<(fn() -> bool, Instant)>;
 
 thread_local! {
-    /// Of the call that this thread works for; none: nobody can stop it.
+    /// That of the call that this thread works for; none: the call cannot be cancelled.
     static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
-    /// Only on the thread that called.
+    /// Set only on the calling thread.
     static ASK: Cell<PollSchedule> = const { Cell::new(None) };
 }
 
-/// Puts back what stood there, also when the stack unwinds.
+/// Restores the previous values, also when the stack unwinds.
 struct ScopeGuard {
     token: Option<CancelToken>,
     ask: PollSchedule,
@@ -65,36 +65,36 @@ impl Drop for ScopeGuard {
     }
 }
 
-/// Does `work`; stops it soon after `ask` has answered that it shall stop. `ask` is called on this thread only, in the
-/// middle of `work`: it must not call engines, whose locks `work` may hold.
+/// Runs `work`; cancels it soon after `ask` has returned true. `ask` is called on this thread only, in the middle of
+/// `work`: it must not call engines, whose locks `work` may hold.
 ///
 /// # Errors
-/// [`Interrupted`] when the work was stopped. Work that ends before it meets a [`check`] is done, whatever the answer was.
+/// [`Interrupted`] when the work was cancelled. Work that ends before it meets a [`check`] is done, whatever `ask` returned.
 pub fn interruptible<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     let token = Arc::new(AtomicBool::new(false));
     let _restore = ScopeGuard::set_and_guard(Some(token), Some((ask, Instant::now() + INTERVAL)));
     catch_interrupt(work)
 }
 
-/// Does `work`, and takes hold of the unwinding when it is stopped. Panics go on.
+/// Runs `work`, and catches the unwinding of a cancellation. Panics pass.
 ///
 /// # Errors
-/// [`Interrupted`] when the work was stopped; hand it on by [`Interrupted::resume`] or as an error.
+/// [`Interrupted`] when the work was cancelled; pass it on by [`Interrupted::resume`] or as an error.
 pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
-    // Panics go on, and what was interrupted is for the caller to mend: that is what `catch_interrupt` is for.
+    // Panics pass, and repairing interrupted data is up to the caller: that is the purpose of `catch_interrupt`.
     catch_unwind(AssertUnwindSafe(work)).map_err(|cause| match cause.downcast::<Interrupted>() {
         Ok(interrupted) => *interrupted,
         Err(panic) => resume_unwind(panic),
     })
 }
 
-/// Does `work` to its end: nothing in it stops, and nothing is asked meanwhile.
+/// Runs `work` to its end: it is not cancelled, and nothing is polled meanwhile.
 pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
     let _restore = ScopeGuard::set_and_guard(None, None);
     work()
 }
 
-/// Stops here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
+/// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
 pub fn check() {
     if ASK.get().is_some_and(|(_, next)| Instant::now() >= next) {
         ask_now();
@@ -104,7 +104,7 @@ pub fn check() {
     }
 }
 
-/// Looks by [`check`] once in so many turns: for loops whose turns are hardly longer than a look.
+/// Calls [`check`] once in a number of turns: for loops whose turns are hardly longer than a check.
 #[derive(Debug)]
 pub struct PollEvery {
     every: usize,
@@ -112,18 +112,18 @@ pub struct PollEvery {
 }
 
 impl PollEvery {
-    /// Looks at the first turn, and again after `every` turns, at least one.
+    /// Checks at the first turn, and again after `every` turns, at least one.
     pub fn new(every: usize) -> Self {
         Self { every, left: 0 }
     }
 
-    /// One turn.
+    /// Counts one turn.
     #[inline]
     pub fn turn(&mut self) {
         self.turns(1);
     }
 
-    /// So many turns at once: those of a loop within.
+    /// Counts several turns at once: those of an inner loop.
     #[inline]
     pub fn turns(&mut self, count: usize) {
         if self.left < count.max(1) {
@@ -138,12 +138,12 @@ fn is_set(token: &CancelToken) -> bool {
     token.load(Ordering::Relaxed)
 }
 
-/// Returns whether this thread has somebody to ask.
+/// Returns whether this thread polls.
 pub(crate) fn asks() -> bool {
     ASK.get().is_some()
 }
 
-/// Asks, and remembers the answer for all threads of the call.
+/// Polls, and stores the result for all threads of the call.
 pub(crate) fn ask_now() {
     let Some((ask, _)) = ASK.get() else {
         return;
@@ -158,14 +158,14 @@ pub(crate) fn ask_now() {
     ASK.set(Some((ask, Instant::now() + INTERVAL)));
 }
 
-/// The token of the call that this thread works for.
+/// Returns the token of the call that this thread works for.
 pub(crate) fn token() -> Option<CancelToken> {
     TOKEN.with_borrow(Clone::clone)
 }
 
-/// Does a piece of the work of the call that `token` belongs to, on whatever thread.
+/// Runs a piece of the work of the call that `token` belongs to, on any thread.
 pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
-    // The thread that called asks, too, when it has pieces to do itself.
+    // The calling thread polls, too, when it has pieces to do itself.
     let _restore = ScopeGuard::set_and_guard(token.cloned(), ASK.get());
     check();
     work()
@@ -243,7 +243,7 @@ mod tests {
             ASKED.store(0, Ordering::Relaxed);
             let mut pace = PollEvery::new(10);
             for count in turns {
-                // Every look is one that asks.
+                // Every check polls.
                 ASK.set(Some((note, Instant::now())));
                 pace.turns(*count);
             }

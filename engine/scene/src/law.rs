@@ -1,12 +1,12 @@
 //! Laws as data: physical effects that the basic model lacks.
 //!
-//! A law acts in one engine, where it has one file and one line in that engine's `laws::all()`. This module holds only
-//! what every engine, the world and calibration need to talk about one.
+//! A law acts in one engine, where it has one file and one line in that engine's `laws::all()`. This module holds what all
+//! engines, the world and calibration share.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A law that is installed in a world, with its numbers.
+/// A law that is installed in a world, with its parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LawSpec {
@@ -25,7 +25,7 @@ pub struct LawSpec {
 }
 
 impl LawSpec {
-    /// The value of parameter `name`, or its default from `info`; `None` when the law has no such parameter.
+    /// Returns the value of parameter `name`, or its default from `info`; `None` when the law has no such parameter.
     pub fn value(&self, info: &LawInfo, name: &str) -> Option<f64> {
         let param = info.params.iter().find(|param| param.name == name)?;
         Some(self.params.get(name).copied().unwrap_or(param.default))
@@ -86,7 +86,7 @@ impl LawSpec {
     }
 }
 
-/// The engine a law acts in.
+/// The engine that a law acts in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EngineKind {
@@ -100,20 +100,20 @@ pub enum EngineKind {
     Measurement,
 }
 
-/// One number of a law.
+/// A parameter of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ParamInfo {
     /// The name in [`LawSpec::params`].
     pub name: &'static str,
     /// The SI unit, `"1"` for none.
     pub unit: &'static str,
-    /// The value at which the law does nothing.
+    /// The value at which the law has no effect.
     pub default: f64,
-    /// The lowest value that is allowed.
+    /// The lowest value allowed.
     pub low: f64,
-    /// The highest value that is allowed.
+    /// The highest value allowed.
     pub high: f64,
-    /// The range that a physicist finds plausible indoors, for calibration's plausibility check.
+    /// The range that is physically plausible indoors, for calibration's plausibility check.
     pub plausible: [f64; 2],
 }
 
@@ -136,7 +136,7 @@ pub struct LawInfo {
     pub acts_on: &'static str,
     /// Its parameters.
     pub params: &'static [ParamInfo],
-    /// Ids of laws and nuisances that look alike in data.
+    /// Ids of laws and nuisance parameters with a similar effect on data.
     pub rivals: &'static [&'static str],
     /// The experiment that separates it from its rivals.
     pub separating_experiment: &'static str,

@@ -1,8 +1,8 @@
-//! The nouns of dwell: [`House`], [`State`], ids, spaces, units, materials, laws as data, random streams, meshes, BVH,
-//! navigation.
+//! The basic types of dwell: [`House`], [`State`], ids, spaces, units, materials, laws as data, random streams, meshes,
+//! BVH, navigation.
 //!
-//! A [`House`] is checked once and never changes; a [`State`] is plain data, one per running world. Engines read both
-//! and know nothing of each other.
+//! A [`House`] is checked once and never changes; a [`State`] is plain data, one per running world. Engines read both and
+//! do not depend on each other.
 
 mod articulation;
 mod bounds;

@@ -1,7 +1,7 @@
 //! Elementary functions with the same bits on every machine.
 //!
-//! The standard library leaves `sin` and kin to the platform. Whatever ends in a state, a sound or a picture uses
-//! these instead (`libm`, a port of musl's).
+//! The standard library leaves `sin` and the like to the platform. Whatever enters a state, a sound or a picture uses these
+//! instead (`libm`, a port of musl's).
 
 /// Sine of an angle in radians.
 pub fn sin(x: f32) -> f32 {

@@ -10,18 +10,18 @@ use serde::{Deserialize, Serialize};
 pub struct Mesh {
     /// Vertex positions, m. Shape (vertex,).
     pub positions: Vec<Vec3>,
-    /// Vertex normals, unit length. Shape (vertex,) or empty: then faces are flat.
+    /// Vertex normals, unit length. Shape (vertex,) or empty: then shading is flat.
     pub normals: Vec<Vec3>,
     /// Texture coordinates, u to the right, v **up** from the image's lower edge, repeating. Shape (vertex,) or empty.
     pub uvs: Vec<Vec2>,
     /// Vertex indices, counter-clockwise seen from the front. Shape (triangle,).
     pub triangles: Vec<[u32; 3]>,
-    /// Which of the part's materials each triangle shows. Shape (triangle,) or empty: then all show slot 0.
+    /// Material slot of each triangle. Shape (triangle,) or empty: then all have slot 0.
     pub slots: Vec<u16>,
 }
 
 impl Mesh {
-    /// Gives back memory that was set aside for more.
+    /// Frees unused capacity.
     pub fn shrink_to_fit(&mut self) {
         self.positions.shrink_to_fit();
         self.normals.shrink_to_fit();
@@ -33,7 +33,7 @@ impl Mesh {
     /// Checks lengths, index ranges and finiteness.
     ///
     /// # Errors
-    /// [`SceneError::Mesh`] names the first fault; `at` says where the mesh stands.
+    /// [`SceneError::Mesh`] names the first fault; `at`: the mesh's path.
     pub fn check(&self, at: &str) -> Result<(), SceneError> {
         let fault = |what: String| {
             Err(SceneError::Mesh {
@@ -75,12 +75,12 @@ impl Mesh {
         Ok(())
     }
 
-    /// The material slot of triangle `triangle`.
+    /// Returns the material slot of triangle `triangle`.
     pub fn slot(&self, triangle: usize) -> u16 {
         self.slots.get(triangle).copied().unwrap_or(0)
     }
 
-    /// The number of material slots that are in use: one more than the largest.
+    /// Returns the number of material slots in use: one more than the largest.
     pub fn slot_count(&self) -> usize {
         if self.triangles.is_empty() {
             0
@@ -123,7 +123,7 @@ impl Mesh {
             .sum()
     }
 
-    /// Appends `other` with its slots moved up by `slot_offset`.
+    /// Appends `other` with its slots raised by `slot_offset`.
     pub fn append(&mut self, other: &Self, slot_offset: u16) {
         let base = self.positions.len();
         let triangle_count = self.triangles.len();
@@ -150,8 +150,8 @@ impl Mesh {
         );
     }
 
-    /// The same surface moved by `map`: normals follow, and a map that mirrors turns the faces round, so that what looked
-    /// outwards still does.
+    /// Returns the surface transformed by `map`: normals follow, and a mirroring map reverses the winding, so that outward
+    /// faces stay outward.
     #[must_use]
     pub fn transformed(&self, map: &Affine3A) -> Self {
         let mut moved = self.clone();
@@ -170,8 +170,8 @@ impl Mesh {
         moved
     }
 
-    /// A flat rectangle of two triangles, counter-clockwise seen from where it faces, with texture coordinates in metres from the first corner;
-    /// slot 0. `corners`: in that order, the second along the texture's width.
+    /// A flat rectangle of two triangles, counter-clockwise seen from its front, with texture coordinates in metres from
+    /// the first corner; slot 0. `corners`: in that order, the second along the texture's width.
     pub fn rectangle(corners: [Vec3; 4]) -> Self {
         let [a, b, _, d] = corners;
         let (along, up) = (b - a, d - a);

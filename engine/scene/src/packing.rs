@@ -13,13 +13,13 @@ use std::thread;
 
 /// Quality level (0 to 11). 5 is the first that looks for matches well; 9 takes twice as long for a hundredth less.
 const QUALITY: i32 = 5;
-/// The first that weighs ways of packing against one another: a tenth less, in some fifty times the time.
+/// The first level that weighs encodings against one another: a tenth less, in some fifty times the time.
 const BEST_QUALITY: i32 = 10;
-/// It looks back by so many bytes, as a power of two: 4 MiB.
+/// Window size as a power of two: 4 MiB.
 const WINDOW: i32 = 22;
-/// Nothing that is packed is larger, bytes.
+/// Largest size of unpacked data, bytes.
 const MOST_UNPACKED: u64 = 1 << 30;
-/// So many bytes are packed within some 0.1 s at the usual quality.
+/// Number of bytes that are packed within some 0.1 s at the usual quality.
 const QUICK: usize = 1 << 20;
 const NEVER: &str = "reading and writing memory cannot fail";
 /// Bytes that are unpacked at a time.
@@ -37,8 +37,8 @@ pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
     pack_with(QUALITY, bytes, bytes.len(), base).expect(NEVER)
 }
 
-/// As [`pack`], but harder where that alone would give more than `most` bytes; it may still be more. Two megabytes take seconds then,
-/// instead of a tenth of one.
+/// As [`pack`], but with a higher quality where that alone would give more than `most` bytes; it may still be more. Two
+/// megabytes then take seconds, instead of a tenth of one.
 ///
 /// # Panics
 /// As [`pack`].
@@ -50,7 +50,7 @@ pub fn pack_within(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     pack_stoppably(BEST_QUALITY, bytes, base)
 }
 
-/// Packs what takes long in a thread of its own, so that the caller can be stopped meanwhile.
+/// Packs on a thread of its own, so that the caller can be cancelled meanwhile.
 fn pack_stoppably(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
     // Dropped when the caller stops waiting, which ends the thread at the next block of input.
     let wanted = Arc::new(());
@@ -61,7 +61,7 @@ fn pack_stoppably(quality: i32, bytes: &[u8], base: &[u8]) -> Vec<u8> {
     let (length, base) = (bytes.len(), base.to_vec());
     let (sender, receiver) = mpsc::channel();
     thread::spawn(move || {
-        // Sending fails where nobody waits any more.
+        // Sending fails once the caller has stopped waiting.
         let _ = sender.send(pack_with(quality, source, length, &base));
     });
     loop {
@@ -101,7 +101,7 @@ fn pack_with(
     Ok(packed)
 }
 
-/// Bytes that end in an error as soon as nobody wants them any more.
+/// A reader that fails as soon as the caller has stopped waiting.
 struct WhileWanted {
     bytes: Cursor<Vec<u8>>,
     wanted: Weak<()>,
@@ -116,7 +116,7 @@ impl Read for WhileWanted {
     }
 }
 
-/// Returns what [`pack`] packed with the same `base`.
+/// Returns the bytes that [`pack`] packed with the same `base`.
 ///
 /// # Errors
 /// [`SceneError::Snapshot`] for bytes that are damaged, or larger than 1 GiB unpacked.
@@ -173,7 +173,7 @@ mod tests {
         assert_eq!(unpack(&harder, &[]).unwrap(), bytes);
     }
 
-    /// A megabyte whose second half is the first one again.
+    /// A megabyte whose second half repeats the first one.
     #[test]
     fn what_repeats_far_away_is_packed_once() {
         let mut stream = crate::random::RandomKey::root(1).stream();
@@ -186,7 +186,7 @@ mod tests {
         );
     }
 
-    /// Half a megabyte of noise beside the same noise with one byte in a thousand changed; another base does not give it back.
+    /// Half a megabyte of noise against the same noise with one byte in a thousand changed; another base does not unpack it.
     #[test]
     fn what_the_base_has_takes_next_to_nothing() {
         let mut stream = crate::random::RandomKey::root(2).stream();

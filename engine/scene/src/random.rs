@@ -1,4 +1,4 @@
-//! Keyed random streams: equal paths give equal numbers, and nobody shifts anybody else's.
+//! Keyed random streams: equal paths give equal numbers, and no stream affects another.
 //!
 //! A [`RandomKey`] is derived like a path, `RandomKey::root(seed).child("microphone").child(step)`. Two different paths give
 //! independent streams; adding a sensor or a thread changes no other stream.
@@ -12,7 +12,7 @@ use xxhash_rust::xxh3::xxh3_128_with_seed;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct RandomKey(u128);
 
-/// One step of a key's path: a word or a number.
+/// One element of a key's path: a word or a number.
 #[derive(Clone, Copy, Debug)]
 pub enum Label<'a> {
     /// A purpose.
@@ -39,7 +39,7 @@ impl RandomKey {
         Self(xxh3_128_with_seed(&seed.to_le_bytes(), 0))
     }
 
-    /// The key one step further down the path.
+    /// Returns the key of a child of this one.
     #[must_use]
     pub fn child<'a>(self, label: impl Into<Label<'a>>) -> Self {
         // The hash's seed tells a word from a number, so that `child("a")` never equals `child(97)`.
@@ -104,7 +104,7 @@ impl RandomStream {
         items.get(self.below(items.len()))
     }
 
-    /// Puts `items` into a random order (Fisher and Yates).
+    /// Shuffles `items` (Fisher and Yates).
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for end in (1..items.len()).rev() {
             items.swap(end, self.below(end + 1));

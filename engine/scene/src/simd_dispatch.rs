@@ -1,4 +1,4 @@
-//! The same code, compiled for wider registers and chosen when it runs. No level has instructions that round differently
+//! Code compiled for several instruction levels and selected at run time. No level has instructions that round differently
 //! (nothing is fused), so all give the same bits.
 
 #![cfg_attr(
@@ -11,13 +11,13 @@
 
 /// Work on many numbers side by side, in loops that become vector instructions.
 ///
-/// A trait, not a closure: what is not `#[inline(always)]` does not use the instructions of the function around it, and
-/// closures cannot be made so.
+/// A trait, not a closure: code that is not `#[inline(always)]` does not use the instructions of the function around it,
+/// and closures cannot be made so.
 pub trait SimdKernel {
     /// The result.
     type Output;
 
-    /// Does the work; to be marked `#[inline(always)]`, like everything costly that it calls.
+    /// Runs the work; to be marked `#[inline(always)]`, like every costly function that it calls.
     fn run(self) -> Self::Output;
 }
 
@@ -34,7 +34,7 @@ pub enum SimdLevel {
     Avx512(CpuFeatureProof),
 }
 
-/// Proof that the machine was found to have a level's instructions.
+/// Proof that the machine has a level's instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CpuFeatureProof(());
 
@@ -68,7 +68,7 @@ impl SimdLevel {
         *BEST.get_or_init(|| Self::available().last().unwrap_or(Self::Portable))
     }
 
-    /// Does the work with the instructions of this level.
+    /// Runs the work with the instructions of this level.
     #[inline]
     pub fn run<K: SimdKernel>(self, work: K) -> K::Output {
         match self {

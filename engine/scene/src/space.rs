@@ -1,4 +1,4 @@
-//! Spaces: axes, poses and directions. The conventions of the whole engine stand here and nowhere else.
+//! Spaces: axes, poses and directions. The one definition of the engine's conventions.
 //!
 //! | space | axes | origin |
 //! | --- | --- | --- |
@@ -32,13 +32,13 @@ impl Default for Pose {
 }
 
 impl Pose {
-    /// No movement.
+    /// The identity.
     pub const IDENTITY: Self = Self {
         position: Vec3::ZERO,
         rotation: Quat::IDENTITY,
     };
 
-    /// A pose from its parts.
+    /// A pose from position and rotation.
     pub const fn new(position: Vec3, rotation: Quat) -> Self {
         Self { position, rotation }
     }
@@ -51,7 +51,7 @@ impl Pose {
         }
     }
 
-    /// The pose of something upright that faces `yaw_rad`.
+    /// The pose of an upright thing with heading `yaw_rad`.
     pub fn from_position_yaw(position: Vec3, yaw_rad: f32) -> Self {
         Self {
             position,
@@ -103,11 +103,10 @@ impl std::ops::Mul for Pose {
     }
 }
 
-/// Splits an affine map into a rigid pose and what is left (scale, mirror, shear): `world_from_mesh` is
-/// `pose * rest`. The rotation is the one nearest to the map's axes; the rest has a negative determinant exactly when
-/// the map mirrors.
+/// Splits an affine map into a rigid pose and a remainder (scale, mirror, shear): `world_from_mesh` is `pose * rest`. The
+/// rotation is the one nearest to the map's axes; the remainder has a negative determinant exactly when the map mirrors.
 ///
-/// Returns `None` for a map that is not finite or flattens space.
+/// Returns `None` for a map that is not finite or singular.
 pub fn split_affine(world_from_mesh: &Affine3A) -> Option<(Pose, Affine3A)> {
     let m = world_from_mesh.matrix3;
     let determinant = m.determinant();
@@ -132,7 +131,7 @@ pub fn split_affine(world_from_mesh: &Affine3A) -> Option<(Pose, Affine3A)> {
     pose.is_valid().then_some((pose, rest))
 }
 
-/// The rotation of something that is turned left by `yaw_rad` and looks up by `pitch_rad`.
+/// The rotation by `yaw_rad` to the left, then `pitch_rad` up.
 pub fn rotation_from_yaw_pitch(yaw_rad: f32, pitch_rad: f32) -> Quat {
     let (sy, cy) = math::sin_cos(yaw_rad * 0.5);
     let (sp, cp) = math::sin_cos(pitch_rad * 0.5);

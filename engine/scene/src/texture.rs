@@ -5,12 +5,12 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Makes the pixels of a texture.
+/// Function that makes the pixels of a texture.
 type TexturePainter = Arc<dyn Fn() -> Vec<u8> + Send + Sync>;
 
-/// An image that materials show, sRGB-encoded with straight alpha.
+/// An image for materials, sRGB-encoded with straight alpha.
 ///
-/// Its pixels are there from the start, or painted when someone first asks for them.
+/// Its pixels are present from the start, or painted at first use.
 #[derive(Clone, Serialize, Deserialize)]
 #[serde(from = "StoredTexture", into = "StoredTexture")]
 pub struct Texture {
@@ -83,8 +83,8 @@ impl Texture {
         }
     }
 
-    /// A texture whose pixels `painter` makes when they are first asked for; it must always make the same. What it makes
-    /// too little is transparent black, what it makes too much is left out.
+    /// A texture whose pixels `painter` makes at first use; it must always make the same. Missing pixels are transparent
+    /// black, surplus ones are dropped.
     pub fn painted_later(
         name: String,
         width: u32,
@@ -100,7 +100,7 @@ impl Texture {
         }
     }
 
-    /// Rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
+    /// Returns rows from the top, four bytes a pixel (R, G, B, A). Shape (height, width, 4).
     pub fn rgba(&self) -> &[u8] {
         self.pixels.get_or_init(|| {
             let mut rgba = self.painter.as_ref().map_or_else(Vec::new, |paint| paint());
@@ -121,10 +121,10 @@ impl Texture {
     /// Checks that the size fits the data and is at most 16,384 a side.
     ///
     /// # Errors
-    /// [`SceneError::Texture`] with what was found.
+    /// [`SceneError::Texture`] with the fault.
     pub fn check(&self, at: &str) -> Result<(), SceneError> {
         let expected = self.size_bytes();
-        // What is painted later has the right size.
+        // A painter's output has the right size.
         let found = self.pixels.get().map_or(expected, Vec::len);
         if self.width == 0
             || self.height == 0
@@ -144,7 +144,7 @@ impl Texture {
         Ok(())
     }
 
-    /// The plain mean of all pixels' sRGB-encoded values, each 0 to 255. Shape (3,).
+    /// Returns the plain mean of all pixels' sRGB-encoded values, each 0 to 255. Shape (3,).
     pub fn mean_srgb(&self) -> [f64; 3] {
         let mut sum = [0_u64; 3];
         for pixel in self.rgba().chunks_exact(4) {
@@ -156,7 +156,7 @@ impl Texture {
         sum.map(|total| total as f64 / count)
     }
 
-    /// The mean colour in linear light, each 0 to 1; pixels that are fully transparent are left out. Shape (3,).
+    /// Returns the mean colour in linear light, each 0 to 1; fully transparent pixels are left out. Shape (3,).
     pub fn mean_linear(&self) -> [f32; 3] {
         let decode: Vec<f64> = (0..=255_u8)
             .map(|b| f64::from(crate::units::linear_from_srgb(f32::from(b) / 255.0)))

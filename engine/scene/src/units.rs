@@ -5,17 +5,17 @@ pub const STANDARD_GRAVITY_M_S2: f32 = 9.806_65;
 /// Reference sound pressure, Pa (ISO 1683): 0 dB SPL.
 pub const REFERENCE_PRESSURE_PA: f32 = 20e-6;
 
-/// Root-mean-square pressure in pascals of a level in dB SPL.
+/// Returns the root-mean-square pressure in pascals of a level in dB SPL.
 pub fn pa_from_db_spl(level_db: f32) -> f32 {
     REFERENCE_PRESSURE_PA * crate::math::pow(10.0, level_db / 20.0)
 }
 
-/// Level in dB SPL of a root-mean-square pressure in pascals; minus infinity for silence.
+/// Returns the level in dB SPL of a root-mean-square pressure in pascals; minus infinity for silence.
 pub fn db_spl_from_pa(pressure_pa: f32) -> f32 {
     20.0 * libm::log10f(pressure_pa.abs() / REFERENCE_PRESSURE_PA)
 }
 
-/// Linear light of an sRGB-encoded value, both in [0, 1].
+/// Returns the linear light of an sRGB-encoded value, both in [0, 1].
 ///
 /// # Source
 /// IEC 61966-2-1:1999.
@@ -27,7 +27,7 @@ pub fn linear_from_srgb(encoded: f32) -> f32 {
     }
 }
 
-/// sRGB-encoded value of linear light, both in [0, 1].
+/// Returns the sRGB-encoded value of linear light, both in [0, 1].
 ///
 /// # Source
 /// IEC 61966-2-1:1999.

@@ -1,4 +1,4 @@
-//! The chains that are measured: bars on hinges, each about an axis across or along it.
+//! The benchmark's chains: bars on hinges, each about an axis across or along it.
 
 use glam::{DQuat, DVec3, Vec3};
 
@@ -22,7 +22,7 @@ pub(crate) struct Bar {
     pub(crate) axis: Vec3,
 }
 
-/// A motor that is told a position.
+/// A motor under position control.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motor {
     /// N·m/rad.
@@ -162,8 +162,8 @@ pub(crate) trait Solver {
     fn rates(&self) -> Vec<f64>;
     /// Kinetic and potential energy, J.
     fn energy_j(&self) -> f64;
-    /// All that the next step depends on.
+    /// Returns all state that the next step depends on.
     fn bits(&self) -> Vec<u8>;
-    /// Another world that goes on from this one's snapshot.
+    /// Returns another world that continues from this one's snapshot.
     fn restored(&self) -> Box<dyn Solver>;
 }

@@ -1,6 +1,6 @@
-//! The joint solver of this crate beside rapier's: what `docs/decisions/0013-joint-solver.md` says of them.
+//! Benchmark of this crate's joint solver against rapier's, for `docs/decisions/0013-joint-solver.md`.
 //!
-//! Without `--bench` everything runs for a moment, to see that it still does.
+//! Without `--bench` everything runs briefly, as a test.
 #![expect(clippy::print_stdout, reason = "it prints a table")]
 
 mod chain;
@@ -149,7 +149,7 @@ fn bits(seconds: usize) {
     }
 }
 
-/// The time of a physics step: the median of some rounds.
+/// Returns the time of a physics step: the median of some rounds.
 fn speed(rounds: usize) {
     for count in [1, 6, 20] {
         let chain = Chain::held(count);

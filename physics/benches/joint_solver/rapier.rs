@@ -1,4 +1,4 @@
-//! A chain in rapier alone: in reduced coordinates, or by rows that hold bodies together.
+//! A chain in rapier alone: in reduced coordinates, or by constraint rows.
 
 use crate::chain::{Chain, DENSITY, GRAVITY, ORIGIN, PHYSICS_HZ, Solver};
 use glam::{Quat, Vec3};
@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// Rapier's substeps in a physics step, as in this crate's default.
 const SUBSTEPS: usize = 4;
 
-/// Which of rapier's joints hold the chain.
+/// The kind of rapier's joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Joints {
     Multibody,
@@ -37,7 +37,7 @@ struct Sets {
 
 pub(crate) struct Rapier {
     chain: Chain,
-    /// Sweeps over the rows of a substep.
+    /// Solver iterations over the rows of a substep.
     sweeps: usize,
     sets: Sets,
     links: Vec<RigidBodyHandle>,

@@ -1,4 +1,4 @@
-//! Closing.
+//! The action of closing.
 
 use super::ActionResult;
 use super::hand_action::{Hand, HandAction};

@@ -1,4 +1,4 @@
-//! Opening and closing.
+//! Shared code of opening and closing.
 
 use super::request::Target;
 use super::target::ResolvedTarget;
@@ -58,7 +58,7 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }
 
-    /// Lays the actor's hand on joints, to lead them to an openness (0 to 1) over the next steps.
+    /// Starts hand drives on joints that move them to an openness (0 to 1) over the next steps.
     pub(super) fn lead(
         &mut self,
         state: &mut State,
@@ -83,7 +83,7 @@ impl ActionContext<'_> {
         }
     }
 
-    /// The joints of an object that are meant: the one that moves the part that was named or met, or all.
+    /// Returns the joints of an object that a target means: the one that moves the part named or hit, or all.
     fn joints_meant(&self, object: ObjectId, aim: &ResolvedTarget) -> Vec<JointId> {
         let house = &self.dynamics.model.house;
         let moved_by = |part| {

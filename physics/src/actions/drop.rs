@@ -1,11 +1,11 @@
-//! Letting go.
+//! The action of releasing an object.
 
 use super::ActionResult;
 use super::hand_action::{Hand, HandAction};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Lets go of what it holds.
+/// Releases the held object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Drop {}

@@ -1,4 +1,4 @@
-//! Taking and letting go.
+//! Grasping and releasing.
 
 use super::request::Target;
 use super::{ActionContext, ActionResult, Actor};
@@ -74,7 +74,7 @@ impl ActionContext<'_> {
             );
             return refuse(OutcomeCode::TooLarge, sentence);
         }
-        // What stands on it or lies in it comes along if it is moved gently.
+        // Objects on it or in it come along if it is moved gently.
         let house = &self.dynamics.model.house;
         let loaded = house
             .objects
@@ -110,7 +110,7 @@ impl ActionContext<'_> {
             rigid.set_gravity_scale(gravity_scale, true);
             rigid.set_linvel(Vec3::ZERO, true);
             rigid.set_angvel(Vec3::ZERO, true);
-            // What has been in a hand may be thin and fast.
+            // A held object may be thin and fast afterwards.
             rigid.enable_ccd(true);
             if let Some(clear) = clear {
                 rigid.set_position(clear, true);

@@ -5,12 +5,12 @@ use crate::outcome::ActionOutcome;
 use dwell_scene::State;
 use std::fmt::Debug;
 
-/// Something that an agent's hand does. Each kind is a type in a file of its own.
+/// An action of an agent's hand. Each kind is a type in a file of its own.
 pub trait HandAction: Debug + Send + Sync {
-    /// Lets a hand do it.
+    /// Performs it with a hand.
     ///
     /// # Errors
-    /// The outcome that says why it cannot be done.
+    /// The outcome with the reason why it is refused.
     fn perform(&self, hand: &mut Hand<'_>) -> ActionResult;
 }
 
@@ -20,7 +20,7 @@ impl<A: HandAction + ?Sized> HandAction for &A {
     }
 }
 
-/// The hand of an agent, and the world that it works on.
+/// The hand of an agent, and the world that it acts on.
 pub struct Hand<'a> {
     pub(super) context: ActionContext<'a>,
     pub(super) state: &'a mut State,
@@ -36,7 +36,7 @@ impl Debug for Hand<'_> {
 }
 
 impl Hand<'_> {
-    /// Lets the hand do something, and returns what comes of it.
+    /// Performs an action, and returns its outcome.
     pub(super) fn perform(&mut self, action: &dyn HandAction) -> ActionOutcome {
         action.perform(self).unwrap_or_else(|refusal| *refusal)
     }

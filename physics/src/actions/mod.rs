@@ -64,7 +64,7 @@ pub(crate) struct ActionContext<'a> {
 }
 
 impl<'a> ActionContext<'a> {
-    /// Lets an agent do something with its hand. `rays` must show `state` as it is.
+    /// Performs an agent's hand action. `rays` must show `state` as it is.
     pub(crate) fn perform(
         self,
         state: &'a mut State,

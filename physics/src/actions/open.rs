@@ -1,4 +1,4 @@
-//! Opening.
+//! The action of opening.
 
 use super::ActionResult;
 use super::hand_action::{Hand, HandAction};

@@ -1,4 +1,4 @@
-//! Taking an object.
+//! The action of picking up an object.
 
 use super::ActionResult;
 use super::hand_action::{Hand, HandAction};
@@ -7,7 +7,7 @@ use crate::hands::Grasp;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Takes an object.
+/// Picks up an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pick {
@@ -18,7 +18,7 @@ pub struct Pick {
 }
 
 impl Pick {
-    /// Takes a thing, held as usual.
+    /// Picks up an object with the default grasp.
     pub fn new(target: impl Into<Target>) -> Self {
         Self {
             target: target.into(),

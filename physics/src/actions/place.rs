@@ -1,4 +1,4 @@
-//! Putting what is held down on something.
+//! The action of placing the held object on a support.
 
 use super::hand_action::{Hand, HandAction};
 use super::request::Target;
@@ -15,15 +15,15 @@ use rapier3d::math::Pose as RapierPose;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Places a side that are tried on top of a thing.
+/// Grid points along a side that are tried on top of an object.
 const GRID: u32 = 13;
-/// Distances between the rings of places that are tried around a point, and their number.
+/// Spacing of the rings of points that are tried around a point, m, and their number.
 const RING_M: f32 = 0.06;
 const RINGS: u32 = 8;
-/// Directions of view, across and down, in which a surface is looked for.
+/// Directions of view, across and down, in which a surface is searched.
 const LOOKS: [i32; 2] = [9, 9];
 const LOOK_STEP_RAD: f32 = 0.1;
-/// Above a thing's top by so much rays down begin, m.
+/// Height above an object's top at which downward rays start, m.
 const ABOVE_M: f32 = 0.5;
 
 /// The position of a placed object, and its support.
@@ -33,7 +33,7 @@ struct ObjectPlacement {
     name: String,
 }
 
-/// Puts what it holds down at a free, steady spot.
+/// Places the held object at a free, stable spot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Place {
@@ -43,7 +43,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Puts what is held on a thing.
+    /// Places the held object on a support.
     pub fn on(target: impl Into<Target>) -> Self {
         Self {
             target: Some(target.into()),
@@ -80,7 +80,7 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Done, sentence, spot.on))
     }
 
-    /// The agent's grip, or the refusal for an empty hand.
+    /// Returns the agent's grip, or the refusal for an empty hand.
     pub(super) fn grip_of(&self, actor: Actor<'_>) -> Result<HeldObject, Box<ActionOutcome>> {
         let grip = self.hands.grips.iter().find(|grip| grip.agent == actor.id);
         grip.copied().ok_or_else(|| {
@@ -89,7 +89,7 @@ impl ActionContext<'_> {
         })
     }
 
-    /// Opens a hand and leaves what it held under a pose, at rest.
+    /// Opens a hand and leaves the held object under a pose, at rest.
     pub(super) fn put_down(&mut self, state: &mut State, actor: Actor<'_>, pose: &RapierPose) {
         let Some(place) = self
             .hands
@@ -176,7 +176,7 @@ impl ActionContext<'_> {
         })
     }
 
-    /// A spot on whatever level surface is in view, nearest to the middle of the view.
+    /// Returns a spot on any level surface in view, nearest to the middle of the view.
     fn spot_in_view(
         &self,
         actor: Actor<'_>,
@@ -231,7 +231,7 @@ impl ActionContext<'_> {
         Err(Box::new(fail(OutcomeCode::NoSpace, sentence, None)))
     }
 
-    /// The first of `feet` on which the body can stand, within reach and sight; upright before lying.
+    /// Returns the first of `feet` on which the body can stand, within reach and sight; upright before lying.
     fn first_spot(
         &self,
         actor: Actor<'_>,
@@ -253,7 +253,7 @@ impl ActionContext<'_> {
         })
     }
 
-    /// All places on an object's level surfaces within reach, the nearest to the eye first.
+    /// Returns all points on an object's level surfaces within reach, the nearest to the eye first.
     fn feet_on(
         &self,
         state: &State,
@@ -282,7 +282,7 @@ impl ActionContext<'_> {
         feet
     }
 
-    /// Places on rings around a point, the nearest first.
+    /// Returns points on rings around a point, the nearest first.
     fn feet_around(&self, body: usize, ground: SupportFilter, point: Vec3) -> Vec<Vec3> {
         let mut feet = Vec::new();
         for ring in 0..RINGS {

@@ -1,4 +1,4 @@
-//! Putting what is held down at a point.
+//! The action of placing the held object at a point.
 
 use super::hand_action::{Hand, HandAction};
 use super::{ActionContext, ActionResult, Actor};
@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// Largest height of a surface above or below the point, m.
 const SURFACE_M: f32 = 0.03;
 
-/// Puts what it holds down with the middle of its foot at a point.
+/// Places the held object with the middle of its foot at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlaceAt {

@@ -1,4 +1,4 @@
-//! A trial: does a thing that is put somewhere stay there?
+//! Trial simulation of a placement: whether the object stays there.
 
 use super::ActionContext;
 use crate::contact::ContactHooks;
@@ -27,8 +27,8 @@ fn moved(a: &RapierPose, b: &RapierPose, most_m: f32, most_rad: f32) -> bool {
 }
 
 impl ActionContext<'_> {
-    /// Returns where a body comes to rest that is put under a pose, found by the same solver among what is near, which stands
-    /// still meanwhile; `None` when it slides, topples or rolls away.
+    /// Returns the pose at which a body put under a pose comes to rest, simulated by the same solver among near objects,
+    /// which are fixed meanwhile; `None` when it slides, topples or rolls away.
     pub(super) fn trial_rest_pose(&self, body: usize, pose: &RapierPose) -> Option<RapierPose> {
         let plan = &self.dynamics.model.bodies[body];
         let near = plan.bounds(pose).grown(NEAR_M);

@@ -1,4 +1,4 @@
-//! Pointing.
+//! The action of pointing.
 
 use super::hand_action::{Hand, HandAction};
 use super::request::Target;
@@ -8,7 +8,7 @@ use dwell_scene::{Entity, EntityId, State, SurfaceOwner};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Points: answers with what is there, where, and how far from the eye. Nothing is too far.
+/// Points at something: returns the thing, the point and its distance from the eye. No distance is too far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Point {

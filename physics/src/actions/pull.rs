@@ -1,4 +1,4 @@
-//! Pulling.
+//! The action of pulling.
 
 use super::ActionResult;
 use super::hand_action::{Hand, HandAction};
@@ -6,13 +6,13 @@ use super::request::Target;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Pulls something near for a quarter of a second; needs a free hand.
+/// Pulls an object towards the agent for a quarter of a second; needs a free hand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Pull {
     /// The object to pull; a ray also gives the point.
     pub target: Target,
-    /// N, above 0; more than the agent's strength is cut. Without it all of it.
+    /// Force, N, above 0; limited to the agent's strength. Default: all of it.
     pub force_n: Option<f32>,
 }
 

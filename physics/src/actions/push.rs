@@ -1,4 +1,4 @@
-//! Pushing and pulling: a force for a short while, and then how far the thing went.
+//! The actions of pushing and pulling: a force for a short time, and the distance that the object moved.
 
 use super::hand_action::{Hand, HandAction};
 use super::request::Target;
@@ -15,12 +15,12 @@ use serde::{Deserialize, Serialize};
 
 /// Duration of a push, s.
 const PUSH_S: f32 = 0.25;
-/// Beyond the reach by so much, a hand has lost what it pushes, m.
+/// Distance beyond the reach at which a hand loses the object that it pushes, m.
 const SLACK_M: f32 = 0.3;
-/// A way that counts as moved, m.
+/// Least displacement that counts as moved, m.
 const MOVED_M: f32 = 0.01;
 
-/// A push or pull that goes on.
+/// A push or pull in progress.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct OngoingPush {
     agent: AgentId,
@@ -37,13 +37,13 @@ pub(crate) struct OngoingPush {
     left: bool,
 }
 
-/// Pushes something away for a quarter of a second.
+/// Pushes an object away for a quarter of a second.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Push {
     /// The object to push; a ray also gives the point.
     pub target: Target,
-    /// N, above 0; more than the agent's strength is cut. Without it all of it.
+    /// Force, N, above 0; limited to the agent's strength. Default: all of it.
     pub force_n: Option<f32>,
 }
 
@@ -99,7 +99,7 @@ impl ActionContext<'_> {
             ));
         };
         let eye = actor.body.eye_position();
-        // Without a point, a free thing is pushed through its centre of mass, a leaf where its middle is.
+        // Without a point, a free object is pushed through its centre of mass, a leaf at its middle.
         let middle = self.dynamics.model.bodies[body]
             .bounds(rigid.position())
             .center();
@@ -114,7 +114,7 @@ impl ActionContext<'_> {
         let direction = level.try_normalize().unwrap_or(ahead) * way;
         let force = wanted.min(most);
         let point_in_body = rigid.position().inverse() * point;
-        // One hand, one push: what it pushed until now ends in the next step, and is told of.
+        // One push a hand: its previous push ends in the next step, with an outcome.
         for shove in self
             .pushes
             .iter_mut()
@@ -138,7 +138,7 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Started, sentence, Some(object)))
     }
 
-    /// The body of an object that a push moves.
+    /// Returns the body of an object that a push moves.
     fn body_to_push(
         &self,
         object: ObjectId,
@@ -177,7 +177,7 @@ impl ActionContext<'_> {
     }
 }
 
-/// Applies all pushes for one physics step and tells of those that end.
+/// Applies all pushes for one physics step and reports those that end.
 pub(crate) fn advance_pushes(
     pushes: &mut Vec<OngoingPush>,
     dynamics: &mut Dynamics,

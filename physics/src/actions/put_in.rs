@@ -1,4 +1,4 @@
-//! Putting what is held into a container.
+//! The action of putting the held object into a container.
 
 use super::hand_action::{Hand, HandAction};
 use super::request::Target;
@@ -18,16 +18,16 @@ use rapier3d::pipeline::QueryFilter;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Places a side that are tried inside.
+/// Grid points along a side that are tried inside.
 const GRID: u32 = 7;
-/// Beyond the reach by so much a hand still gets into a container, m.
+/// Distance beyond the reach at which a hand still gets into a container, m.
 const STRETCH_M: f32 = 0.2;
 /// Largest share of an object's height that may stick out of an open container; a closed one must hold all of it.
 const STICKS_OUT: f32 = 0.6;
-/// From this openness on, nothing is said about closed doors.
+/// Openness from which a container's doors count as open.
 const OPEN: f32 = 0.7;
 
-/// Steps in which the way out of a container is looked along.
+/// Steps along the path out of a container.
 const WAY_STEPS: u32 = 32;
 
 /// The result of the search for a free spot inside.
@@ -39,7 +39,7 @@ struct InsertionSearch {
     in_sight: bool,
 }
 
-/// Puts what it holds into a container: a drawer, cupboard, bowl, box or basin.
+/// Puts the held object into a container: a drawer, cupboard, bowl, box or basin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct PutIn {
@@ -143,7 +143,7 @@ impl ActionContext<'_> {
         Ok(done(OutcomeCode::Done, sentence, Some(object)))
     }
 
-    /// Looks for a spot in one space.
+    /// Searches for a spot in one space.
     fn search_space(
         &self,
         state: &State,
@@ -217,8 +217,9 @@ impl ActionContext<'_> {
 }
 
 impl ActionContext<'_> {
-    /// Returns whether a hand gets to a point inside a loose thing with a lid or a door, whose walls would otherwise be reached
-    /// around: straight out of it on some side nothing of it is in the way, and from there to the eye nothing else.
+    /// Returns whether a hand gets to a point inside a loose object with a lid or a door, whose walls would otherwise be
+    /// reached around: on some side the straight path out of it is free of its parts, and the path from there to the eye of
+    /// all else.
     fn gets_in(
         &self,
         eye: Vec3,
@@ -273,7 +274,7 @@ fn is_meant(space: &Receptacle, aim: &ResolvedTarget, state: &State) -> bool {
     }
 }
 
-/// The edges of a stance along a part's axes, m.
+/// Returns the edges of a stable pose along a part's axes, m.
 fn size_in(plan: &BodyPlan, stance: &StablePose, world_from_part: &Pose) -> Vec3 {
     let turned = to_rapier(&Pose::new(
         Vec3::ZERO,
@@ -282,7 +283,7 @@ fn size_in(plan: &BodyPlan, stance: &StablePose, world_from_part: &Pose) -> Vec3
     plan.bounds(&turned).size()
 }
 
-/// The box around a stance on a foot, m.
+/// Returns the box around a stable pose on a foot point, m.
 fn bounds_on(stance: &StablePose, foot: Vec3) -> Aabb {
     let half = 0.5 * stance.size();
     let middle = foot + Vec3::Y * half.y;

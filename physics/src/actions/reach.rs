@@ -13,7 +13,7 @@ use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query::ShapeCastOptions;
 use rapier3d::pipeline::QueryFilter;
 
-/// Distance from the middle of the body within which a thing is never "behind", m.
+/// Distance from the middle of the body within which an object is never "behind", m.
 const AT_THE_FEET_M: f32 = 0.5;
 /// Height above and below the feet within which the agent's support is looked for, m.
 const SOLE_M: f32 = 0.06;
@@ -61,7 +61,7 @@ impl ActionContext<'_> {
         None
     }
 
-    /// Returns how far an object's surface is from a point, m, and its nearest point.
+    /// Returns the distance of an object's surface from a point, m, and its nearest point.
     fn distance_m(&self, state: &State, object: ObjectId, from: Vec3) -> (f32, Vec3) {
         let mut points = Vec::new();
         let model: &PhysicsModel = &self.dynamics.model;
@@ -84,7 +84,7 @@ impl ActionContext<'_> {
             }
         }
         if points.is_empty() {
-            // Nothing to touch: what is seen counts.
+            // Without colliders the visible bounds count.
             let bounds = model.house.object_bounds(state, object);
             points.push(from.clamp(bounds.min, bounds.max));
         }
@@ -96,7 +96,7 @@ impl ActionContext<'_> {
         (distance(&nearest), nearest)
     }
 
-    /// Returns whether some point of an object is seen; the error is what hides it, where that is something.
+    /// Returns whether some point of an object is visible; the error is the thing that hides it, if any.
     fn sight(
         &self,
         state: &State,
@@ -129,7 +129,7 @@ impl ActionContext<'_> {
         Err(blocker)
     }
 
-    /// Returns what a person calls something that touches.
+    /// Returns the name of a collider's owner for people.
     pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
         match entry.toucher {
             Some(ContactEntity::Structure(id)) => {
@@ -166,7 +166,7 @@ impl ActionContext<'_> {
 }
 
 impl ActionContext<'_> {
-    /// The objects that people stand on: what carries them, and what carries that.
+    /// Returns the objects that agents stand on: their supports, and the supports of those.
     pub(super) fn stood_on(&self, state: &State) -> Vec<(AgentId, ObjectId)> {
         let house = &self.dynamics.model.house;
         let mut found = Vec::new();
@@ -183,7 +183,7 @@ impl ActionContext<'_> {
         found
     }
 
-    /// The refusal for an object that somebody stands on.
+    /// The refusal for an object that an agent stands on.
     pub(super) fn refuse_stood_on(
         &self,
         state: &State,
@@ -204,7 +204,7 @@ impl ActionContext<'_> {
         Some(fail(OutcomeCode::StoodOn, sentence, Some(object)))
     }
 
-    /// The object right under somebody's feet.
+    /// Returns the object directly under an agent's feet.
     fn carrier_of(&self, agent: &AgentState) -> Option<ObjectId> {
         let seen = |_: ColliderHandle, collider: &Collider| {
             self.dynamics.entries[entry_index(collider)]
@@ -234,7 +234,7 @@ impl ActionContext<'_> {
     }
 }
 
-/// Points of an object that an eye may see: the nearest, the middle of each part, and points inside its box.
+/// Returns points of an object that may be visible: the nearest, the middle of each part, and points inside its box.
 fn sample_points(
     house: &dwell_scene::House,
     state: &State,

@@ -1,4 +1,4 @@
-//! Ways in which a thing can stand, and whether it would stay so.
+//! Stable poses of an object, and the support that they need.
 
 use super::ActionContext;
 use crate::dynamics::{HolderContacts, SupportFilter};
@@ -7,31 +7,30 @@ use glam::{Quat, Vec3};
 use rapier3d::math::Pose as RapierPose;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Directions around in which a thing must not tip.
+/// Number of directions in which an object must not tip.
 const DIRECTIONS: usize = 16;
-/// The tilt under which the outermost low point of a thing is its edge, rad: what is lower by less than this slope is
-/// part of the sole.
+/// Slope up to which a low point of an object belongs to its sole, rad.
 const TILT_RAD: f32 = 0.02;
 /// Least distance of the centre of mass inside the support polygon, m; for objects that stand on a line or a point, the
 /// largest distance outside it.
 const STEADY_M: f32 = 0.002;
 const ROUND_M: f32 = -5e-4;
-/// Gap under what was put down, m.
+/// Gap left under a placed object, m.
 const GAP_M: f32 = 5e-4;
 /// Largest unevenness of the ground under a sole, m.
 const UNEVEN_M: f32 = 0.002;
 /// Range of the ground search above and below a point of the sole, m.
 const FEEL_M: f32 = 0.02;
 
-/// A thing turned to stand. All points are relative to the body's origin, in world axes, m.
+/// An object in a stable orientation. All points are relative to the body's origin, in world axes, m.
 #[derive(Clone, Debug)]
 pub(super) struct StablePose {
     pub(super) rotation: Quat,
-    /// The box around it.
+    /// The lower corner of the box around it.
     pub(super) low: Vec3,
     pub(super) high: Vec3,
     center_of_mass: Vec3,
-    /// The outermost low point in each direction around.
+    /// The outermost point of the sole in each direction.
     sole: [Vec3; DIRECTIONS],
 }
 
@@ -40,7 +39,7 @@ fn around(k: usize) -> Vec3 {
     Vec3::new(c, 0.0, s)
 }
 
-/// The point of a body that is furthest along a direction, relative to its origin.
+/// Returns the point of a body that is furthest along a direction, relative to its origin.
 fn outermost(plan: &BodyPlan, rotation: Quat, direction: Vec3) -> Option<Vec3> {
     let place = RapierPose::from_rotation(rotation);
     plan.pieces
@@ -75,7 +74,7 @@ impl StablePose {
         self.high - self.low
     }
 
-    /// Returns where the body's origin is when the middle of its foot stands on a point.
+    /// Returns the body's pose when the middle of its foot is on a point.
     pub(super) fn pose_on(&self, foot: Vec3) -> RapierPose {
         let middle = 0.5 * (self.low + self.high);
         let base = Vec3::new(middle.x, self.low.y - GAP_M, middle.z);
@@ -84,7 +83,7 @@ impl StablePose {
         pose
     }
 
-    /// Returns how far the centre of mass lies within the part of the sole that is carried, in the worst direction, m.
+    /// Returns the distance of the centre of mass inside the supported part of the sole, in the worst direction, m.
     fn stability_margin_m(&self, carried: &[bool; DIRECTIONS]) -> f32 {
         let points = || {
             self.sole
@@ -103,7 +102,7 @@ impl StablePose {
             .fold(f32::INFINITY, f32::min)
     }
 
-    /// Returns whether a thing that stands so on level ground stays, or at least stays when nobody touches it.
+    /// Returns whether an object in this pose on level ground is stable, or at least stays when nothing touches it.
     fn stands(&self, carried: &[bool; DIRECTIONS]) -> bool {
         let whole = self.stability_margin_m(&[true; DIRECTIONS]);
         let least = if whole >= STEADY_M { STEADY_M } else { ROUND_M };
@@ -112,8 +111,8 @@ impl StablePose {
 }
 
 impl ActionContext<'_> {
-    /// The ways in which a body may be put down: upright as the house has it and as the hand turned it, a quarter turned,
-    /// then lying on each side. Each once, those that topple by themselves left out.
+    /// Returns the poses in which a body may be put down: upright as in the house and as held, a quarter turned, then lying
+    /// on each side. Each once, without those that topple by themselves.
     pub(super) fn stable_poses(&self, body: usize) -> Vec<StablePose> {
         let plan = &self.dynamics.model.bodies[body];
         let Some(rigid) = self
@@ -162,8 +161,8 @@ impl ActionContext<'_> {
         stances
     }
 
-    /// Returns where a body comes to rest with its foot's middle on a point: free of everything, on ground that carries it. What is
-    /// in the way otherwise; `None` when it would not stay.
+    /// Returns the resting pose of a body with its foot's middle on a point: free of overlaps, on supporting ground. `Err`:
+    /// the obstacle; `None` when it would not stay.
     pub(super) fn stand_at(
         &self,
         body: usize,

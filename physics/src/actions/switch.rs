@@ -1,4 +1,4 @@
-//! Switching things on and off.
+//! The action of switching.
 
 use super::hand_action::{Hand, HandAction};
 use super::request::Target;
@@ -58,7 +58,7 @@ impl ActionContext<'_> {
             "on"
         };
         if !levers.is_empty() {
-            // The switch follows its lever, which a hand turns.
+            // The switch follows its lever, which a hand moves.
             let share = if state.switched_on[object] { 0.0 } else { 1.0 };
             self.lead(state, actor, &levers, share);
             let sentence = format!("You turn the {name} {word}; it takes a moment.");

@@ -12,18 +12,18 @@ const FAR_M: f32 = 100.0;
 /// Largest distance of a ray's origin from the world's origin, m.
 const WORLD_M: f32 = 32_768.0;
 
-/// A thing that was meant.
+/// A resolved target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ResolvedTarget {
     pub(super) entity: Entity,
-    /// The part that was named or met.
+    /// The part that was named or hit.
     pub(super) part: Option<PartId>,
     /// The hit point of the ray, m.
     pub(super) point: Option<Vec3>,
 }
 
 impl ActionContext<'_> {
-    /// Finds what is meant.
+    /// Resolves a target.
     pub(super) fn resolve_target(
         &self,
         state: &State,
@@ -90,7 +90,7 @@ impl ActionContext<'_> {
         }
     }
 
-    /// As [`Self::resolve_target`] where only an object will do.
+    /// As [`Self::resolve_target`] where only an object is allowed.
     pub(super) fn resolve_object_target(
         &self,
         state: &State,
@@ -123,7 +123,7 @@ impl ActionContext<'_> {
         Err(Box::new(fail(code, sentence, None)))
     }
 
-    /// The first thing on a ray; what the agent holds is looked past, and its own body.
+    /// Returns the first thing on a ray, ignoring the agent's own body and its held object.
     fn meet(
         &self,
         state: &State,
@@ -165,7 +165,7 @@ impl ActionContext<'_> {
         })
     }
 
-    /// The nearest other agent's body on a ray.
+    /// Returns the nearest other agent's body on a ray.
     fn meet_agent(
         &self,
         state: &State,

@@ -1,4 +1,4 @@
-//! Throwing.
+//! The action of throwing.
 
 use super::hand_action::{Hand, HandAction};
 use super::{ActionContext, ActionResult, Actor};
@@ -11,24 +11,24 @@ use serde::{Deserialize, Serialize};
 
 /// Distance over which the hand accelerates the object, m: our estimate for an arm.
 const STROKE_M: f32 = 0.5;
-/// The fastest throw of the lightest thing, m/s: an estimate of ours for a person indoors.
+/// Highest throwing speed of the lightest object, m/s: our estimate for a person indoors.
 const FASTEST_M_S: f32 = 20.0;
 
-/// The fastest throw of a mass by a hand that lifts `lift_kg`: its force does work over the stroke,
-/// m v^2 / 2 = F s with F the weight that it lifts.
+/// Returns the highest throwing speed of a mass by a hand that lifts `lift_kg`: its force does work over the stroke, m v^2
+/// / 2 = F s with F the weight that it lifts.
 fn fastest_m_s(lift_kg: f32, mass_kg: f32, gravity_m_s2: f32) -> f32 {
     let work_j = lift_kg * gravity_m_s2 * STROKE_M;
     (2.0 * work_j / mass_kg.max(1e-6)).sqrt().min(FASTEST_M_S)
 }
 
-/// Throws what it holds.
+/// Throws the held object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Throw {
-    /// In world space, of any length but zero; without it where the agent looks.
+    /// Direction in world space, of any length but zero; default: the direction of view.
     #[schemars(with = "Option<[f32; 3]>")]
     pub direction: Option<Vec3>,
-    /// m/s, 0 or more; what is more than the agent's strength allows is cut.
+    /// m/s, 0 or more; limited by the agent's strength.
     #[schemars(range(min = 0.0))]
     pub speed_m_s: f32,
 }
@@ -76,7 +76,7 @@ impl ActionContext<'_> {
             .bodies
             .get(handle)
             .map_or(1.0, RigidBody::mass);
-        // Strength is told in kilograms of standard gravity.
+        // Strength is given in kilograms of standard gravity.
         let gravity = dwell_scene::units::STANDARD_GRAVITY_M_S2;
         let most = fastest_m_s(actor.body.body.lift_kg, mass, gravity);
         let speed = speed_m_s.min(most);

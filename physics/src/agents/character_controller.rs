@@ -1,32 +1,32 @@
-//! Walking: sliding along what is in the way, climbing steps, falling.
+//! The character controller: sliding along obstacles, climbing steps, falling.
 //!
-//! Every movement is cut into pieces shorter than half the body's core, and a piece that would leave the core inside
-//! something solid is not made. So an agent passes no wall, however thin, at any speed.
+//! Every movement is cut into pieces shorter than half the body's core, and a piece that would leave the core inside a
+//! solid is not made. So an agent passes no wall, however thin, at any speed.
 
 use super::shape_queries::{AgentQueries, SweepHit};
 use dwell_scene::AgentState;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Turns of the slide in one piece of a movement.
+/// Iterations of sliding in one piece of a movement.
 const SLIDES: usize = 4;
-/// A rise that counts as level ground, m.
+/// Height difference that counts as level ground, m.
 const LEVEL_M: f32 = 1e-3;
-/// Highest speed of a fall, m/s.
+/// Highest falling speed, m/s.
 pub(crate) const FASTEST_FALL_M_S: f32 = 30.0;
-/// Pieces of one movement, at most.
+/// Most pieces of one movement.
 const MOST_PIECES: f32 = 256.0;
 /// Largest displacement of an agent out of an overlap in one step, m.
 const WAY_OUT_M: f32 = 0.02;
-/// Gap that is left before what was hit, besides the skin, m.
+/// Gap left before an obstacle, besides the skin, m.
 const BACK_M: f32 = 1e-4;
 
-/// The speed that an agent has not by its own will.
+/// The velocity of an agent that is not commanded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PassiveVelocity {
     /// Downwards, m/s; less than 0 while it rises.
     pub(crate) fall_m_s: f32,
-    /// The level part of a slide off a slope, m/s.
+    /// Horizontal velocity of a slide off a slope, m/s.
     pub(crate) slide_m_s: Vec3,
 }
 
@@ -35,7 +35,7 @@ pub(crate) struct PassiveVelocity {
 pub(crate) struct CharacterPush {
     pub(crate) body: u32,
     pub(crate) point: Vec3,
-    /// Unit length, level.
+    /// Unit length, horizontal.
     pub(crate) direction: Vec3,
     /// Desired speed in that direction, m/s.
     pub(crate) speed_m_s: f32,
@@ -50,7 +50,7 @@ pub(crate) struct CharacterController<'a> {
 }
 
 impl CharacterController<'_> {
-    /// Moves the agent by `motion` (level, m) and lets it stand, slide or fall.
+    /// Moves the agent by `motion` (horizontal, m) and lets it stand, slide or fall.
     pub(crate) fn step(
         &mut self,
         agent: &mut AgentState,
@@ -83,7 +83,7 @@ impl CharacterController<'_> {
         agent.position = feet;
     }
 
-    /// One short piece of a movement.
+    /// Makes one short piece of a movement.
     fn piece(&mut self, feet: Vec3, motion: Vec3, grounded: bool) -> Vec3 {
         let mut target = self.slide(feet, motion);
         if target == feet || self.probe.is_inside_something(target) {
@@ -115,12 +115,12 @@ impl CharacterController<'_> {
         target
     }
 
-    /// Returns whether a movement leads from above something to above nothing at all: out of the house.
+    /// Returns whether a movement leads from above some surface to above none: out of the house.
     fn leaves(&self, feet: Vec3, target: Vec3) -> bool {
         !self.probe.is_above_something(target) && self.probe.is_above_something(feet)
     }
 
-    /// Goes as far as possible, along what is in the way.
+    /// Moves as far as possible, sliding along obstacles.
     fn slide(&mut self, feet: Vec3, motion: Vec3) -> Vec3 {
         let mut at = feet;
         let mut left = motion;
@@ -146,7 +146,7 @@ impl CharacterController<'_> {
             self.note_push(&hit, wall, left);
             walls[turn] = wall;
             left -= wall * left.dot(wall).min(0.0);
-            // Between two walls there is no way on.
+            // Between two walls the movement ends.
             if walls[..turn].iter().any(|wall| left.dot(*wall) < -1e-6) {
                 break;
             }
@@ -202,7 +202,7 @@ impl CharacterController<'_> {
         } else {
             let part = self.probe.drop_fraction(*feet, down);
             agent.grounded = part < 1.0;
-            // What the cylinder comes to rest on must not stop it from moving on.
+            // The surface on which the cylinder comes to rest must not stop it from moving on.
             let rest = if agent.grounded { LEVEL_M } else { 0.0 };
             feet.y -= (down * part - rest).max(0.0);
         }

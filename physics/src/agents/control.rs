@@ -6,23 +6,23 @@ use glam::Vec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Furthest an agent looks up or down, rad.
+/// Largest pitch of an agent's view up or down, rad.
 pub(crate) const STEEPEST_LOOK_RAD: f32 = 1.5;
 
-/// The highest speed that a body can be told, m/s and rad/s: beyond it squares of speeds are no numbers any more. Bodies go
-/// no faster than their own limits, whatever they are told.
+/// Highest commanded speed of a body, m/s and rad/s: beyond it squares of speeds overflow. Bodies stay within their own
+/// limits, whatever the command.
 const FASTEST: f32 = 1e6;
 
 /// The control input of an agent's body for one control step: constant velocities in its own frame.
 ///
 /// A displacement of `d` metres in a control step is a velocity of `d * control_rate_hz`. An agent on legs has these
-/// velocities at once, up to its speed limit; wheels go towards them as fast as they accelerate.
+/// velocities at once, up to its speed limit; wheels accelerate towards them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct AgentControl {
-    /// m/s towards where it faces; negative: backwards.
+    /// m/s along its heading; negative: backwards.
     pub forward_m_s: f32,
-    /// m/s to its right; negative: to its left. A differential drive cannot.
+    /// m/s to its right; negative: to its left. Not for a differential drive.
     pub right_m_s: f32,
     /// rad/s, positive to the left.
     pub yaw_rate_rad_s: f32,
@@ -35,7 +35,7 @@ pub struct AgentControl {
 }
 
 impl AgentControl {
-    /// All numbers by their fields.
+    /// Returns all numbers with their fields.
     fn numbers(&self) -> [(&'static str, f32); 6] {
         let [left, right] = self.wheel_rad_s.unwrap_or_default();
         [
@@ -48,7 +48,7 @@ impl AgentControl {
         ]
     }
 
-    /// Checks that a body that gets about like this can do it.
+    /// Checks that a body with this locomotion can follow the control.
     pub(crate) fn check(&self, index: usize, locomotion: &Locomotion) -> Result<(), PhysicsError> {
         let refuse = |field: &'static str, found: String, allowed: &'static str| {
             Err(PhysicsError::Range {
@@ -59,7 +59,7 @@ impl AgentControl {
             })
         };
         for (field, speed) in self.numbers() {
-            // Not "above", so that NaN is none of it.
+            // Not "above", so that NaN is refused too.
             if !(-FASTEST..=FASTEST).contains(&speed) {
                 let allowed = "finite numbers, at most 1e6 m/s or rad/s either way";
                 return refuse(field, speed.to_string(), allowed);
@@ -98,7 +98,7 @@ impl AgentControl {
         turn
     }
 
-    /// Raises or lowers an agent's look for `dt_s` seconds.
+    /// Pitches an agent's view up or down for `dt_s` seconds.
     pub(crate) fn look(&self, agent: &mut AgentState, dt_s: f32) {
         let pitch = agent.pitch_rad + self.pitch_rate_rad_s * dt_s;
         agent.pitch_rad = pitch.clamp(-STEEPEST_LOOK_RAD, STEEPEST_LOOK_RAD);

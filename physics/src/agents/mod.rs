@@ -1,4 +1,4 @@
-//! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light things and
+//! Agents' bodies: they walk or drive, turn, look, crouch, climb steps, slide off slopes, fall, push light objects and
 //! carry one.
 
 mod character_controller;
@@ -27,14 +27,14 @@ use glam::Vec3;
 use rapier3d::dynamics::{RigidBodyBuilder, RigidBodyHandle};
 use rapier3d::geometry::{ColliderBuilder, SharedShape};
 
-/// Height of the gap under an agent's rapier shape, m: what lies flat on the floor is stepped on, not shot away.
+/// Height of the gap under an agent's rapier shape, m: flat objects on the floor are stepped on, not shot away.
 const SOLE_M: f32 = 0.05;
 /// An agent's body in rapier: a capsule that pushes and is hit, and is moved by [`CharacterController`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Agent {
     pub(crate) handle: RigidBodyHandle,
     pub(crate) entry: u32,
-    /// The body that its capsule has, with the height that it has now.
+    /// The body of its capsule, with its present height.
     stands: AgentBody,
 }
 
@@ -61,7 +61,7 @@ impl Agents {
     }
 }
 
-/// The capsule of an agent as it stands now, and its centre above the feet, m.
+/// Returns the present capsule of an agent, and its centre above the feet, m.
 fn capsule(agent: &AgentState) -> (SharedShape, f32) {
     let (radius, height) = (agent.body.radius_m, agent.height_m());
     let sole = SOLE_M.min(height - 2.0 * radius).max(0.0);
@@ -69,7 +69,7 @@ fn capsule(agent: &AgentState) -> (SharedShape, f32) {
     (SharedShape::capsule_y(half, radius), 0.5 * (sole + height))
 }
 
-/// An agent's body with the height that it has now.
+/// Returns an agent's body with its present height.
 fn current_body(state: &AgentState) -> AgentBody {
     AgentBody {
         height_m: state.height_m(),
@@ -77,7 +77,7 @@ fn current_body(state: &AgentState) -> AgentBody {
     }
 }
 
-/// Gives an agent's capsule the size that it has now.
+/// Gives an agent's capsule its present size.
 pub(crate) fn reshape(engine: &mut RapierWorld, agent: &mut Agent, state: &AgentState) {
     agent.stands = current_body(state);
     let (shape, center) = capsule(state);

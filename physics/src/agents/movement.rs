@@ -22,7 +22,7 @@ pub(crate) struct MovementRecord {
 }
 
 impl MovementRecord {
-    /// The ways of all agents at the beginning of a control step.
+    /// Returns the records of all agents at the beginning of a control step.
     pub(crate) fn all(state: &State) -> Vec<Self> {
         let way = |(id, agent): (AgentId, &AgentState)| Self {
             start: agent.position,
@@ -36,7 +36,7 @@ impl MovementRecord {
 }
 
 impl Agents {
-    /// Moves all agents for one physics step; `first`: the control step's first.
+    /// Moves all agents for one physics step; `first`: the first of its control step.
     pub(crate) fn advance(
         &mut self,
         dynamics: &mut Dynamics,
@@ -95,10 +95,10 @@ impl Agents {
                 motion.settle(&mut agent, before);
                 let passive_velocities = &mut self.passive_velocities[index];
                 if !agent.grounded {
-                    // In the air its velocity is one whole.
+                    // In the air it has a single velocity.
                     passive_velocities.slide_m_s = Vec3::ZERO;
                 } else if flew {
-                    // Where it lands its wheels slip, and friction brakes it until they roll.
+                    // On landing its wheels slip, and friction brakes it until they roll.
                     passive_velocities.slide_m_s = motion.slips_m_s;
                 }
             }
@@ -136,7 +136,7 @@ impl Agents {
         pushes
     }
 
-    /// Crouches, or stands up where there is room.
+    /// Makes an agent crouch, or stand up where there is room.
     fn set_stance(
         &mut self,
         dynamics: &mut Dynamics,
@@ -174,7 +174,7 @@ impl Agents {
     }
 }
 
-/// Ends a control step: what each agent's movement came to.
+/// Ends a control step: writes the result of each agent's movement.
 pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[MovementRecord]) {
     let step_s = dynamics.settings.dt_s * dynamics.settings.steps_per_control as f32;
     for (index, (agent, way)) in state.agents.iter_mut().zip(ways).enumerate() {
@@ -182,7 +182,7 @@ pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[Mo
         agent.collided = way.made_m + 1e-4 + 1e-3 * way.wanted_m < way.wanted_m;
         let id = AgentId::from_index(index);
         let rate = way.turned_rad / step_s;
-        // Only bases have gyros that err.
+        // Only bases have gyros with errors.
         agent.gyro_rad_s = match way.locomotion {
             Locomotion::Walking(_) => rate,
             _ => dynamics
@@ -194,7 +194,7 @@ pub(crate) fn finish_movement(dynamics: &Dynamics, state: &mut State, ways: &[Mo
     }
 }
 
-/// Returns what surrounds an agent, which has the height it has now.
+/// Returns the surroundings of an agent, for its present height.
 fn probe<'a>(
     dynamics: &'a Dynamics,
     agent: &AgentState,
@@ -204,7 +204,7 @@ fn probe<'a>(
     probe_with(dynamics, super::current_body(agent), id, others)
 }
 
-/// Returns what surrounds an agent with a body as high as it is now.
+/// Returns the surroundings of an agent with a body of its present height.
 pub(super) fn probe_with<'a>(
     dynamics: &'a Dynamics,
     body: AgentBody,
@@ -224,7 +224,7 @@ pub(super) fn probe_with<'a>(
     }
 }
 
-/// Pushes a light body, with no more than the agent's force.
+/// Pushes a light body, with at most the agent's force.
 fn apply_push(dynamics: &mut Dynamics, push: &CharacterPush, force_n: f32) {
     let body = push.body as usize;
     let handle = dynamics.bodies[body].handle;
@@ -256,7 +256,7 @@ fn apply_push(dynamics: &mut Dynamics, push: &CharacterPush, force_n: f32) {
     }
 }
 
-/// Returns where a walker goes in one physics step if nothing stops it: as told, up to its fastest.
+/// Returns the displacement of a walking agent in one physics step if nothing stops it: as commanded, up to its highest speed.
 fn stride(agent: &AgentState, gait: &LeggedLocomotion, control: &AgentControl, dt_s: f32) -> Vec3 {
     let fastest = if agent.crouched_by_m > 0.0 {
         gait.max_crouched_speed_m_s.min(gait.max_speed_m_s)

@@ -1,4 +1,4 @@
-//! Agents whose bodies change while the world runs.
+//! Changes of agents' bodies while the world runs.
 
 use super::movement::{probe_with, shells};
 use super::{Agent, Agents, current_body, reshape};
@@ -6,15 +6,15 @@ use crate::dynamics::Dynamics;
 use crate::error::PhysicsError;
 use dwell_scene::{AgentBody, AgentState, Id, State};
 
-/// Returns whether two bodies take the same room.
+/// Returns whether two bodies occupy the same space.
 fn same_room(a: &AgentBody, b: &AgentBody) -> bool {
     let room = |body: &AgentBody| (body.radius_m, body.height_m, body.step_height_m);
     room(a) == room(b)
 }
 
 impl Agents {
-    /// Refuses bodies that would stand in something where they did not before. What is light gives way. A body that stood in
-    /// something already may change as long as its core stays out of it.
+    /// Refuses bodies that would overlap something that they did not overlap before. Light objects give way. A body that
+    /// overlapped something already may change as long as its core stays out of it.
     pub(crate) fn check_room(
         &self,
         dynamics: &Dynamics,
@@ -47,7 +47,7 @@ impl Agents {
         Ok(())
     }
 
-    /// Gives an agent's capsule the body of the state. Returns whether it was another before.
+    /// Gives an agent's capsule the body of the state. Returns whether it changed.
     pub(crate) fn take_body(
         &mut self,
         dynamics: &mut Dynamics,

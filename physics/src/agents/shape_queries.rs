@@ -1,8 +1,8 @@
 //! Collision queries of an agent's body.
 //!
-//! For walking, an agent is an upright cylinder whose lower end hovers at the height of the steps it climbs, and a foot
-//! that feels for the ground below. The cylinder is at least as large as the capsule that others see, so that nothing the
-//! cylinder clears can be entered by the capsule.
+//! For walking, an agent is an upright cylinder whose lower end hovers at the height of the steps that it climbs, and a
+//! foot that probes the ground below. The cylinder is at least as large as the capsule that others collide with, so that
+//! the capsule can enter nothing that the cylinder clears.
 
 use crate::body::{BodyHandle, BodyStatus};
 use crate::contact::{ColliderEntry, CollisionExclusions, entry_index};
@@ -16,7 +16,7 @@ use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query::ShapeCastOptions;
 use rapier3d::pipeline::QueryFilter;
 
-/// Gap that the cylinder keeps from what it cannot enter, m.
+/// Gap that the cylinder keeps from obstacles, m.
 pub(crate) const SKIN_M: f32 = 0.008;
 /// Gap between the cylinder's skin and the edge that its foot has rolled off, m.
 const CLEAR_M: f32 = 0.002;
@@ -24,9 +24,9 @@ const CLEAR_M: f32 = 0.002;
 const HOVER_M: f32 = 0.015;
 /// Inset of the core, which must never overlap anything, m.
 const CORE_MARGIN_M: f32 = 0.03;
-/// The heaviest free body that is pushed instead of walked around, kg.
+/// Mass of the heaviest free body that is pushed instead of walked around, kg.
 const HEAVIEST_PUSHED_KG: f32 = 30.0;
-/// Height up to which light things are stepped on, m.
+/// Height up to which light objects are stepped on, m.
 const SOLE_M: f32 = 0.05;
 /// Search range above and below the foot's lowest point for the surface under its middle, m; below by the foot's radius
 /// more, because on a slope the surface lies lower there.
@@ -50,18 +50,18 @@ pub(crate) struct SweepHit {
     pub(crate) normal: Vec3,
     /// Contact point, m.
     pub(crate) point: Vec3,
-    /// The light body that is in the way; nothing for what cannot be pushed.
+    /// The light body that is hit; `None` for an obstacle that cannot be pushed.
     pub(crate) light: Option<u32>,
 }
 
 /// The kind of obstacle that a collider is to an agent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ObstacleKind {
-    /// Itself, another agent, or what it holds.
+    /// Itself, another agent, or its held object.
     Ignored,
-    /// It cannot be pushed.
+    /// An obstacle that cannot be pushed.
     Immovable,
-    /// A body that gives way.
+    /// A body that can be pushed.
     Pushable(u32),
 }
 
@@ -79,7 +79,7 @@ pub(crate) struct AgentQueries<'a> {
 }
 
 impl AgentQueries<'_> {
-    /// Returns what a collider is to this agent.
+    /// Returns the kind of obstacle that a collider is.
     fn sees(&self, collider: &Collider) -> ObstacleKind {
         let Some(entry) = self.entries.get(entry_index(collider)) else {
             return ObstacleKind::Ignored;
@@ -114,14 +114,14 @@ impl AgentQueries<'_> {
         if light { solid.min(SOLE_M) } else { solid }
     }
 
-    /// The cylinder and its centre above the feet.
+    /// Returns the cylinder and its centre above the feet.
     fn cylinder(&self, light: bool) -> (Cylinder, f32) {
         let low = self.lower_end(light);
         let half = 0.5 * (self.body.height_m - low);
         (Cylinder::new(half, self.body.radius_m), low + half)
     }
 
-    /// The first thing in the way of a motion.
+    /// Returns the first obstacle of a motion.
     pub(crate) fn cast(&self, feet: Vec3, motion: Vec3) -> Option<SweepHit> {
         let hits = [
             self.cast_kind(feet, motion, false),
@@ -167,7 +167,7 @@ impl AgentQueries<'_> {
         })
     }
 
-    /// Two upright cylinders, one of which moves.
+    /// Sweeps one upright cylinder against another.
     fn cast_shell(&self, feet: Vec3, motion: Vec3, shell: &AgentCylinder) -> Option<SweepHit> {
         let apart =
             feet.y >= shell.feet.y + shell.height_m || shell.feet.y >= feet.y + self.body.height_m;
@@ -196,13 +196,13 @@ impl AgentQueries<'_> {
         })
     }
 
-    /// Returns how far down the cylinder can go, as a fraction of `down_m`.
+    /// Returns the share of `down_m` that the cylinder can go down.
     pub(crate) fn drop_fraction(&self, feet: Vec3, down_m: f32) -> f32 {
         let hit = self.cast_kind(feet, Vec3::NEG_Y * down_m, false);
         hit.map_or(1.0, |hit| hit.fraction)
     }
 
-    /// Returns how far up the cylinder can go, as a fraction of `up_m`.
+    /// Returns the share of `up_m` that the cylinder can go up.
     pub(crate) fn rise_fraction(&self, feet: Vec3, up_m: f32) -> f32 {
         let hit = self.cast_kind(feet, Vec3::Y * up_m, false);
         hit.map_or(1.0, |hit| hit.fraction)
@@ -220,17 +220,17 @@ impl AgentQueries<'_> {
         (Cylinder::new(half, radius), center)
     }
 
-    /// The radius of the core.
+    /// Returns the radius of the core.
     pub(crate) fn core_radius_m(&self) -> f32 {
         self.core().0.radius
     }
 
-    /// Returns whether the core overlaps something that cannot be pushed.
+    /// Returns whether the core overlaps something immovable.
     pub(crate) fn is_inside_something(&self, feet: Vec3) -> bool {
         self.overlaps(feet, self.core())
     }
 
-    /// Returns whether the whole cylinder overlaps something that cannot be pushed, or another agent.
+    /// Returns whether the whole cylinder overlaps something immovable, or another agent.
     pub(crate) fn is_cylinder_blocked(&self, feet: Vec3) -> bool {
         let beside = |shell: &AgentCylinder| {
             let apart = (shell.feet - feet).with_y(0.0).length();
@@ -251,8 +251,8 @@ impl AgentQueries<'_> {
         queries.intersect_shape(place, &cylinder).next().is_some()
     }
 
-    /// The push, at most `most_m` long and level, that leads out of what the core overlaps; nothing if a surface lies on
-    /// the way.
+    /// Returns the push, at most `most_m` long and horizontal, that leads out of an overlap of the core; `None` if a
+    /// surface is in the way.
     pub(crate) fn exit_push(&self, feet: Vec3, most_m: f32) -> Option<Vec3> {
         let predicate =
             |_: ColliderHandle, collider: &Collider| self.sees(collider) == ObstacleKind::Immovable;
@@ -284,14 +284,14 @@ impl AgentQueries<'_> {
         free.then_some(out)
     }
 
-    /// Half of the body's radius; less for one that climbs only low steps, so that a foot that rolls off an edge does not
-    /// let the cylinder down on it.
+    /// Returns half of the body's radius; less for one that climbs only low steps, so that a foot that rolls off an edge
+    /// does not let the cylinder down on it.
     fn foot_radius_m(&self) -> f32 {
         let most = self.lower_end(false) - SKIN_M - CLEAR_M;
         (0.5 * self.body.radius_m).min(most).max(1e-3)
     }
 
-    /// The height of the ground under the feet, between the highest step above them and `down_m` below, m.
+    /// Returns the height of the ground under the feet, between the highest step above them and `down_m` below, m.
     pub(crate) fn ground(&self, feet: Vec3, down_m: f32) -> Option<f32> {
         let predicate =
             |_: ColliderHandle, collider: &Collider| self.sees(collider) != ObstacleKind::Ignored;
@@ -313,7 +313,7 @@ impl AgentQueries<'_> {
         Some(start.y - radius - fall * hit.time_of_impact)
     }
 
-    /// Returns whether something lies under the feet, however deep: no one walks out of the house onto nothing.
+    /// Returns whether some surface lies under the feet, however deep: agents do not walk out of the house into the void.
     pub(crate) fn is_above_something(&self, feet: Vec3) -> bool {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entries.get(entry_index(collider));
@@ -329,7 +329,7 @@ impl AgentQueries<'_> {
         queries.cast_ray(&ray, deepest, true).is_some()
     }
 
-    /// The unit normal of the surface right under the middle, on its upper side; `None` without one near `height_m`.
+    /// Returns the unit normal of the surface directly under the middle, on its upper side; `None` without one near `height_m`.
     pub(crate) fn surface(&self, feet: Vec3, height_m: f32) -> Option<Vec3> {
         let predicate =
             |_: ColliderHandle, collider: &Collider| self.sees(collider) != ObstacleKind::Ignored;

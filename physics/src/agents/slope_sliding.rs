@@ -1,8 +1,8 @@
-//! Slopes that are too steep to stand on.
+//! Sliding on slopes that are too steep to stand on.
 //!
-//! Feet hold on a slope like a block with the friction `tan(max_slope)`: up to the steepest slope that the body walks
-//! up, and not beyond. There it slides along the surface with `g (sin a - tan(max_slope) cos a)`, and on the level it
-//! comes to rest under the same friction.
+//! Feet hold on a slope like a block with the friction `tan(max_slope)`: up to the steepest slope that the body walks up,
+//! and not beyond. There it slides along the surface with `g (sin a - tan(max_slope) cos a)`, and on level ground it comes
+//! to rest under the same friction.
 
 use super::character_controller::CharacterController;
 use dwell_scene::math;
@@ -10,7 +10,7 @@ use glam::Vec3;
 
 /// Margin by which a slope must exceed the limit to count as too steep (difference of cosines).
 const MARGIN: f32 = 1e-3;
-/// Highest speed of a slide, m/s.
+/// Highest sliding speed, m/s.
 const FASTEST_M_S: f32 = 30.0;
 
 impl CharacterController<'_> {
@@ -22,7 +22,7 @@ impl CharacterController<'_> {
             .is_some_and(|normal| normal.y < steepest - MARGIN && normal.y > MARGIN)
     }
 
-    /// The slide's level velocity after a step in which the agent made the way `made`: what is in the way ends it.
+    /// Returns the slide's horizontal velocity after a step with the displacement `made`: obstacles end it.
     pub(super) fn slide_left(&self, slide: Vec3, made: Vec3) -> Vec3 {
         let speed = slide.length();
         if speed == 0.0 {
@@ -32,7 +32,7 @@ impl CharacterController<'_> {
         slide * (along.clamp(0.0, speed) / speed)
     }
 
-    /// The slide's level velocity after a step on the ground at `feet`.
+    /// Returns the slide's horizontal velocity after a step on the ground at `feet`.
     pub(super) fn slide_on(&self, feet: Vec3, slide: Vec3) -> Vec3 {
         let resting = slide == Vec3::ZERO;
         let Some(normal) = self.probe.surface(feet, feet.y) else {
@@ -54,12 +54,12 @@ impl CharacterController<'_> {
         let steepness = level.length();
         let downhill = level / steepness;
         let along = self.gravity_m_s2 * (steepness - math::tan(limit) * normal.y) * self.dt_s;
-        // The level part of the velocity along the surface.
+        // The horizontal part of the velocity along the surface.
         let speed = slide.dot(downhill).max(0.0) + along.max(0.0) * normal.y;
         downhill * speed.min(FASTEST_M_S)
     }
 
-    /// A slide after a step of friction on a surface that faces up by `levelness`.
+    /// Returns a slide after a step of friction on a surface whose normal has the vertical component `levelness`.
     fn braked(&self, slide: Vec3, levelness: f32) -> Vec3 {
         let friction = math::tan(self.probe.body.max_slope_rad).max(0.1);
         let lost = self.gravity_m_s2 * friction * levelness * self.dt_s;

@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 const SPACING_M: f32 = 0.1;
 const MOST_PLACES: f32 = 20_000.0;
 
-/// Between the bodies of agents that begin beside each other, m.
+/// Gap between the bodies of agents that start beside each other, m.
 const GAP_M: f32 = 0.1;
 
 /// Start positions for one body, nearest first; agents with the same body continue where the previous one was placed.
@@ -24,12 +24,12 @@ struct SpawnSearch {
 }
 
 impl Agents {
-    /// Puts each agent that would stand in what does not give way, or in an agent before it, at the nearest place on a room's floor
-    /// that has room for it; where only agents are in the way and no place is left, they share one. A house without rooms does not say
-    /// where its floors are: there agents stay.
+    /// Moves each agent that would overlap something immovable, or an agent before it, to the nearest free position on a
+    /// room's floor; where only agents are in the way and no position is left, they share one. A house without rooms does
+    /// not define its floors: there agents stay.
     ///
     /// # Errors
-    /// [`PhysicsError::Range`] for a body that no room has room for.
+    /// [`PhysicsError::Range`] for a body that fits into no room.
     pub(crate) fn give_room(
         &self,
         dynamics: &mut Dynamics,
@@ -119,7 +119,7 @@ fn place_with_room(
         })
 }
 
-/// Places all over the rooms' floors, m: room by room, triangle by triangle, in rows.
+/// Returns positions all over the rooms' floors, m: room by room, triangle by triangle, in rows.
 fn floor_places(house: &House) -> Vec<Vec3> {
     let triangles = || house.rooms.iter().flat_map(|room| &room.footprint);
     let area_m2: f32 = triangles()
@@ -144,7 +144,7 @@ fn floor_places(house: &House) -> Vec<Vec3> {
                     }
                 }
             }
-            // A triangle between the rows has a place, too.
+            // A triangle between the rows has a position, too.
             let middle = (a + b + c) / 3.0;
             places.push(Vec3::new(middle.x, room.floor_y, middle.y));
         }

@@ -10,7 +10,7 @@ use glam::Vec3;
 /// The displacement of a base in one physics step if nothing stops it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BaseMotion {
-    /// m, level.
+    /// m, horizontal.
     pub(crate) displacement: Vec3,
     /// rad to the left.
     pub(crate) turn_rad: f32,
@@ -18,8 +18,8 @@ pub(crate) struct BaseMotion {
     pub(crate) slips_m_s: Vec3,
 }
 
-/// Turns the wheels for one physics step, counts them, and says where they move the body. `truth`: the base's numbers
-/// in this world; `laws` may change how the wheels roll. Nothing for an agent on legs.
+/// Advances the wheels for one physics step, counts their rotation, and returns the body's motion. `truth`: the base's true
+/// parameters in this world; `laws` may change how the wheels roll. `None` for an agent on legs.
 pub(crate) fn drive(
     agent: &mut AgentState,
     truth: &Locomotion,
@@ -88,7 +88,7 @@ fn narrow(twist: &PlanarTwist) -> [f32; 3] {
     [twist.forward_m_s, twist.left_m_s, twist.yaw_rate_rad_s].map(|value| value as f32)
 }
 
-/// Brings both wheels towards what they are told.
+/// Accelerates both wheels towards their commands.
 fn roll(
     agent: &mut AgentState,
     nominal: &DifferentialDrive,
@@ -124,7 +124,7 @@ fn roll(
 }
 
 impl BaseMotion {
-    /// Turns the agent, and remembers what rounding kept back.
+    /// Turns the agent, and keeps the rounding remainder.
     pub(crate) fn turn(&self, agent: &mut AgentState) {
         if self.turn_rad == 0.0 {
             return;
@@ -134,7 +134,7 @@ impl BaseMotion {
         agent.yaw_rad = math::wrap_angle(yaw);
     }
 
-    /// Remembers what rounding kept back of a way that nothing stopped.
+    /// Keeps the rounding remainder of a displacement that nothing stopped.
     pub(crate) fn settle(&self, agent: &mut AgentState, before: Vec3) {
         if self.displacement == Vec3::ZERO {
             return;

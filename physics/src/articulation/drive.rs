@@ -7,12 +7,12 @@ use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, commanded};
 use crate::outcome::{DelayedOutcome, OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, State};
 
-/// Openness from which a thing counts as open, and below which as closed.
+/// Openness from which a joint counts as open, and up to which as closed.
 pub(crate) const OPEN: f32 = 0.95;
 pub(crate) const CLOSED: f32 = 0.02;
 
 impl JointSystem {
-    /// Sets what pulls at all joints from the state's targets.
+    /// Sets the actuation of all joints from the state's targets.
     pub(crate) fn drive(
         &mut self,
         dynamics: &mut Dynamics,
@@ -57,7 +57,7 @@ impl JointSystem {
             let limits = (step_s, effort);
             let (pull, progress) =
                 joints::advance(joint.kind, &joint.values, command, hand, now, limits);
-            // A motor that lets go wakes what it held, too.
+            // A motor that is switched off wakes what it held, too.
             if self.pulls[index] != pull {
                 joints::wake(&mut dynamics.engine, &joint);
             }
@@ -69,7 +69,7 @@ impl JointSystem {
         }
     }
 
-    /// Takes a hand off a joint that has arrived or is blocked, and says so.
+    /// Ends the hand drive of a joint that has arrived or is blocked, with an outcome.
     fn finish_drive(
         &mut self,
         dynamics: &mut Dynamics,
@@ -124,7 +124,7 @@ impl JointSystem {
     }
 }
 
-/// The name of a thing that a joint's leaf touches, other than its own object and the building.
+/// Returns the name of a thing that a joint's leaf touches, other than its own object and the building.
 fn in_the_way(dynamics: &Dynamics, state: &State, joint: &PhysicsJoint) -> Option<String> {
     let child = &dynamics.model.bodies[joint.child as usize];
     let house = &dynamics.model.house;

@@ -1,4 +1,4 @@
-//! The joints of a world: what moves them, where they go in a step, and what the state has of them.
+//! The joints of a world: actuation, motion in a step, and transfer to the state.
 
 mod drive;
 mod motors;
@@ -18,9 +18,9 @@ use dwell_scene::{JointId, State};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct JointSystem {
     pub(crate) joints: Vec<PhysicsJoint>,
-    /// Joints that act on each other.
+    /// Kinematic trees of joints that act on each other.
     pub(crate) trees: Vec<KinematicTree>,
-    /// Each joint's numbers within a control step; the turns of hinges are counted here. Between control steps the state has
+    /// Each joint's coordinates within a control step, with the turns of hinges. Between control steps the state holds
     /// them. Shape (joint,).
     pub(crate) joint_coordinates: Vec<JointCoordinate>,
     /// The actuation of each joint during this control step. Shape (joint,).
@@ -29,7 +29,7 @@ pub(crate) struct JointSystem {
 }
 
 impl JointSystem {
-    /// Takes the joints' numbers from the state, at the beginning of a control step.
+    /// Reads the joints' coordinates from the state, at the beginning of a control step.
     pub(crate) fn read(&mut self, state: &State) {
         let joints = self.joints.iter();
         self.joint_coordinates = joints
@@ -37,7 +37,7 @@ impl JointSystem {
             .collect();
     }
 
-    /// Gives the state the joints' numbers, at the end of a control step.
+    /// Writes the joints' coordinates into the state, at the end of a control step.
     pub(crate) fn write_coordinates(&self, state: &mut State) {
         for (joint, joint_coordinates) in self.joints.iter().zip(&self.joint_coordinates) {
             state.joint_position[joint.id] = joint_coordinates.position as f32;
@@ -53,7 +53,7 @@ impl JointSystem {
         for joint in &self.joints {
             let now = joints::stands(&dynamics.engine, joint, joint_from_state(state, joint.id));
             let (position, velocity) = (now.position as f32, now.velocity as f32);
-            // A door that is shut stands at its closed position, whatever rounding says.
+            // A latched door is at its closed position, whatever the rounding.
             let shut = dynamics.holds[joint.child as usize] == BodyStatus::Latched;
             let closed = dynamics.model.house.joints[joint.id].closed;
             state.joint_position[joint.id] = if shut { closed } else { position };
@@ -62,7 +62,7 @@ impl JointSystem {
         state.follow_switches(&dynamics.model.house);
     }
 
-    /// Brings what hangs on joints along where what it hangs on was moved.
+    /// Moves jointed bodies along with their parents.
     pub(crate) fn carry_jointed_bodies(&self, dynamics: &mut Dynamics, state: &State) {
         let stands = self.joints.iter().map(|joint| joints::JointPlacement {
             position: state.joint_position[joint.id],
@@ -84,7 +84,7 @@ impl JointSystem {
     }
 }
 
-/// A joint's numbers as the state has them.
+/// Returns a joint's coordinates in the state.
 pub(crate) fn joint_from_state(state: &State, joint: JointId) -> JointCoordinate {
     JointCoordinate {
         position: state.joint_position[joint].into(),

@@ -1,4 +1,4 @@
-//! Motors under laws: what they follow and give changes in every physics step.
+//! Motors under laws: their commands and efforts change in every physics step.
 
 use super::JointSystem;
 use crate::dynamics::Dynamics;
@@ -6,7 +6,7 @@ use crate::joints::{self, MotorStep, commanded};
 use dwell_scene::State;
 
 impl JointSystem {
-    /// Sets what motors do in the next physics step from what they are told in this control step.
+    /// Sets the actuation of motors in the next physics step from their commands in this control step.
     pub(crate) fn drive_motors(&mut self, dynamics: &mut Dynamics, state: &State) {
         if dynamics.laws.motors.is_empty() {
             return;
@@ -38,7 +38,7 @@ impl JointSystem {
                     law.effect.modify_motor(joint.id, pull);
                 }
             }
-            // One that lets go wakes what it held, too.
+            // A motor that is switched off wakes what it held, too.
             if self.pulls[index] != pull {
                 joints::wake(&mut dynamics.engine, &joint);
             }

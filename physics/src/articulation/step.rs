@@ -1,4 +1,4 @@
-//! The joints of a world in one physics step: the efforts along them before it, and where they went after it.
+//! The joints of a world in one physics step: efforts before it, and positions after it.
 
 use super::JointSystem;
 use crate::dynamics::Dynamics;
@@ -9,14 +9,14 @@ use dwell_scene::JointId;
 
 /// The predicted motion of all kinematic trees in a physics step.
 pub(crate) struct JointStep {
-    /// `None` for a tree that is asleep or shut. Shape (tree,).
+    /// `None` for a tree that is asleep or latched. Shape (tree,).
     predictions: Vec<Option<TreePrediction>>,
-    /// Bodies that joints hang on and that answer to what these do.
+    /// Free bodies that are roots of trees and react to their joints.
     pub(crate) floating_roots: Vec<u32>,
 }
 
 impl JointSystem {
-    /// Tells laws of what joints resist with where these stand.
+    /// Passes the joints' positions to resistance laws.
     pub(crate) fn follow(&self, dynamics: &mut Dynamics) {
         if dynamics.laws.resistances.is_empty() {
             return;
@@ -72,7 +72,7 @@ impl JointSystem {
         }
     }
 
-    /// Puts trees where their joints went in a physics step. Returns whether one was moved for that.
+    /// Moves trees to their predicted positions after a physics step. Returns whether one was moved.
     pub(crate) fn settle(&mut self, dynamics: &mut Dynamics, step: JointStep) -> bool {
         let (engine, coordinates) = (&mut dynamics.engine, &mut self.joint_coordinates);
         let mut placed = false;

@@ -4,12 +4,12 @@ use super::WheelMotion;
 use dwell_scene::AgentId;
 use std::fmt::Debug;
 
-/// A law that changes how a base moves, or what it measures of that.
+/// A law that changes the motion of a base, or its measurement.
 pub(crate) trait BaseLaw: Debug + Send + Sync {
-    /// Changes how the two wheels of an agent's differential drive roll in one physics step.
+    /// Changes the rolling of the two wheels of an agent's differential drive in one physics step.
     fn roll(&self, _agent: AgentId, _rolling: &mut WheelMotion) {}
 
-    /// Returns what the gyro of an agent's base reads when it turns with `rate_rad_s`.
+    /// Returns the gyro reading of an agent's base at a yaw rate of `rate_rad_s`.
     fn gyro(&self, _agent: AgentId, rate_rad_s: f32) -> f32 {
         rate_rad_s
     }

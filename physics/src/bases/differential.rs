@@ -1,9 +1,9 @@
-//! Two driven wheels side by side.
+//! Differential drive: two driven wheels side by side.
 
 use super::PlanarTwist;
 use dwell_scene::DifferentialDrive;
 
-/// The geometry of a differential drive: what decides how wheels move the body.
+/// The geometry of a differential drive, which relates wheel rates to the body's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WheelGeometry {
     /// Radius of the left and right wheel, m.
@@ -22,8 +22,8 @@ impl From<&DifferentialDrive> for WheelGeometry {
 }
 
 impl WheelGeometry {
-    /// Returns how the body moves when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean of
-    /// both speeds forward, their difference over the wheel base to the left.
+    /// Returns the body's twist when the left and right wheel turn at these rates (rad/s) and roll without slip: the mean
+    /// of both speeds forward, their difference over the wheel base to the left.
     ///
     /// # Source
     /// R. Siegwart, I. R. Nourbakhsh, Introduction to Autonomous Mobile Robots (2004), section 3.2.
@@ -36,8 +36,8 @@ impl WheelGeometry {
         }
     }
 
-    /// The rates of the left and right wheel (rad/s) that make the body go forward and turn so; [`WheelGeometry::twist`]
-    /// backwards. Such wheels cannot go sideways.
+    /// Returns the rates of the left and right wheel (rad/s) for a forward speed and a yaw rate; the inverse of
+    /// [`WheelGeometry::twist`]. Such wheels cannot go sideways.
     pub fn rates(&self, forward_m_s: f64, yaw_rate_rad_s: f64) -> [f64; 2] {
         let turn = 0.5 * self.base_m * yaw_rate_rad_s;
         [
@@ -52,8 +52,8 @@ impl WheelGeometry {
 pub(crate) struct WheelCommand(pub(crate) [f64; 2]);
 
 impl WheelCommand {
-    /// A forward speed and a rate of turn, as the base's own geometry makes them. What is too fast for a wheel is slowed
-    /// down as a whole, so that the way keeps its curvature.
+    /// The command for a forward speed and a yaw rate, by the base's own geometry. If it is too fast for a wheel, both
+    /// wheels are scaled down, so that the path keeps its curvature.
     pub(crate) fn from_twist(
         nominal: &WheelGeometry,
         forward: f64,
@@ -76,20 +76,20 @@ pub(crate) struct WheelMotion {
     pub(crate) rate_rad_s: [f64; 2],
     /// Mean acceleration of each wheel over the step, rad/s².
     pub(crate) acceleration_rad_s2: [f64; 2],
-    /// The part of each wheel's way that is lost: the body's way is `r w (1 - slip)`.
+    /// The lost share of each wheel's displacement: the body moves by `r w (1 - slip)`.
     pub(crate) slip: [f64; 2],
 }
 
 impl WheelMotion {
-    /// Returns how the body moves.
+    /// Returns the body's twist.
     pub(crate) fn twist(&self) -> PlanarTwist {
         let gripping = [0, 1].map(|side| self.rate_rad_s[side] * (1.0 - self.slip[side]));
         self.wheels.twist(gripping)
     }
 }
 
-/// A speed that goes towards `target` with at most `acceleration` (> 0) for `dt_s`: the speed at the end, and the mean
-/// over the time.
+/// Returns the speed after `dt_s` of acceleration towards `target` with at most `acceleration` (> 0), and its mean over
+/// that time.
 pub(crate) fn ramp(now: f64, target: f64, acceleration: f64, dt_s: f64) -> (f64, f64) {
     let change = target - now;
     let needed_s = change.abs() / acceleration;
@@ -126,7 +126,7 @@ mod tests {
             prop_assert!((twist.forward_m_s - v).abs() < 1e-12 && (twist.yaw_rate_rad_s - w).abs() < 1e-11);
         }
 
-        /// The mean over a step is what many smaller steps travel.
+        /// The mean over a step gives the displacement of many smaller steps.
         #[test]
         fn a_ramp_in_one_step_or_many_covers_the_same_way(now in -5.0..5.0_f64, target in -5.0..5.0_f64, a in 0.5..50.0_f64) {
             let (end, mean) = ramp(now, target, a, 0.1);
@@ -140,7 +140,7 @@ mod tests {
         }
     }
 
-    /// The square of Borenstein and Feng, driven both ways by a robot that trusts its nominal numbers. Unequal wheels add
+    /// The square of Borenstein and Feng, driven both ways by a robot that uses its nominal parameters. Unequal wheels add
     /// to the turning in one direction and take from it in the other (type B), a wrong base does the same in both (type A).
     ///
     /// # Source
@@ -167,7 +167,7 @@ mod tests {
         let bend = (right - left) / 0.05 / 0.3 * 4.0 * side;
         for direction in [1.0, -1.0] {
             let error = heading(&unequal, direction) - direction * 2.0 * PI;
-            // The turns on the spot are made by the mean radius, which is nominal.
+            // The turns on the spot depend on the mean radius, which is nominal.
             assert!((error - bend).abs() < 1e-12, "{error} {bend}");
         }
         // A wrong base: every turn is too small by b / b_true.

@@ -1,10 +1,10 @@
-//! A base that moves in any direction.
+//! Holonomic base: moves in any direction.
 
 use super::PlanarTwist;
 use dwell_scene::HolonomicBase;
 
-/// The twist after a step towards `wanted`, and the mean over the step. The velocity changes along a straight line, the
-/// rate of turn beside it.
+/// Returns the twist after a step towards `wanted`, and the mean over the step. The velocity changes along a straight line,
+/// independently of the yaw rate.
 pub(crate) fn follow(
     base: &HolonomicBase,
     now: PlanarTwist,

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A place on a floor.
+/// A pose on a floor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlanarPose {
     /// m.
@@ -36,7 +36,7 @@ fn sinc(x: f64) -> f64 {
 }
 
 impl PlanarPose {
-    /// Returns where a body is after it moved with a constant twist for `duration_s`: exactly, on an arc of a circle.
+    /// Returns the pose after moving with a constant twist for `duration_s`: exactly, on an arc of a circle.
     ///
     /// # Source
     /// The exponential map of SE(2): R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic
@@ -53,7 +53,7 @@ impl PlanarPose {
         }
     }
 
-    /// The way from the origin as a displacement in a world, m.
+    /// Returns the displacement from the origin in a world, m.
     pub(crate) fn displacement(&self) -> Vec3 {
         Vec3::new(-self.y_m as f32, 0.0, -self.x_m as f32)
     }

@@ -8,11 +8,11 @@ use rapier3d::geometry::{ContactManifold, SolverContact};
 /// Two surfaces at a contact point, before a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ApproachMotion {
-    /// Between the two.
+    /// The midpoint between the two.
     pub(super) place: Vec3,
     /// From the centre of mass of each to its surface, m.
     pub(super) arms: [Vec3; 2],
-    /// The velocity of the first against the second, m/s.
+    /// Velocity of the first relative to the second, m/s.
     pub(super) relative: Vec3,
     /// Approach speed along the normal, m/s; negative when they part.
     pub(super) speed: f32,
@@ -23,7 +23,7 @@ pub(super) struct ApproachMotion {
 }
 
 impl ApproachMotion {
-    /// From where the two surfaces stood before the step. `motions`: of the manifold's first and second body.
+    /// Computes it from the surfaces' positions before the step. `motions`: of the manifold's first and second body.
     pub(super) fn of(
         manifold: &ContactManifold,
         contact: &SolverContact,
@@ -49,13 +49,13 @@ impl ApproachMotion {
     }
 }
 
-/// The speed of what moved with `speed`, after a way in its direction along which it was accelerated; 0 where it turned
-/// before. The way took twice its length over the sum of both speeds.
+/// Returns the speed of a body after an accelerated displacement along its direction; 0 where it turned before. Its
+/// duration is twice the displacement over the sum of both speeds.
 pub(super) fn speed_after(speed: f32, acceleration: f32, way_m: f32) -> f32 {
     (speed * speed + 2.0 * acceleration * way_m).max(0.0).sqrt()
 }
 
-/// Returns where the two surfaces of a contact point stood before the step.
+/// Returns the positions of the two surfaces of a contact point before the step.
 fn ends_before(
     manifold: &ContactManifold,
     contact: &SolverContact,
@@ -63,7 +63,7 @@ fn ends_before(
     (a, b): (&BodyMotion, &BodyMotion),
 ) -> (Vec3, Vec3) {
     let (p, q) = manifold.data.solver_contact_world_points(contact, bodies);
-    // Anchors ride on their bodies, or stand in the world.
+    // Anchors move with their bodies, or are fixed in the world.
     let before = |now: Vec3, anchor: Vec3, motion: &BodyMotion, in_world: bool| {
         if motion.known && !in_world {
             motion.center + motion.rotation * anchor

@@ -23,12 +23,12 @@ pub(crate) struct BodyMotion {
     /// Velocity change over the step if nothing touches the body, m/s; `None` for bodies moved by joints or by an agent's
     /// hand.
     pub(super) free_change: Option<Vec3>,
-    /// J; 0 for what does not fly freely.
+    /// J; 0 for a body that is not in free flight.
     pub(super) kinetic_energy_j: f32,
 }
 
 impl BodyMotion {
-    /// Returns how far the body would have gone on in the step since then, when it was stopped on its way and kept its speed.
+    /// Returns the rest of the body's displacement in the step since then, when it was stopped on its way and kept its speed.
     pub(super) fn held_back(&self, body: &RigidBody, dt_s: f32) -> Option<Vec3> {
         let fell = self.linear + self.gravity * dt_s;
         let free = (self.linear + fell) * (0.5 * dt_s);
@@ -38,31 +38,31 @@ impl BodyMotion {
         (self.known && kept_speed && stopped).then_some(rest)
     }
 
-    /// The energy of a body in free flight, J, of a mass in kg: kinetic, and potential over the origin. It is that where
-    /// it would stand had the last step not stopped it.
+    /// Returns the energy of a body in free flight, J, of a mass in kg: kinetic, and potential over the origin, at the
+    /// position that it would have had the last step not stopped it.
     pub(super) fn energy_j(&self, mass_kg: f32) -> f32 {
         self.kinetic_energy_j - mass_kg * self.gravity.dot(self.center + self.ahead)
     }
 
-    /// Returns where the centre of mass of a body in free flight stands after a time, or stood before.
+    /// Returns the position of the centre of mass of a body in free flight after a time, or before.
     pub(super) fn center_after(&self, time_s: f32) -> Vec3 {
         self.center + self.ahead + (self.linear + self.gravity * (0.5 * time_s)) * time_s
     }
 
-    /// The velocity of a point, m/s.
+    /// Returns the velocity of a point, m/s.
     pub(super) fn at(&self, point: Vec3) -> Vec3 {
         self.linear + self.angular.cross(point - self.center)
     }
 }
 
-/// The motion of a body before the step; at rest for what does not move.
+/// Returns the motion of a body before the step; at rest for a body that does not move.
 pub(super) fn before(motions: &[BodyMotion], body: Option<RigidBodyHandle>) -> BodyMotion {
     body.and_then(|body| motions.get(body.into_raw_parts().0 as usize))
         .copied()
         .unwrap_or_default()
 }
 
-/// Returns where the motion of a body is kept.
+/// Returns the entry of a body.
 fn at(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
     let index = body.into_raw_parts().0 as usize;
     if motions.len() <= index {
@@ -71,7 +71,7 @@ fn at(motions: &mut Vec<BodyMotion>, body: RigidBodyHandle) -> &mut BodyMotion {
     &mut motions[index]
 }
 
-/// Notes the motion of all bodies that are awake before a step, and where those stand that sleep. `flying`: those in free flight.
+/// Records the motion of all awake bodies before a step, and the positions of sleeping ones. `flying`: those in free flight.
 pub(crate) fn record_motion(
     engine: &RapierWorld,
     contact_tracker: &ContactTracker,

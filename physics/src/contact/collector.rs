@@ -23,7 +23,7 @@ pub(crate) struct ContactReport {
     pub(super) moment: Vec3,
     /// Fastest approach along the normal before the step, m/s.
     pub(super) speed: f32,
-    /// When the surfaces meet at that speed, from the beginning of the step, s.
+    /// Time at which the surfaces meet at that speed, from the beginning of the step, s.
     pub(super) meets_s: f32,
     /// Approach speed then, m/s.
     pub(super) meeting: f32,
@@ -40,7 +40,7 @@ pub(crate) struct ContactReport {
 /// Gathers contacts while rapier steps.
 pub(crate) struct ContactCollector<'a> {
     entries: &'a [ColliderEntry],
-    /// Below this nothing is told, m/s.
+    /// Speed below which nothing is reported, m/s.
     slowest: f32,
     /// Motion before the step of every body that was awake, by its arena index.
     before: &'a [BodyMotion],
@@ -65,7 +65,7 @@ impl<'a> ContactCollector<'a> {
         }
     }
 
-    /// The step's reports in an order that does not depend on rapier's order of pairs.
+    /// Returns the step's reports in an order that does not depend on rapier's order of pairs.
     pub(crate) fn reports(self) -> Vec<ContactReport> {
         let mut reports = self
             .reports
@@ -126,7 +126,7 @@ impl<'a> ContactCollector<'a> {
                 };
             }
         }
-        // Seen from the thing that sorts first.
+        // Seen from the entity that sorts first.
         if touch_a > touch_b {
             report.pressed = -report.pressed;
             report.pushed.swap(0, 1);
@@ -134,7 +134,7 @@ impl<'a> ContactCollector<'a> {
         (report.impulse > 0.0).then_some(report)
     }
 
-    /// Returns what contacts pushed into the body of a collider in the step, N·s.
+    /// Returns the contact impulse on the body of a collider in the step, N·s.
     fn pushed(
         &self,
         bodies: &RigidBodySet,

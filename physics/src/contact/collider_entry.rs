@@ -6,7 +6,7 @@ use rapier3d::geometry::Collider;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// A thing that touches another.
+/// An entity in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactEntity {
@@ -26,7 +26,7 @@ pub(crate) enum ContactClasses {
 }
 
 impl ContactClasses {
-    /// The class at a triangle of the shape; `subshape` is ignored where there is one class.
+    /// Returns the class at a triangle of the shape; `subshape` is ignored where there is one class.
     pub(crate) fn class(&self, subshape: u32) -> u16 {
         match self {
             Self::Uniform(class) => *class,
@@ -38,7 +38,7 @@ impl ContactClasses {
         }
     }
 
-    /// Returns whether some class of the surface is such.
+    /// Returns whether `is` holds for some class of the surface.
     pub(crate) fn any_class(&self, is: impl Fn(u16) -> bool) -> bool {
         match self {
             Self::Uniform(class) => is(*class),
@@ -79,7 +79,7 @@ impl ColliderEntry {
     }
 }
 
-/// The number of the entry that a collider stands for.
+/// Returns the index of a collider's entry.
 pub(crate) fn entry_index(collider: &Collider) -> usize {
     collider.user_data as usize
 }

@@ -1,4 +1,4 @@
-//! Laws of contacts: what they see where two things touch, and what they change there.
+//! Laws of contacts: their inputs at a contact, and the values that they change.
 
 use super::collider_entry::ContactEntity;
 use super::scope::ContactScope;
@@ -7,7 +7,7 @@ use std::fmt::Debug;
 
 /// A law that changes the values of contacts before they are solved.
 pub(crate) trait ContactLaw: Debug + Send + Sync {
-    /// Returns the contacts whose values it changes.
+    /// Returns the contacts that it changes.
     fn scope(&self) -> &ContactScope;
 
     /// Changes the values of one contact plane (one manifold) within the scope, before it is solved. rapier has one
@@ -25,8 +25,8 @@ pub(crate) struct ContactSide<'a> {
     pub(crate) rotation: Quat,
 }
 
-/// Two surfaces that touch or are about to, at the beginning of a physics step. The surface is what the law's target names
-/// first; without a name, structure comes before things and things stand in order.
+/// Two surfaces that touch or are about to, at the beginning of a physics step. The surface is the side that the law's
+/// target names first; without a name, structure comes before objects, and objects are in order.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LawContact<'a> {
     pub(crate) surface: ContactSide<'a>,
@@ -34,24 +34,24 @@ pub(crate) struct LawContact<'a> {
     pub(crate) other: ContactSide<'a>,
     /// From the surface to the other, unit length.
     pub(crate) normal: Vec3,
-    /// The velocity of the other against the surface at the middle of the plane's points, m/s.
+    /// Velocity of the other relative to the surface at the middle of the plane's points, m/s.
     pub(crate) relative_velocity: Vec3,
     /// The friction impulse on the other in the last substep, N·s.
     pub(crate) friction_impulse_n_s: Vec3,
 }
 
 impl LawContact<'_> {
-    /// Returns how fast the two approach, m/s; negative when they part.
+    /// Returns the approach speed of the two, m/s; negative when they part.
     pub(crate) fn approach_speed_m_s(&self) -> f32 {
         -self.relative_velocity.dot(self.normal)
     }
 
-    /// Returns how the other slides over the surface, m/s.
+    /// Returns the slip velocity of the other over the surface, m/s.
     pub(crate) fn slip(&self) -> Vec3 {
         self.relative_velocity + self.normal * self.approach_speed_m_s()
     }
 
-    /// The same seen from the other side.
+    /// Returns the same seen from the other side.
     pub(crate) fn turned(self) -> Self {
         Self {
             surface: self.other,
@@ -68,6 +68,6 @@ impl LawContact<'_> {
 pub(crate) struct ContactValues {
     pub(crate) friction: f32,
     pub(crate) restitution: f32,
-    /// The slip towards which friction drives, m/s: as of a conveyor belt. 0 where no law says otherwise.
+    /// Target slip velocity of friction, m/s: as of a conveyor belt. 0 unless a law sets it.
     pub(crate) surface_velocity: Vec3,
 }

@@ -8,8 +8,8 @@ use rapier3d::geometry::{ColliderSet, NarrowPhase};
 /// Least upward component of a normal that supports: the cosine of 60 degrees.
 const CARRIES: f32 = 0.5;
 
-/// All pairs of parts, and of parts with the structure, that stand at most `distance_m` apart, with their bodies; for each pair
-/// of pieces that touch.
+/// Returns all pairs of parts, and of parts with the structure, that are at most `distance_m` apart, with their bodies; for
+/// each pair of pieces that touch.
 pub(crate) fn touching(
     narrow_phase: &NarrowPhase,
     colliders: &ColliderSet,
@@ -70,7 +70,7 @@ pub(crate) fn touching(
     out
 }
 
-/// The same seen from the other side.
+/// Returns the same seen from the other side.
 fn turned(rest: SupportRelation) -> SupportRelation {
     match rest {
         SupportRelation::Beside => SupportRelation::Beside,

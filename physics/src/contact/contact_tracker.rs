@@ -1,4 +1,4 @@
-//! Contacts that go on: blows that take a few steps, and pairs that slide or roll.
+//! Contacts over several steps: impacts that take a few steps, and pairs that slide or roll.
 
 use super::body_motion::BodyMotion;
 use super::collector::ContactReport;
@@ -44,9 +44,9 @@ struct ContactAccumulator {
     moment: Vec3,
     /// Sum of slip speed times impulse.
     slip: f32,
-    /// Sum over the steps of how fast the place of contact moved.
+    /// Sum over the steps of the contact point's speed.
     travel: f32,
-    /// The place of contact in the last step.
+    /// The contact point in the last step.
     place: Vec3,
     classes: (u16, u16),
 }
@@ -70,15 +70,15 @@ pub(crate) struct ContactTracker {
 }
 
 impl ContactTracker {
-    /// Nothing has begun that would still be told.
+    /// Drops events in progress.
     pub(crate) fn forget_events(&mut self) {
         self.impacts.clear();
         self.touching.clear();
         self.moving.clear();
     }
 
-    /// Notes which bodies the last step stopped on their way: rapier moves what is fast no further than a little into a
-    /// surface, and the rest of its step is lost.
+    /// Records the bodies that the last step stopped on their way: rapier moves fast bodies only a little into a surface,
+    /// and the rest of their step is lost.
     pub(crate) fn note_held_back(
         &mut self,
         engine: &RapierWorld,
@@ -98,7 +98,7 @@ impl ContactTracker {
         }
     }
 
-    /// Adds a physics step's reports; impacts that are over go to `out`. `rebounds`: what was added to the pairs' normal
+    /// Adds a physics step's reports; impacts that ended go to `out`. `rebounds`: impulses added to the pairs' normal
     /// impulses, N·s.
     pub(crate) fn settle(
         &mut self,
@@ -139,7 +139,7 @@ impl ContactTracker {
     }
 
     fn hit(&mut self, pair: ContactPair, group: &[ContactReport], begin_s: f64, dt_s: f32) {
-        // The solver may stop a thing shortly before it touches, or after a step in which it passed a little.
+        // The solver may stop a body shortly before it touches, or after a step in which it penetrated a little.
         let fastest = group.iter().max_by(|a, b| a.speed.total_cmp(&b.speed));
         let meets_s = fastest.map_or(0.0, |report| report.meets_s.clamp(-dt_s, 2.0 * dt_s));
         let impulse: f32 = group.iter().map(|report| report.impulse).sum();
@@ -186,14 +186,14 @@ impl ContactTracker {
             touching.tangential_n_s += report.tangential;
             touching.slip += report.slip;
         }
-        // The place of contact moves when a thing rolls, and jumps when pressure shifts under one that stands; what stands
+        // The contact point moves when a body rolls, and jumps when pressure shifts under a resting one; a resting body
         // does not pass by.
         let moved = before.map_or(passing, |before| (place - before).length() / dt_s);
         touching.travel += moved.min(passing);
         touching.place = place;
     }
 
-    /// Tells what slid and rolled in a control step that ends at `tick`.
+    /// Emits the sliding and rolling of a control step that ends at `tick`.
     pub(crate) fn emit_events(
         &mut self,
         tick: u64,
@@ -246,7 +246,7 @@ impl ContactTracker {
 }
 
 impl ContactReport {
-    /// Makes its normal impulse `times` as strong.
+    /// Scales its normal impulse by `times`.
     fn scale(&mut self, times: f32) {
         let times = times.max(0.0);
         self.impulse *= times;
@@ -284,7 +284,7 @@ impl ContactAccumulator {
         self.travel / self.steps as f32
     }
 
-    /// Returns what it was; nothing when the two stood, rocked or hardly touched.
+    /// Returns its kind; `None` when the two rested, rocked or hardly touched.
     fn kind(&self, config: &PhysicsConfig) -> Option<ContactKind> {
         if self.impulse_n_s < config.event_min_impulse_n_s {
             return None;

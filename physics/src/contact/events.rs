@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactKind {
-    /// They hit.
+    /// An impact.
     Impact,
     /// One slides over the other.
     Scrape,
-    /// One rolls over the other: the place where they touch moves, and they hardly slip there.
+    /// One rolls over the other: the contact point moves, and there is hardly any slip.
     Roll,
 }
 
@@ -20,31 +20,31 @@ pub enum ContactKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactPhase {
-    /// All of it: an impact.
+    /// The whole event: an impact.
     Once,
-    /// A scrape or rolling that began in this control step.
+    /// Sliding or rolling that began in this control step.
     Begin,
-    /// One that went on in this control step.
+    /// Sliding or rolling that went on in this control step.
     Continue,
-    /// One that is over; impulse, force and speeds are 0.
+    /// The end of sliding or rolling; impulse, force and speeds are 0.
     End,
 }
 
-/// Two things that touched: an impact, or a control step of scraping or rolling.
+/// A contact event: an impact, or a control step of sliding or rolling.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ContactEvent {
     /// The kind of contact.
     pub kind: ContactKind,
     /// Begin, continuation or end.
     pub phase: ContactPhase,
-    /// Simulated time since the world was made, s. Impacts: when the surfaces met, within the physics step, from their gap
-    /// and approach. Others: the first physics step of this control step in which they did so, or after the last one.
+    /// Simulated time since the world was made, s. Impacts: the time at which the surfaces met, within the physics step,
+    /// from their gap and approach. Others: the first physics step of contact in this control step, or after the last one.
     pub time_s: f64,
     /// Its duration within this control step, s; 0 for impacts and ends.
     pub duration_s: f32,
     /// Position, m: the mean of the contact points, weighted by impulse.
     pub position: Vec3,
-    /// The thing that sorts first: structure, then parts, then agents, each by number.
+    /// The entity that sorts first: structure, then parts, then agents, each by number.
     pub a: ContactEntity,
     /// The other one.
     pub b: ContactEntity,
@@ -52,20 +52,20 @@ pub struct ContactEvent {
     pub substance_a: &'static str,
     /// The substance of `b` at the contact.
     pub substance_b: &'static str,
-    /// The friction coefficient of the two there, as overrides have it; laws may change what acts.
+    /// The friction coefficient of the two, with overrides; laws may change the value that acts.
     pub friction: f32,
-    /// The restitution of the two there, likewise.
+    /// The restitution of the two, likewise.
     pub restitution: f32,
     /// The sum of all normal impulses of the impact, or of this control step, N·s.
     pub impulse_n_s: f32,
     /// Friction impulse in the same time, N·s: the sum over its physics steps. It is exact for a body with no other contact
     /// in the step; otherwise estimated from its share of the normal impulse in the last substep.
     pub tangential_impulse_n_s: f32,
-    /// Impacts: how fast they approached along the normal, m/s; at least 0. Others: 0.
+    /// Impacts: approach speed along the normal, m/s; at least 0. Others: 0.
     pub relative_normal_speed_m_s: f32,
     /// Slip speed at the contact, m/s: at the beginning of an impact, the mean of sliding or rolling.
     pub relative_tangential_speed_m_s: f32,
-    /// Rolling: how fast the place of contact moved, m/s; else 0.
+    /// Rolling: speed of the contact point, m/s; else 0.
     pub rolling_speed_m_s: f32,
 }
 
@@ -89,7 +89,7 @@ impl ContactEvent {
     }
 }
 
-/// Events of a control step beyond its limit, which are not told one by one.
+/// Events of a control step beyond its limit, which are merged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct MergedEvents {
     /// Number of events.
@@ -98,7 +98,7 @@ pub struct MergedEvents {
     pub impulse_n_s: f32,
 }
 
-/// Sorts the events from `first` on by time and pair, and keeps at most `most` of them: impacts before scrapes and rolling,
+/// Sorts the events from `first` on by time and pair, and keeps at most `most` of them: impacts before sliding and rolling,
 /// the strongest impulse first.
 pub(crate) fn bound(events: &mut Vec<ContactEvent>, first: usize, most: usize) -> MergedEvents {
     let new = &mut events[first..];

@@ -12,11 +12,11 @@ use rapier3d::geometry::ContactManifold;
 use std::collections::BTreeSet;
 
 impl FrictionStorage {
-    /// The friction of a plane in the last substep, N·s, on its first body.
+    /// Returns the friction of a plane in the last substep, N·s, on its first body.
     pub(super) fn last(self, plane: &ContactManifold) -> Vec3 {
         let each = points(plane).map(|(_, point)| point.warmstart_tangent_world);
         if self.by_patch {
-            // A point that is new holds none yet.
+            // A new point holds none yet.
             each.fold(Vec3::ZERO, |most, one| {
                 if one.length_squared() > most.length_squared() {
                     one
@@ -29,7 +29,7 @@ impl FrictionStorage {
         }
     }
 
-    /// The friction of a plane in a run of rapier, N·s, when it was to the normal impulse as in the last substep.
+    /// Estimates the friction of a plane in a run of rapier, N·s, at the ratio to the normal impulse of the last substep.
     pub(super) fn estimate(self, plane: &ContactManifold) -> f32 {
         let (mut all, mut last) = (0.0, 0.0);
         for (_, point) in points(plane) {
@@ -45,9 +45,9 @@ impl FrictionStorage {
     }
 }
 
-/// Puts the friction that a body's momentum tells in the place of estimates. `reports`: of one run, sorted by pair.
+/// Replaces estimates by the friction that a body's change of momentum gives. `reports`: of one run, sorted by pair.
 pub(super) fn whole(reports: &mut [ContactReport]) {
-    // Bodies that more than one thing touches.
+    // Bodies with more than one contact partner.
     let (mut touched, mut shared) = (BTreeSet::new(), BTreeSet::new());
     let number = |(body, _): (RigidBodyHandle, Vec3)| body.into_raw_parts();
     for group in reports.chunk_by(|a, b| a.pair == b.pair) {

@@ -20,12 +20,12 @@ use std::sync::Arc;
 /// Distance below which two points of a contact plane are one, m.
 const SAME_POINT_M: f32 = 0.002;
 
-/// Pairs that do not meet.
+/// Pairs excluded from collision.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CollisionExclusions {
-    /// A body and an entry, sorted: what a door's leaf overlaps where it stands shut.
+    /// A body and an entry, sorted: the things that a door's leaf overlaps when closed.
     pub(crate) entries: Vec<(u32, u32)>,
-    /// A body and the agent that holds it or has just let go of it, sorted.
+    /// A body and the agent that holds it or has just released it, sorted.
     pub(crate) carriers: Vec<(u32, AgentId)>,
 }
 
@@ -54,7 +54,7 @@ impl CollisionExclusions {
     }
 }
 
-/// The values of colliders: the table's, and what laws make of them.
+/// The contact values of colliders: the table's, and laws' changes of them.
 #[derive(Clone, Copy)]
 pub(crate) struct ContactProperties<'a> {
     pub(crate) house: &'a House,
@@ -65,7 +65,7 @@ pub(crate) struct ContactProperties<'a> {
 }
 
 impl ContactProperties<'_> {
-    /// The values of a collider on itself, for rapier's own rule, and whether rapier asks about its pairs instead.
+    /// Returns the values of a collider on itself, for rapier's own rule, and whether rapier asks the hook about its pairs instead.
     pub(crate) fn rule(&self, entry: &ColliderEntry) -> (PairContact, bool) {
         let (mut own, mut special) = self.table.rule(&entry.surface);
         if self.soft {
@@ -144,8 +144,8 @@ impl PhysicsHooks for ContactHooks<'_> {
     }
 }
 
-/// Keeps the deepest of points that are one: a ball on the common edge of two triangles touches both, and as many springs
-/// are as many times as stiff.
+/// Merges coincident points, keeping the deepest: a ball on the common edge of two triangles touches both, and several
+/// springs in one point multiply its stiffness.
 fn merge_coincident_points(contacts: &mut SolverContacts) {
     let same = |a: &SolverContact, b: &SolverContact| {
         a.anchor1.distance_squared(b.anchor1) < SAME_POINT_M * SAME_POINT_M
@@ -193,7 +193,7 @@ impl ContactHooks<'_> {
             other: b,
             normal: *plane.normal,
             relative_velocity: velocity(body_b) - velocity(body_a),
-            // rapier keeps what acts on the first body.
+            // rapier keeps the impulse on the first body.
             friction_impulse_n_s: -self.kept.last(plane.manifold),
         };
         let mut values = ContactValues {

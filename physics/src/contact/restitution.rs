@@ -17,12 +17,12 @@ use std::collections::BTreeMap;
 
 /// Sweeps over the points of a step's impacts: a box that lands on a face has four, and each changes the others.
 const SWEEPS: usize = 16;
-/// Trials of how much of a rebound the energy allows.
+/// Bisection steps for the share of a rebound that the energy allows.
 const HALVINGS: usize = 8;
 /// Relative energy gain that rounding can feign.
 const ROUNDING: f32 = 1e-5;
 
-/// A point in which a body hit something in a step.
+/// A point at which a body hit something in a step.
 struct ImpactPoint {
     pair: (ContactEntity, ContactEntity),
     /// The first and the second body.
@@ -37,20 +37,20 @@ struct ImpactPoint {
     added: f32,
 }
 
-/// One of two bodies at a point where they hit.
+/// One of two bodies at an impact point.
 struct ImpactSide {
     body: Option<RigidBodyHandle>,
     /// From its centre of mass to the point, m: as rapier has it, at the beginning of the step.
     arm: Vec3,
-    /// The direction in which it is pushed.
+    /// The direction of the impulse on it.
     way: Vec3,
     /// The point on its kinematic tree, if joints move it.
     joined: Option<TreeImpactPoint>,
 }
 
-/// A point of a tree at which it is struck.
+/// An impact point on a kinematic tree.
 struct TreeImpactPoint {
-    /// The place of the tree among those that are struck.
+    /// Index among the trees of the impact.
     tree: usize,
     point: ImpulsePoint,
     /// The point at which rapier applied its impulse.
@@ -69,7 +69,7 @@ pub(crate) struct RestitutionResult {
 struct FreeFlightImpact {
     body: RigidBodyHandle,
     hits: Vec<ImpactPoint>,
-    /// Its energy before it hit, J; `None` where what it hit may give it some.
+    /// Its energy before the impact, J; `None` where the other body may transfer energy to it.
     max_energy_j: Option<f32>,
 }
 
@@ -80,15 +80,15 @@ pub(crate) struct RestitutionContext<'a> {
     pub(crate) entries: &'a [ColliderEntry],
     pub(crate) trees: &'a [KinematicTree],
     pub(crate) joints: &'a [PhysicsJoint],
-    /// The numbers of each joint before the step.
+    /// Each joint's coordinates before the step.
     pub(crate) joints_before: &'a [JointCoordinate],
     /// Length of the step, s.
     pub(crate) dt_s: f32,
 }
 
 impl RestitutionContext<'_> {
-    /// Corrects how bodies bounce that flew freely into something in the last step. `joint_coordinates`: the numbers of each of the world's
-    /// joints.
+    /// Corrects the rebounds of bodies that hit something in free flight in the last step. `joint_coordinates`: the
+    /// coordinates of each of the world's joints.
     pub(crate) fn correct(
         &self,
         engine: &mut RapierWorld,
@@ -98,7 +98,7 @@ impl RestitutionContext<'_> {
         let mut added = BTreeMap::new();
         let mut struck: Vec<ImpulseDynamics> = Vec::new();
         for (index, body) in landed.iter().enumerate() {
-            // Of two that flew into each other the second one counts the points.
+            // For two bodies in free flight that hit each other, the second one counts the points.
             let later = &landed[index + 1..];
             let Some(mut landing) =
                 self.landing(engine, *body, later, (&mut struck, joint_coordinates))
@@ -117,7 +117,7 @@ impl RestitutionContext<'_> {
         RestitutionResult { added, placed }
     }
 
-    /// Returns what a body hit, apart from those `later`; `None` where nothing bounces.
+    /// Returns the impacts of a body, apart from those with `later`; `None` where nothing bounces.
     fn landing(
         &self,
         engine: &RapierWorld,
@@ -174,7 +174,7 @@ impl RestitutionContext<'_> {
                 let meets_s = approach.meets_s.clamp(0.0, self.dt_s);
                 let sides = [(0, &two), (1, &one)].map(|(side, other)| {
                     let way = if side == 0 { normal } else { -normal };
-                    // Where the other one is when they meet; rapier pushed where it was when the step began.
+                    // Position of the other one when they meet; rapier applied its impulse at its position when the step began.
                     let ahead = other.center_after(meets_s) - other.center;
                     let joined = bodies[side].and_then(|body| {
                         let tree = self.struck(engine, body, (&mut *struck, joint_coordinates))?;
@@ -218,7 +218,7 @@ impl RestitutionContext<'_> {
         }
     }
 
-    /// The place of a body's tree among those that are struck; `None` for a body that hangs on no joint.
+    /// Returns the index of a body's tree among those of the impact; `None` for a body without a joint.
     fn struck(
         &self,
         engine: &RapierWorld,
@@ -240,7 +240,7 @@ impl RestitutionContext<'_> {
         })
     }
 
-    /// Returns how fast two surfaces part where they stand after the step, m/s; 0 for those that had not been apart.
+    /// Returns the separation speed of two surfaces after the step, m/s; 0 for those that were in contact before.
     fn parting(
         &self,
         engine: &RapierWorld,
@@ -254,7 +254,7 @@ impl RestitutionContext<'_> {
         }
         let normal = plane.data.normal;
         let pull = (bodies[0].1.gravity - bodies[1].1.gravity).dot(normal);
-        // What gravity takes on the way from where they met, however far rapier let them go on.
+        // The velocity that gravity adds since they met, however far rapier moved them after that.
         let [one, two] = bodies.map(|(body, motion)| {
             body.and_then(|body| engine.bodies.get(body))
                 .filter(|_| motion.known)
@@ -268,8 +268,8 @@ impl RestitutionContext<'_> {
 }
 
 impl FreeFlightImpact {
-    /// Lets the body bounce. The restitution of several points that hit together, with friction between, may ask for more
-    /// energy than there was (Kane's paradox): then they part more slowly, all by the same share.
+    /// Applies the rebound. The restitution of several points that hit together, with friction between, may need more
+    /// energy than there was (Kane's paradox): then all part more slowly, by the same share.
     ///
     /// # Source
     /// T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications (1985), on collisions with friction under Newton's law of
@@ -300,7 +300,7 @@ impl FreeFlightImpact {
             for hit in &mut self.hits {
                 hit.added = 0.0;
             }
-            // The last one is one that is known to be within.
+            // The last share is known to be within the bound.
             let share = if trial == HALVINGS {
                 low
             } else {
@@ -315,7 +315,7 @@ impl FreeFlightImpact {
         }
     }
 
-    /// Moves what rapier pushed at trees to where they were struck.
+    /// Moves rapier's impulses on trees to the impact points.
     fn shift(&self, struck: &mut [ImpulseDynamics]) {
         for hit in self.hits.iter().filter(|hit| hit.parting > 0.0) {
             for joined in hit.sides.iter().filter_map(|side| side.joined.as_ref()) {
@@ -326,7 +326,7 @@ impl FreeFlightImpact {
         }
     }
 
-    /// Sweeps over the points until they part with a share of their speeds.
+    /// Iterates over the points until they part with a share of their speeds.
     fn part(&mut self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], share: f32) {
         for _ in 0..SWEEPS {
             for hit in &mut self.hits {
@@ -344,11 +344,11 @@ impl FreeFlightImpact {
 }
 
 impl ImpactPoint {
-    /// Gives the two bodies a share of the speed at which they are to part.
+    /// Gives the two bodies a share of their required separation speed.
     fn solve(&mut self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], share: f32) {
         let [one, two] = [0, 1].map(|side: usize| self.sides[side].speed(engine, struck));
         let lacks = self.parting * share - (one + two);
-        // A point that does not bounce is kept from sinking in, and not held.
+        // A point that does not bounce is kept from penetrating, and not held.
         let least = if self.parting > 0.0 {
             -self.pushed
         } else {
@@ -364,7 +364,7 @@ impl ImpactPoint {
 }
 
 impl ImpactSide {
-    /// Returns how fast it goes in its direction, m/s.
+    /// Returns its speed in its direction, m/s.
     fn speed(&self, engine: &RapierWorld, struck: &[ImpulseDynamics]) -> f32 {
         if let Some(joined) = &self.joined {
             return struck[joined.tree].speed(&joined.point) as f32;
@@ -375,7 +375,7 @@ impl ImpactSide {
         })
     }
 
-    /// Returns how fast it goes after 1 N·s in its direction, m/s.
+    /// Returns its inverse effective mass: its speed after 1 N·s in its direction, m/s.
     fn inverse_effective_mass(&self, engine: &RapierWorld) -> f32 {
         match (&self.joined, self.body) {
             (Some(joined), _) => joined.point.inverse_effective_mass() as f32,
@@ -384,7 +384,7 @@ impl ImpactSide {
         }
     }
 
-    /// Pushes it in its direction, N·s.
+    /// Applies an impulse in its direction, N·s.
     fn push(&self, engine: &mut RapierWorld, struck: &mut [ImpulseDynamics], impulse: f32) {
         if let Some(joined) = &self.joined {
             struck[joined.tree].push(&joined.point, impulse.into());
@@ -402,15 +402,15 @@ fn parent(engine: &RapierWorld, collider: ColliderHandle) -> Option<RigidBodyHan
     engine.colliders.get(collider).and_then(Collider::parent)
 }
 
-/// Returns whether a push moves a body: not what stands, sleeps, is led or hangs on joints.
+/// Returns whether an impulse moves a body: no fixed, sleeping, kinematic or jointed one.
 fn moves(engine: &RapierWorld, body: RigidBodyHandle) -> bool {
     let loose = engine.joints.attached_joints(body).next().is_none();
     let rigid = engine.bodies.get(body);
     loose && rigid.is_some_and(|rigid| rigid.is_dynamic() && !rigid.is_sleeping())
 }
 
-/// Returns how fast a point of a body goes along a direction after 1 N·s along it, m/s. `turn`: of the arm to the point with the
-/// direction.
+/// Returns the speed of a body's point along a direction after 1 N·s along it, m/s. `turn`: cross product of the arm to the
+/// point with the direction.
 fn inverse_effective_mass(engine: &RapierWorld, body: RigidBodyHandle, turn: Vec3) -> f32 {
     let Some(rigid) = engine.bodies.get(body).filter(|_| moves(engine, body)) else {
         return 0.0;

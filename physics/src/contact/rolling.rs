@@ -1,8 +1,8 @@
 //! Contacts of rolling cylinders.
 //!
-//! Where a cylinder lies on something flat, the general search for nearest points finds the line of contact only to a tenth
-//! of a radian (its distance hardly changes there), and with it a normal that leans: a cart on such wheels jerks, and stops
-//! on a slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
+//! For a cylinder on a flat surface, the general search for nearest points finds the line of contact only to a tenth of a
+//! radian (its distance hardly changes there), and with it a tilted normal: a cart on such wheels jerks, and stops on a
+//! slope. While a cylinder turns about its axis, its line of contact is computed from the flat face instead.
 
 use super::collider_entry::{ColliderEntry, entry_index};
 use crate::body::BodyHandle;
@@ -17,12 +17,12 @@ use rapier3d::pipeline::{ActiveHooks, ModifiableManifold};
 const LYING: f32 = 0.2;
 /// Cosine of the largest angle between the normal found and a face's own.
 const SAME_WAY: f32 = 0.99;
-/// Points of contact ride with the side up from the face, by `r (1 - cos w t)` in a step; rapier knows a drift at a steady
-/// rate only. This share of the way at the end of a step keeps it nearest over all substeps.
+/// Contact points move with the side up from the face, by `r (1 - cos w t)` in a step; rapier knows a drift at a steady
+/// rate only. This share of the displacement at the end of a step keeps the error smallest over all substeps.
 const LIFTED: f32 = 0.75;
 
-/// Lets rapier ask about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times. Returns
-/// whether that changed.
+/// Makes rapier ask the hook about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times.
+/// Returns whether that changed.
 pub(crate) fn set_rolling_hook(
     engine: &mut RapierWorld,
     rolls: bool,
@@ -52,8 +52,8 @@ pub(crate) fn set_rolling_hook(
     true
 }
 
-/// Lets rapier ask about what rolled at the moment of a snapshot. `built`: the world as it is built again, with its bodies in
-/// order and its entries; `bodies`: those of the snapshot.
+/// Makes rapier ask the hook about the cylinders that rolled at the time of a snapshot. `built`: the rebuilt world, with
+/// its bodies in order and its entries; `bodies`: those of the snapshot.
 pub(crate) fn resume(
     rollers: &[RollingCylinder],
     built: (&mut RapierWorld, &[BodyHandle], &[ColliderEntry]),
@@ -71,8 +71,8 @@ pub(crate) fn resume(
     }
 }
 
-/// Puts the contacts of a cylinder that lies on something flat where they are, and the normal upright. `turns`: how fast the
-/// first and the second body turn, rad/s.
+/// Moves the contacts of a cylinder on a flat surface to its line of contact, and makes the normal upright. `turns`:
+/// angular velocities of the first and second body, rad/s.
 pub(super) fn correct_line_contact(
     plane: &mut ModifiableManifold<'_>,
     (one, two): (&Collider, &Collider),
@@ -123,7 +123,7 @@ pub(super) fn correct_line_contact(
     *plane.normal = if first { way } else { -way };
 }
 
-/// The normal and a point of the face of a shape that looks along `wanted`, in the world; `None` where none does.
+/// Returns the normal and a point of a shape's face that is directed along `wanted`, in the world; `None` without one.
 fn face(collider: &Collider, wanted: Vec3, subshape: u32) -> Option<(Vec3, Vec3)> {
     let place = collider.position();
     let looks = place.rotation.inverse() * wanted;

@@ -49,9 +49,9 @@ impl NamedContactTarget {
     }
 }
 
-/// The contacts that a law shapes. A target is `NAME` (all contacts of what it names) or `NAME~NAME` (those between the
-/// two, in either order); a name is that of an object, of a piece of the structure or of a substance of the materials
-/// library. No target: all contacts.
+/// The contacts that a law changes. A target is `NAME` (all contacts of the thing) or `NAME~NAME` (those between the two,
+/// in either order); a name is that of an object, of a piece of the structure or of a substance of the materials library.
+/// No target: all contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ContactScope {
     one: Option<NamedContactTarget>,
@@ -79,7 +79,7 @@ impl ContactScope {
                 PhysicsError::no_target(info.id, kind, name, objects.chain(structure))
             })
         };
-        // An object's own name may hold the sign.
+        // An object's own name may contain the separator.
         if let Some(whole) = NamedContactTarget::of(house, target) {
             return Ok(Self {
                 one: Some(whole),
@@ -98,7 +98,7 @@ impl ContactScope {
         })
     }
 
-    /// Returns whether rapier must ask about the pairs of a collider.
+    /// Returns whether rapier must ask the hook about the pairs of a collider.
     pub(crate) fn asks(&self, house: &House, table: &ContactTable, entry: &ColliderEntry) -> bool {
         let Some(one) = &self.one else {
             return entry.body.is_some();
@@ -107,7 +107,7 @@ impl ContactScope {
         entry.surface.any_class(made_of) || one.is_thing(house, entry.toucher)
     }
 
-    /// Returns whether a contact is within, and if so, whether `b` is the surface and not `a`.
+    /// Returns whether a contact is within the scope, and if so, whether `b` is the surface and not `a`.
     pub(crate) fn turns(
         &self,
         house: &House,

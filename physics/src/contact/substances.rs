@@ -1,4 +1,4 @@
-//! Friction and restitution of every pair that can meet in a house, looked up without a string in the step.
+//! Friction and restitution of every pair of substances in a house, looked up in a step without strings.
 
 use super::collider_entry::ContactClasses;
 use crate::model::MaterialAssignment;
@@ -16,9 +16,9 @@ struct ContactClass {
 
 /// The contact behaviour of all pairs of classes in a house.
 ///
-/// Friction and restitution of a pair are what `State::pair_contact` says for the two substances, bit for bit. Where a
-/// world overrides `material/NAME/friction` or `/restitution`, and not the pair, the geometric mean with the overridden
-/// value holds, as the materials table defines it for pairs without a row of their own.
+/// Friction and restitution of a pair are those of `State::pair_contact` for the two substances, bit for bit. Where a world
+/// overrides `material/NAME/friction` or `/restitution`, and not the pair, the geometric mean with the overridden value
+/// holds, as the materials table defines it for pairs without a row of their own.
 #[derive(Clone, Debug)]
 pub(crate) struct ContactTable {
     classes: Vec<ContactClass>,
@@ -27,7 +27,7 @@ pub(crate) struct ContactTable {
     human: u16,
     /// Shape (class, class).
     pairs: Vec<PairContact>,
-    /// The value with itself under the geometric mean. Shape (class,).
+    /// The value of a class with itself under the geometric mean. Shape (class,).
     own: Vec<PairContact>,
     /// Set for classes whose pairs rapier asks the hook about. Of two classes whose pair differs from the geometric mean,
     /// at least one is set. Shape (class,).
@@ -43,7 +43,7 @@ fn overridden(state: &State, address: &str) -> Option<f32> {
 }
 
 fn mean(a: f32, b: f32) -> f32 {
-    // As rapier's `GeometricMean` rule and the library write it, so that the bits agree.
+    // As in rapier's `GeometricMean` rule and the library, so that the bits agree.
     (a.max(0.0) * b.max(0.0)).sqrt()
 }
 
@@ -120,7 +120,7 @@ impl ContactTable {
         }
     }
 
-    /// The class or classes of a piece.
+    /// Returns the class or classes of a piece.
     pub(crate) fn surface(&self, cover: &MaterialAssignment) -> ContactClasses {
         let class = |material: Option<MaterialId>| {
             material.map_or(self.unknown, |material| self.class_of_material[material])
@@ -134,17 +134,17 @@ impl ContactTable {
         }
     }
 
-    /// The class of an agent's body.
+    /// Returns the class of an agent's body.
     pub(crate) fn human(&self) -> ContactClasses {
         ContactClasses::Uniform(self.human)
     }
 
-    /// The values between two classes.
+    /// Returns the values between two classes.
     pub(crate) fn pair(&self, a: u16, b: u16) -> PairContact {
         self.pairs[usize::from(a) * self.classes.len() + usize::from(b)]
     }
 
-    /// The values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
+    /// Returns the values of a surface on itself, for rapier's own rule, and whether its pairs need a look-up instead.
     pub(crate) fn rule(&self, surface: &ContactClasses) -> (PairContact, bool) {
         match surface {
             ContactClasses::Uniform(class) => {
@@ -160,13 +160,13 @@ impl ContactTable {
         self.classes != other.classes || self.pairs != other.pairs
     }
 
-    /// The substance of a class.
+    /// Returns the substance of a class.
     pub(crate) fn substance(&self, class: u16) -> &'static str {
         self.classes[usize::from(class)].substance
     }
 }
 
-/// Returns how many pieces of the house have each class.
+/// Returns the number of the house's pieces in each class.
 fn usage(house: &House, class_of_material: &IdVec<MaterialId, u16>, count: usize) -> Vec<usize> {
     let mut usage = vec![0; count];
     let parts = house.parts.iter().map(|part| &part.materials);
@@ -178,8 +178,8 @@ fn usage(house: &House, class_of_material: &IdVec<MaterialId, u16>, count: usize
     usage
 }
 
-/// Classes of which every exception has one, the rarer of the two: a pair that rapier asks about is computed anew in every
-/// step, so that fewer are better.
+/// Returns classes such that every exception contains one, the rarer of the two: contacts of a pair with a hook are
+/// computed anew in every step, so that fewer are better.
 fn cover(exceptions: &[(usize, usize)], usage: &[usize]) -> Vec<bool> {
     let mut covered = vec![false; usage.len()];
     for (i, j) in exceptions {

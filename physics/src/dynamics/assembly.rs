@@ -1,4 +1,4 @@
-//! Making the rigid bodies and colliders of a house.
+//! Construction of the rigid bodies and colliders of a house.
 
 use crate::body::{self, BodyHandle, BodyStatus, body_type};
 use crate::config::ResolvedConfig;
@@ -32,7 +32,7 @@ impl BodyMasses {
     }
 }
 
-/// The parts of a world that its shapes make up.
+/// The parts of a world that follow from its shapes.
 pub(crate) struct AssembledWorld {
     pub(crate) engine: RapierWorld,
     pub(crate) entries: Vec<ColliderEntry>,
@@ -40,11 +40,11 @@ pub(crate) struct AssembledWorld {
     pub(crate) anchor: RigidBodyHandle,
 }
 
-/// The bodies that never move: the house, and what joints hang on.
+/// Number of fixed bodies: the house, and the anchor of joints.
 const STANDING: usize = 2;
 
-/// Inserts the pieces of a house: statics, then bodies in order, at the given places. `sizes`: gravity, m/s², how many agents will
-/// come, and how many pairs the pieces make.
+/// Inserts the pieces of a house: statics, then bodies in order, at the given poses. `sizes`: gravity, m/s², the number of
+/// agents to come, and the number of pairs of the pieces.
 pub(crate) fn assemble(
     model: &PhysicsModel,
     settings: &ResolvedConfig,
@@ -87,7 +87,7 @@ pub(crate) fn assemble(
     }
 }
 
-/// Returns what is common to all colliders: the pair rule that has the materials table's bits, and who asks for a look-up.
+/// Sets the properties common to all colliders: the pair rule with the materials table's bits, and whether the hook is asked.
 pub(crate) fn set_contact_properties(
     builder: ColliderBuilder,
     (own, special): (PairContact, bool),
@@ -106,7 +106,7 @@ pub(crate) fn set_contact_properties(
         .user_data(index as u128)
 }
 
-/// Inserts everything that never moves and returns the entries.
+/// Inserts all static pieces and returns the entries.
 pub(crate) fn insert_statics(
     engine: &mut RapierWorld,
     model: &PhysicsModel,
@@ -139,7 +139,7 @@ pub(crate) fn insert_body(
     let mut builder = RigidBodyBuilder::new(body_type(place.hold))
         .pose(place.world_from_body)
         .can_sleep(place.sleeping_allowed)
-        // rapier brakes what turns by more than an eighth of a turn in a step: no wheel and no rotor.
+        // rapier brakes rotations by more than an eighth of a turn in a step, except of wheels and rotors.
         .allow_fast_rotation(plan.joint.is_some());
     if let Some(inertia) = &place.inertia {
         builder = builder
@@ -184,7 +184,7 @@ pub(crate) struct BodyPlacement<'a> {
     pub(crate) asks: bool,
 }
 
-/// The density of a collider, kg/m3: none where the body's mass and inertia are given as a whole.
+/// Returns the density of a collider, kg/m³: none where the body's mass and inertia are given as a whole.
 pub(crate) fn density(
     piece: &CollisionPiece,
     mass_factor: f32,
@@ -209,8 +209,8 @@ pub(crate) fn update_collider_properties(
     invalidate_contacts(collider);
 }
 
-/// Makes rapier compute a collider's contacts anew: it keeps the values, and the arms to the centres of mass, of contacts that
-/// hardly move, but not where a collider's groups changed.
+/// Makes rapier compute a collider's contacts anew: it keeps the values, and the arms to the centres of mass, of contacts
+/// that hardly move, but not where a collider's groups changed.
 pub(crate) fn invalidate_contacts(collider: &mut Collider) {
     let groups = collider.solver_groups();
     collider.set_solver_groups(InteractionGroups::none());

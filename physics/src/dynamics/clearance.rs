@@ -11,12 +11,12 @@ use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
 
-/// Surfaces below each other that are looked at.
+/// Most surfaces below each other that are searched.
 const MOST_LEVELS: usize = 24;
 /// Depth below a surface from which the search for the next one goes on, m.
 const THROUGH_M: f32 = 1e-3;
 
-/// Places between the hand and where a thing lies that are tried for it when it is taken.
+/// Positions between the hand and an object that are tried when it is picked up.
 const TRIES: u32 = 6;
 
 /// Treatment of contacts of a held object with its holder's body.
@@ -39,8 +39,8 @@ impl Dynamics {
         &self.entries[entry_index(collider)]
     }
 
-    /// The first thing between an eye and a point that a hand cannot get past: building, furniture, leaves. Loose things
-    /// and people are reached around.
+    /// Returns the first obstacle between an eye and a point that a hand cannot get past: building, furniture, leaves.
+    /// Hands reach around loose objects and agents.
     pub(crate) fn first_obstacle(&self, eye: Vec3, point: Vec3) -> Option<&ColliderEntry> {
         let barring = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entry_of(collider);
@@ -59,7 +59,7 @@ impl Dynamics {
         Some(self.entry_of(self.engine.colliders.get(handle)?))
     }
 
-    /// The first thing that a body would overlap under a pose.
+    /// Returns the first thing that a body would overlap under a pose.
     pub(crate) fn first_overlap(
         &self,
         body: usize,
@@ -103,8 +103,8 @@ impl Dynamics {
             .is_none()
     }
 
-    /// The heights of all level surfaces of `ground` under a point, at most `down_m` below it, from the highest, m.
-    /// `body` and people are looked through.
+    /// Returns the heights of all level surfaces of `ground` under a point, at most `down_m` below it, from the highest, m.
+    /// `body` and agents are ignored.
     pub(crate) fn support_heights(
         &self,
         body: usize,
@@ -147,8 +147,8 @@ impl Dynamics {
         levels
     }
 
-    /// The first place on the straight way from `to` back to `from` where a body overlaps nothing solid and is not
-    /// beyond a wall, seen from its holder's eye.
+    /// Returns the first position on the straight line from `to` back to `from` where a body overlaps nothing solid and is
+    /// not beyond a wall, seen from its holder's eye.
     pub(crate) fn clear_between(
         &self,
         body: usize,

@@ -1,4 +1,4 @@
-//! The rigid bodies of a world with their colliders, and the values with which they touch.
+//! The rigid bodies of a world with their colliders and contact values.
 
 mod assembly;
 mod clearance;
@@ -41,7 +41,7 @@ pub(crate) struct Dynamics {
 }
 
 impl Dynamics {
-    /// The number of the body that rapier knows by a handle.
+    /// Returns the index of the body with a rapier handle.
     pub(crate) fn body_of(&self, handle: RigidBodyHandle) -> Option<usize> {
         // They were inserted in order.
         let key = |body: &BodyHandle| body.handle.into_raw_parts();
@@ -64,7 +64,7 @@ impl Dynamics {
         self.engine.flush(&hooks);
     }
 
-    /// Lets rapier ask about the contacts of what rolls. Returns whether something began or ceased to roll.
+    /// Makes rapier ask the hook about the contacts of rolling cylinders. Returns whether some began or ceased to roll.
     pub(crate) fn update_rolling_contacts(&mut self) -> bool {
         let model = self.model.clone();
         let properties = self.laws.contact_properties(&model.house, &self.table);
@@ -87,7 +87,7 @@ impl Dynamics {
         changed
     }
 
-    /// Lets laws act on bodies before a physics step. `floating_roots`: bodies that joints hang on and that answer to these.
+    /// Applies laws to bodies before a physics step. `floating_roots`: free bodies that are roots of trees and react to their joints.
     pub(crate) fn apply_laws_before(&mut self, floating_roots: &[u32]) {
         let half = 0.5 * self.settings.dt_s;
         self.apply_laws(floating_roots, |law, stage| {
@@ -96,7 +96,7 @@ impl Dynamics {
         });
     }
 
-    /// Lets laws act on bodies after a physics step.
+    /// Applies laws to bodies after a physics step.
     pub(crate) fn apply_laws_after(&mut self, floating_roots: &[u32]) {
         let half = 0.5 * self.settings.dt_s;
         self.apply_laws(floating_roots, |law, stage| {
@@ -125,13 +125,13 @@ impl Dynamics {
         }
     }
 
-    /// Counts a physics step that was made.
+    /// Counts a completed physics step.
     pub(crate) fn count_step(&mut self) {
         self.tick += 1;
         self.engine.copy_pairs_at(self.tick);
     }
 
-    /// Returns what a person calls an object.
+    /// Returns the name of an object for people.
     pub(crate) fn name_of(&self, object: ObjectId) -> String {
         body::name_of(&self.model.house, object)
     }
@@ -145,7 +145,7 @@ impl Dynamics {
             .collect()
     }
 
-    /// The kinetic energy of everything that moves freely or on joints, J: that of the centres of mass and of the spins.
+    /// Returns the kinetic energy of all moving bodies, J: of their centres of mass and of their rotation.
     pub(crate) fn kinetic_energy_j(&self) -> f64 {
         self.bodies
             .iter()
@@ -156,7 +156,7 @@ impl Dynamics {
             .sum()
     }
 
-    /// The fastest point of any body, m/s.
+    /// Returns the speed of the fastest point of any body, m/s.
     pub(crate) fn fastest_m_s(&self) -> f32 {
         self.bodies
             .iter()
@@ -172,7 +172,7 @@ impl Dynamics {
 }
 
 impl ResolvedConfig {
-    /// Force from which rapier reports a contact, N.
+    /// Returns the force from which rapier reports a contact, N.
     pub(crate) fn event_force_n(&self) -> f32 {
         // An impact may be spread over a few steps.
         0.25 * self.config.event_min_impulse_n_s / self.dt_s

@@ -6,11 +6,11 @@ use crate::contact::touching;
 use dwell_scene::{Contact, State, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 
-/// Physics steps between two looks for what fell asleep: a quarter of a second at the default rate.
+/// Physics steps between transfers to the cache: a quarter of a second at the default rate.
 const TICKS_BETWEEN_LOOKS: u64 = 32;
 impl Dynamics {
-    /// Now and then lays aside what has fallen asleep since. `tick_before`: the tick at which the control step began;
-    /// `is_handled`: whether hands have to do with a body.
+    /// Periodically caches bodies that have fallen asleep. `tick_before`: the tick at which the control step began;
+    /// `is_handled`: whether a hand holds or has just released a body.
     pub(crate) fn cache_sleeping(&mut self, tick_before: u64, is_handled: impl Fn(usize) -> bool) {
         if tick_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
             return;
@@ -35,9 +35,9 @@ impl Dynamics {
         self.forget_pairs(&asleep);
     }
 
-    /// Forgets the pairs of bodies that no longer move with others that stand.
+    /// Drops the pairs of bodies that no longer move with other fixed ones.
     fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
-        // First they become known as standing, or what they touch would wake when the pairs go.
+        // They must first be known as fixed, or what they touch would wake when the pairs go.
         self.flush();
         self.engine.toggle_broad_phase_proxies(bodies, true);
         self.flush();
@@ -46,7 +46,7 @@ impl Dynamics {
         self.engine.shrink_pair_storage();
     }
 
-    /// Forgets the pairs that things made before they were shut or frozen, with others that stand.
+    /// Drops the pairs that bodies made before they were latched or frozen, with other fixed ones.
     pub(crate) fn forget_fixed_pairs(&mut self) {
         let stands = |(_, hold): &(&BodyHandle, &BodyStatus)| **hold != BodyStatus::Free;
         let bodies = self.bodies.iter().zip(&self.holds).filter(stands);
@@ -56,7 +56,7 @@ impl Dynamics {
         }
     }
 
-    /// Returns who touches whom among the pairs that rapier has.
+    /// Returns the contacts among the pairs that rapier has.
     fn current_contacts(&self) -> Vec<([RigidBodyHandle; 2], Contact)> {
         touching(
             &self.engine.narrow_phase,
@@ -66,7 +66,7 @@ impl Dynamics {
         )
     }
 
-    /// Writes who touches whom into the state: all pairs of parts, and of parts with the structure, each once, sorted.
+    /// Writes the contacts into the state: all pairs of parts, and of parts with the structure, each once, sorted.
     pub(crate) fn write_contacts(&self, state: &mut State) {
         let contacts = &mut state.contacts;
         contacts.clear();
@@ -76,7 +76,7 @@ impl Dynamics {
                 .map(|(_, contact)| contact),
         );
         contacts.extend(self.engine.sleeping_cache.contacts());
-        // A pair of parts may touch with several pieces: it is listed once, as carrying if any of them carries.
+        // A pair of parts may touch with several pieces: it is listed once, as supporting if any of them supports.
         contacts.sort_unstable_by_key(|contact| {
             (
                 contact.a,
@@ -87,7 +87,7 @@ impl Dynamics {
         contacts.dedup_by_key(|contact| (contact.a, contact.b));
     }
 
-    /// Returns whether a body that moves freely sleeps.
+    /// Returns whether a body is free and asleep.
     fn is_cacheable(&self, index: usize) -> bool {
         let rigid = self.engine.bodies.get(self.bodies[index].handle);
         self.holds[index] == BodyStatus::Free

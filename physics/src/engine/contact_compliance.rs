@@ -4,7 +4,7 @@ use crate::config::{ContactFriction, ResolvedConfig};
 use rapier3d::dynamics::{FrictionModel, IntegrationParameters, SpringCoefficients};
 use std::f64::consts::TAU;
 
-/// Contacts as springs with dampers.
+/// Contact compliance: a spring and damper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ContactCompliance {
     pub(crate) natural_frequency_hz: f32,
@@ -14,14 +14,14 @@ pub(crate) struct ContactCompliance {
 /// Natural frequency of contacts, as a share of the substep rate. A body sinks by g over its square: 0.04 mm at 4 substeps
 /// and 120 Hz.
 const CONTACT_FREQUENCY: f32 = 1.0 / 6.0;
-/// The same against what never moves.
+/// The same against static pieces.
 const STATIC_CONTACT_FREQUENCY: f32 = 0.25;
-/// Damping ratio of contacts, as rapier has it.
+/// Damping ratio of contacts, as in rapier.
 const CONTACT_DAMPING_RATIO: f32 = 10.0;
-/// The longest run of rapier under soft contacts, in radians of their oscillation: a body is noticed as touching up to a
-/// run late, which changes the energy of a bounce by up to this share.
+/// Longest run of rapier under compliant contacts, in radians of their oscillation: a contact is noticed up to a run late,
+/// which changes the energy of a bounce by up to this share.
 const LONGEST_RUN_RAD: f64 = 0.1;
-/// Sweeps over the contacts of a run, where rapier sweeps twice with 1 each.
+/// Solver iterations over the contacts of a run, where rapier has two with 1 each.
 const SOFT_SWEEPS: usize = 4;
 
 fn friction(settings: &ResolvedConfig) -> FrictionModel {
@@ -31,7 +31,7 @@ fn friction(settings: &ResolvedConfig) -> FrictionModel {
     }
 }
 
-/// Contacts as hard as the rate allows.
+/// Returns the stiffest contacts that the rate allows.
 pub(crate) fn rigid(settings: &ResolvedConfig) -> IntegrationParameters {
     let substeps = settings.config.solver_substeps as f32;
     let substep_hz = substeps / settings.dt_s;
@@ -50,18 +50,18 @@ pub(crate) fn rigid(settings: &ResolvedConfig) -> IntegrationParameters {
     }
 }
 
-/// Contacts that are springs with dampers, and how many runs of rapier, each shorter than a substep, a physics step takes.
+/// Returns contacts that are springs with dampers, and the number of runs of rapier in a physics step, each shorter than a substep.
 ///
-/// rapier's soft contacts are no springs as it is set up: a second sweep after each substep takes all velocity along the
+/// rapier's soft contacts are no springs by default: a second iteration after each substep removes all velocity along the
 /// normal, points that are about to touch are stopped at the surface, and the push is bounded. Here there is no second
-/// sweep, no point before it touches, and no bound.
+/// iteration, no point before it touches, and no bound.
 ///
 /// # Source
 /// A run of length h with factors e and c changes the depth d and its rate v by v' = (1 - c) v - c e d, d' = d + h v'. Its
 /// matrix has the determinant 1 - c and the trace 2 - c - c e h; those of the exact solution of a damped oscillator over h
 /// are exp(-2 z w h) and 2 exp(-z w h) cos(w h sqrt(1 - z^2)), so that impacts are exact. A constant force then sinks z w h
-/// (relative) too little. rapier makes c and e from a frequency and a damping ratio
-/// (E. Catto, Soft Constraints, GDC 2011); those that give the exact ones are returned.
+/// (relative) too little. rapier makes c and e from a frequency and a damping ratio (E. Catto, Soft Constraints, GDC 2011);
+/// those that give the exact ones are returned.
 pub(crate) fn soft(
     settings: &ResolvedConfig,
     compliance: ContactCompliance,

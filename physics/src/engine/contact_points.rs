@@ -2,7 +2,7 @@
 
 use rapier3d::geometry::{ContactData, ContactManifold, SolverContact};
 
-/// The points of a plane of contact that rapier solves, with what it knows of them.
+/// Returns the points of a contact plane that rapier solves, with their solver data.
 pub(crate) fn points(
     plane: &ContactManifold,
 ) -> impl Iterator<Item = (&SolverContact, &ContactData)> {

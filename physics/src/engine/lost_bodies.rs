@@ -1,17 +1,17 @@
-//! Bodies that rapier takes out of its world because their place or speed is no number.
+//! Bodies that rapier removes because their position or velocity is not finite.
 
 use super::RapierWorld;
 use glam::Vec3;
 use rapier3d::dynamics::RigidBodyHandle;
 
 impl RapierWorld {
-    /// Puts a body back that rapier took out, at rest where it stands.
+    /// Restores a removed body, at rest at its position.
     pub(crate) fn put_back(&mut self, handle: RigidBodyHandle) {
         let Some(body) = self.bodies.get_mut(handle) else {
             return;
         };
         if !body.position().translation.is_finite() || !body.position().rotation.is_finite() {
-            // It never had a place.
+            // It never had a finite position.
             return;
         }
         body.set_linvel(Vec3::ZERO, false);

@@ -1,4 +1,4 @@
-//! rapier's parts in one place.
+//! rapier's parts in one struct.
 
 mod contact_compliance;
 mod contact_points;
@@ -25,10 +25,10 @@ use rapier3d::math::Pose;
 use rapier3d::pipeline::{EventHandler, PhysicsHooks, QueryFilter, QueryPipeline};
 use workspace::Workspace;
 
-/// Steps of no length until the tree is back.
+/// Most steps of zero length until rapier's tree is restored.
 const MOST_FLUSHES: usize = 4;
 
-/// The simulation itself.
+/// The rapier simulation.
 #[derive(Clone)]
 pub(crate) struct RapierWorld {
     pub(crate) gravity: Vec3,
@@ -38,7 +38,7 @@ pub(crate) struct RapierWorld {
     /// Set if contacts are compliant.
     soft: bool,
     workspace: Workspace,
-    /// Bodies that rapier took out since they were asked for, because their place or speed is no number.
+    /// Bodies that rapier removed since the last call, because their position or velocity is not finite.
     lost: Vec<RigidBodyHandle>,
     pub(crate) sleeping_cache: SleepingIslandCache,
     pub(crate) islands: IslandManager,
@@ -68,7 +68,7 @@ impl RapierWorld {
         }
     }
 
-    /// Makes contacts give as a law says, or as hard as the rate allows.
+    /// Sets the contact compliance of a law, or the stiffest contacts that the rate allows.
     pub(crate) fn soften(
         &mut self,
         settings: &ResolvedConfig,
@@ -85,17 +85,17 @@ impl RapierWorld {
         &self.parameters
     }
 
-    /// Length of one run of rapier, s: the time over which it keeps impulses.
+    /// Returns the length of one run of rapier, s: the time over which it keeps impulses.
     pub(crate) fn run_s(&self) -> f32 {
         self.parameters.dt
     }
 
-    /// Length of a physics step, s.
+    /// Returns the length of a physics step, s.
     pub(crate) fn step_s(&self) -> f32 {
         self.parameters.dt * self.runs as f32
     }
 
-    /// Returns how rapier keeps friction in contact points.
+    /// Returns the layout of friction impulses in contact points.
     pub(crate) fn friction_kept(&self) -> FrictionStorage {
         FrictionStorage {
             by_patch: self.parameters.friction_model == FrictionModel::Simplified,
@@ -103,22 +103,22 @@ impl RapierWorld {
         }
     }
 
-    /// Returns whether rapier runs several times in a physics step; contacts then tell of the last run.
+    /// Returns whether rapier runs several times in a physics step; contact data is then of the last run.
     pub(crate) fn has_multiple_runs(&self) -> bool {
         self.runs > 1
     }
 
-    /// Solver substeps in a physics step.
+    /// Returns the number of solver substeps in a physics step.
     pub(crate) fn substeps(&self) -> u32 {
         self.runs * self.parameters.num_solver_iterations as u32
     }
 
-    /// Length of a solver substep, s.
+    /// Returns the length of a solver substep, s.
     pub(crate) fn substep_s(&self) -> f32 {
         self.parameters.dt / self.parameters.num_solver_iterations as f32
     }
 
-    /// Those of the bodies awake that move, hang on no joint and are carried by nothing, in the order of the islands.
+    /// Returns the awake bodies that move, have no joint and no support, in the order of the islands.
     pub(crate) fn in_free_flight(&self) -> Vec<RigidBodyHandle> {
         let flies = |handle: &RigidBodyHandle| {
             self.bodies.get(*handle).is_some_and(|body| {
@@ -131,12 +131,12 @@ impl RapierWorld {
         self.islands.active_bodies().filter(flies).collect()
     }
 
-    /// For how long of a step gravity acts on a body that hits something in it, s.
+    /// Returns the part of a step for which gravity acts on a body that hits something in it, s.
     pub(crate) fn free_fall_time_s(&self, flies: bool) -> f32 {
         self.parameters.dt - if flies { 0.5 * self.substep_s() } else { 0.0 }
     }
 
-    /// The pairs that a body's colliders make with others.
+    /// Returns the pairs of a body's colliders with others.
     pub(crate) fn pairs_of<'a>(
         &'a self,
         body: &'a RigidBody,
@@ -156,9 +156,9 @@ impl RapierWorld {
             .any(|(_, point)| point.impulse > 0.0)
     }
 
-    /// Returns whether a body rests on something: that presses, and is not left at a speed that a step of gravity does not take back;
-    /// or that it stands over so low, and moves so slowly, that its bounces would last two steps. Contacts that give carry as
-    /// long as they touch.
+    /// Returns whether a body is supported: by something that presses, and is not left at a speed that a step of gravity
+    /// does not take back; or that is so close below, at so low a speed, that its bounces would last two steps. Compliant
+    /// contacts support as long as they touch.
     fn is_carried(&self, body: &RigidBody) -> bool {
         if self.soft {
             return self.is_pressed(body);
@@ -192,7 +192,7 @@ impl RapierWorld {
         })
     }
 
-    /// Adds a share of what gravity adds in a substep to the velocities of bodies.
+    /// Adds a share of a substep's gravity to the velocities of bodies.
     fn fall(&mut self, flying: &[RigidBodyHandle], share: f32) {
         let change = self.gravity * (self.substep_s() * share);
         for handle in flying {
@@ -203,12 +203,12 @@ impl RapierWorld {
         }
     }
 
-    /// One physics step.
+    /// Makes one physics step.
     ///
-    /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time. What
-    /// flies freely (`flying`: [`RapierWorld::in_free_flight`]) has half of one substep's gravity taken off before and added after:
-    /// then it follows its parabola exactly (the leapfrog method). What hit something in the step keeps what the contact made
-    /// of its velocity. Returns what flew and hit something.
+    /// Gravity acts at the beginning of rapier's substeps, so that a body would fall half a substep ahead of its time.
+    /// Bodies in free flight (`flying`: [`RapierWorld::in_free_flight`]) have half of one substep's gravity subtracted
+    /// before and added after: they then follow their parabola exactly (the leapfrog method). A body that hit something in
+    /// the step keeps the velocity that the contact gave it. Returns the bodies in free flight that hit something.
     pub(crate) fn step(
         &mut self,
         flying: Vec<RigidBodyHandle>,
@@ -236,7 +236,7 @@ impl RapierWorld {
             self.run(&parameters, hooks, events);
             return;
         }
-        // What is led from place to place goes an equal part of the way in each run.
+        // Kinematic bodies move an equal part of the way in each run.
         let led: Vec<(RigidBodyHandle, Pose, Pose)> = self
             .bodies
             .iter()
@@ -260,15 +260,15 @@ impl RapierWorld {
         }
     }
 
-    /// Takes over what was changed from outside, without letting time pass: positions, contacts and the tree for queries
-    /// are up to date afterwards, and nothing is marked as changed.
+    /// Applies changes from outside, without letting time pass: positions, contacts and the query tree are up to date
+    /// afterwards, and nothing is marked as changed.
     pub(crate) fn flush(&mut self, hooks: &dyn PhysicsHooks) {
         let parameters = IntegrationParameters {
             dt: 0.0,
             ..self.parameters
         };
-        // rapier 0.36.1 puts its tree aside when it plans to improve it, and a step of no length ends before the tree is
-        // put back; the next one begins with that.
+        // rapier 0.36.1 puts its tree aside when it plans to improve it, and a step of zero length ends before the tree is
+        // restored; the next one begins with that.
         for _ in 0..MOST_FLUSHES {
             self.run(&parameters, hooks, &());
             if !self.queries(QueryFilter::default()).bvh.is_empty() {
@@ -303,12 +303,12 @@ impl RapierWorld {
         self.lost.extend_from_slice(found);
     }
 
-    /// Bodies that rapier took out since this was last asked.
+    /// Returns the bodies that rapier removed since the last call.
     pub(crate) fn take_lost(&mut self) -> Vec<RigidBodyHandle> {
         std::mem::take(&mut self.lost)
     }
 
-    /// Questions about where things are.
+    /// Returns spatial queries.
     pub(crate) fn queries<'a>(&'a self, filter: QueryFilter<'a>) -> QueryPipeline<'a> {
         self.broad_phase.as_query_pipeline(
             self.narrow_phase.query_dispatcher(),

@@ -16,11 +16,11 @@ use rapier3d::pipeline::QueryFilter;
 /// Margin of the box of a sleeping body's collider beyond its contact range, m, on each side. Not 0: rapier would then not
 /// notice that the box changed.
 const SKIN_M: f32 = 1e-3;
-/// rapier's margin around a box in units of its length unit.
+/// Rapier's margin around a box in units of its length unit.
 const RAPIER_SKIN: f32 = 0.04;
-/// A box this much wider than need be is left as it is, m.
+/// Margin up to which a box is left as it is, m.
 const WIDE_ENOUGH_M: f32 = 2.0 * SKIN_M;
-/// Physics steps after which room is given back: a quarter of a minute, so that a copy of a millisecond costs nothing.
+/// Physics steps after which memory is released: a quarter of a minute, so that a copy of a millisecond costs nothing.
 const TICKS_BETWEEN_COPIES: u64 = 2048;
 
 /// Numbers of collider pairs that a world keeps.
@@ -33,7 +33,7 @@ pub struct PairCounts {
 }
 
 impl RapierWorld {
-    /// Returns how many pairs of colliders rapier keeps.
+    /// Returns the number of collider pairs that rapier keeps.
     pub(crate) fn pair_counts(&self) -> PairCounts {
         let mut counts = PairCounts::default();
         for pair in self.narrow_phase.contact_pairs() {
@@ -43,16 +43,16 @@ impl RapierWorld {
         counts
     }
 
-    /// Now and then gives back the room of pairs that are gone. rapier keeps each for the next pair, with all the buffers that
-    /// it ever needed, so that in a long run every one of them comes to need the most. A copy has room for what it holds.
-    /// `tick`: physics steps made.
+    /// Periodically releases the memory of pairs that are gone. rapier keeps each for the next pair, with all its buffers,
+    /// so that in a long run every one of them comes to need the most. A copy has no unused memory. `tick`: physics steps
+    /// made.
     pub(crate) fn copy_pairs_at(&mut self, tick: u64) {
         if tick.is_multiple_of(TICKS_BETWEEN_COPIES) {
             self.narrow_phase = self.narrow_phase.clone();
         }
     }
 
-    /// Draws the boxes of those bodies tight that were awake and have fallen asleep.
+    /// Shrinks the boxes of the bodies that were awake and have fallen asleep.
     pub(super) fn shrink_bounds(&mut self, awake_before: &[RigidBodyHandle]) {
         let parameters = IntegrationParameters {
             length_unit: SKIN_M / RAPIER_SKIN,
@@ -81,7 +81,7 @@ impl RapierWorld {
                 if wider.max_element() <= WIDE_ENOUGH_M || !needed.mins.is_finite() {
                     continue;
                 }
-                // rapier only moves a box that a collider has left: so it leaves for a corner, and comes back.
+                // rapier only moves a box that a collider has left: so it is moved into a corner, and back.
                 let outside = found.mins - Vector::splat(SKIN_M);
                 let corner = Aabb::new(outside, outside);
                 self.broad_phase.set_aabb(&parameters, *collider, corner);

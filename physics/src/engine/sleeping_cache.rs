@@ -29,7 +29,7 @@ const AHEAD: f32 = 1.5;
 const BOX_STEP_M: f32 = 1e-3;
 const RAPIER_SKIN: f32 = 0.04;
 
-/// A contact of something laid aside.
+/// A contact of a cached body.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct CachedContact {
     bodies: [RigidBodyHandle; 2],
@@ -39,7 +39,7 @@ struct CachedContact {
 /// The cached bodies and contacts.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct SleepingIslandCache {
-    /// In order.
+    /// Sorted.
     bodies: Vec<RigidBodyHandle>,
     contacts: Vec<CachedContact>,
 }
@@ -54,12 +54,12 @@ impl SleepingIslandCache {
         self.place(body).is_ok()
     }
 
-    /// Returns what those things touch that are laid aside, among themselves and with what stands.
+    /// Returns the contacts of cached bodies, among themselves and with fixed ones.
     pub(crate) fn contacts(&self) -> impl Iterator<Item = Contact> {
         self.contacts.iter().map(|kept| kept.contact)
     }
 
-    /// Remembers what bodies touch that are laid aside.
+    /// Stores the contacts of bodies to be cached.
     pub(crate) fn keep_contacts(
         &mut self,
         contacts: impl Iterator<Item = ([RigidBodyHandle; 2], Contact)>,
@@ -74,7 +74,7 @@ impl SleepingIslandCache {
         }
     }
 
-    /// Returns whether it was there. What it touches is still kept.
+    /// Returns whether it was cached. Its contacts are kept.
     fn remove(&mut self, body: RigidBodyHandle) -> bool {
         let Ok(place) = self.place(body) else {
             return false;
@@ -83,7 +83,7 @@ impl SleepingIslandCache {
         true
     }
 
-    /// Forgets what bodies touch that are no longer laid aside.
+    /// Drops the contacts of bodies that are no longer cached.
     fn forget_contacts(&mut self, of: &BodyIndexSet) {
         if !of.is_empty() {
             let has = |body: &RigidBodyHandle| of.contains(&body.into_raw_parts());
@@ -97,21 +97,21 @@ type BodyIndexSet = BTreeSet<(u32, u32)>;
 
 /// The pending operation for a body that wakes.
 enum WakeRequest {
-    /// If it is laid aside, it is no longer, nor is what hangs on it.
+    /// A cached body, and those jointed to it, are freed.
     Free(RigidBodyHandle),
     /// rapier wakes it.
     Wake(RigidBodyHandle),
 }
 
 impl RapierWorld {
-    /// Returns whether a body is free and sleeps: by rapier, or laid aside.
+    /// Returns whether a body is free and sleeps: in rapier, or in the cache.
     pub(crate) fn sleeps(&self, body: RigidBodyHandle) -> bool {
         let rigid = self.bodies.get(body);
         self.sleeping_cache.has(body)
             || rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
     }
 
-    /// Wakes a body, and what joints hold to it.
+    /// Wakes a body, and those jointed to it.
     pub(crate) fn wake(&mut self, body: RigidBodyHandle) {
         self.wake_each([body]);
     }
@@ -124,7 +124,7 @@ impl RapierWorld {
         self.sleeping_cache.forget_contacts(&woken);
     }
 
-    /// Wakes a body, and what joints hold to it; notes those that were laid aside, whose contacts are to be forgotten.
+    /// Wakes a body, and those jointed to it; adds those that were cached to `woken`, whose contacts are to be dropped.
     fn thaw_and_wake(&mut self, body: RigidBodyHandle, woken: &mut BodyIndexSet) {
         let mut left = vec![WakeRequest::Wake(body), WakeRequest::Free(body)];
         while let Some(next) = left.pop() {
@@ -142,7 +142,7 @@ impl RapierWorld {
             if let Some(rigid) = self.bodies.get_mut(now) {
                 rigid.set_body_type(RigidBodyType::Dynamic, false);
             }
-            // It is roused after all that hangs on it.
+            // It is woken after those jointed to it.
             if now != body {
                 left.push(WakeRequest::Wake(now));
             }
@@ -151,7 +151,7 @@ impl RapierWorld {
         }
     }
 
-    /// Wakes all that is laid aside.
+    /// Wakes all cached bodies.
     pub(crate) fn wake_cached(&mut self) {
         let mut woken = BodyIndexSet::new();
         while let Some(body) = self.sleeping_cache.bodies.last() {
@@ -160,7 +160,7 @@ impl RapierWorld {
         self.sleeping_cache.forget_contacts(&woken);
     }
 
-    /// The bodies that joints hold to a body.
+    /// Returns the bodies that are jointed to a body.
     fn attached(&self, body: RigidBodyHandle) -> Vec<RigidBodyHandle> {
         let joints = self.joints.attached_joints(body);
         joints
@@ -168,14 +168,14 @@ impl RapierWorld {
             .collect()
     }
 
-    /// Wakes a body that is about to be put somewhere else, and what is laid aside around it.
+    /// Wakes a body that is about to be moved, and the cached ones around it.
     pub(crate) fn wake_around(&mut self, body: RigidBodyHandle) {
         self.wake(body);
         self.wake_each(self.cached_within(body, TOUCH_M));
     }
 
-    /// Wakes what lies within reach of anything that moves in the next step, and what touches that, and so on. `root_velocity_along`: agents,
-    /// which are moved from place to place.
+    /// Wakes bodies within reach of anything that moves in the next step, and those in contact with them, and so on.
+    /// `root_velocity_along`: agents, which are kinematic.
     pub(crate) fn wake_in_reach(
         &mut self,
         root_velocity_along: impl Iterator<Item = RigidBodyHandle>,
@@ -201,7 +201,7 @@ impl RapierWorld {
         self.sleeping_cache.forget_contacts(&woken);
     }
 
-    /// Returns how far from where a body is something must be so that it does not meet it in the next step; `None` for what stands.
+    /// Returns the distance from a body beyond which nothing meets it in the next step, m; `None` for a body that does not move.
     fn reach_m(&self, body: RigidBodyHandle) -> Option<f32> {
         let rigid = self.bodies.get(body)?;
         let dt_s = self.step_s();
@@ -213,7 +213,7 @@ impl RapierWorld {
         if rigid.body_type() != RigidBodyType::KinematicPositionBased {
             return None;
         }
-        // An agent that stands still disturbs what it overlaps, as where it was put or has just risen.
+        // An agent at rest disturbs what it overlaps, as after being placed or standing up.
         let goes_m = (rigid.next_position().translation - rigid.position().translation).length();
         Some(if goes_m > 0.0 {
             TOUCH_M + AHEAD * goes_m
@@ -222,7 +222,7 @@ impl RapierWorld {
         })
     }
 
-    /// The bodies laid aside of which a piece is nearer than `reach_m` to one of a body's, in order.
+    /// Returns the cached bodies of which a piece is nearer than `reach_m` to one of a body's, in order.
     fn cached_within(&self, body: RigidBodyHandle, reach_m: f32) -> Vec<RigidBodyHandle> {
         let Some(rigid) = self.bodies.get(body) else {
             return Vec::new();
@@ -270,8 +270,8 @@ impl RapierWorld {
         near.into_values().collect()
     }
 
-    /// Takes out those that touch a free body that stays one, or hang on one: rapier wakes it when what it touches changes. Those
-    /// then stay free themselves.
+    /// Removes those that touch, or are jointed to, a free body that stays one: rapier wakes it when its contacts change.
+    /// They then stay free themselves.
     pub(crate) fn keep_touching_free_bodies(&self, asleep: &mut Vec<RigidBodyHandle>) {
         let mut sleeping_cache: BodyIndexSet =
             asleep.iter().map(|body| body.into_raw_parts()).collect();
@@ -298,7 +298,7 @@ impl RapierWorld {
         asleep.retain(|body| sleeping_cache.contains(&body.into_raw_parts()));
     }
 
-    /// The bodies that one touches, and those that joints hold to it.
+    /// Returns the bodies in contact with one, and those jointed to it.
     fn touching_or_attached(&self, body: RigidBodyHandle) -> Vec<RigidBodyHandle> {
         let mut others = self.attached(body);
         let Some(rigid) = self.bodies.get(body) else {
@@ -317,7 +317,7 @@ impl RapierWorld {
         others
     }
 
-    /// Gives back the room of pairs that are gone, which rapier keeps for the next ones.
+    /// Releases the memory of pairs that are gone, which rapier keeps for the next ones.
     pub(crate) fn shrink_pair_storage(&mut self) {
         let bytes = postcard::to_stdvec(&self.narrow_phase)
             .expect("rapier's sets are plain data that postcard can always write to memory");
@@ -327,7 +327,7 @@ impl RapierWorld {
         self.workspace = Workspace::new();
     }
 
-    /// Makes bodies that sleep ones that stand.
+    /// Makes sleeping bodies fixed.
     pub(crate) fn cache_bodies(&mut self, bodies: &[RigidBodyHandle]) {
         for body in bodies {
             self.sleeping_cache.add(*body);
@@ -339,8 +339,8 @@ impl RapierWorld {
         }
     }
 
-    /// Moves the boxes of bodies' colliders in rapier's tree to where they touch nothing, or back. rapier forgets a pair when a
-    /// box leaves the other, and does not make it again between two that stand.
+    /// Moves the boxes of bodies' colliders in rapier's tree to where they touch nothing, or back. rapier drops a pair when
+    /// a box leaves the other, and does not make it again between two fixed bodies.
     pub(crate) fn toggle_broad_phase_proxies(&mut self, bodies: &[RigidBodyHandle], away: bool) {
         let parameters = IntegrationParameters {
             length_unit: BOX_STEP_M / RAPIER_SKIN,
@@ -362,7 +362,7 @@ impl RapierWorld {
         if !aabb.mins.is_finite() || !aabb.maxs.is_finite() {
             return None;
         }
-        // Each its own place far below the house, so that they do not make pairs there either.
+        // Each has its own place far below the house, so that they do not make pairs there either.
         let number = collider.into_raw_parts().0 as f32;
         let far = Vector::new(4.0 * number, -1e6, 0.0);
         Some(if away { Aabb::new(far, far) } else { aabb })

@@ -1,21 +1,21 @@
-//! Memory that the solver works in for one world: made anew, it leads to the same steps. Two worlds may not share it, since rapier keeps
-//! lists of its world's fixed colliders and joints there.
+//! Working memory of the solver for one world: new memory leads to the same steps. Two worlds may not share it, since
+//! rapier keeps lists of its world's fixed colliders and joints there.
 
 use rapier3d::dynamics::{CCDSolver, MultibodyJointSet, SoftBodySet};
 use rapier3d::pipeline::PhysicsPipeline;
 
-/// Bodies whose memory is not worth giving back.
+/// Number of bodies whose memory is not worth releasing.
 const FEW_BODIES: usize = 4;
-/// Steps for which less than a quarter of the memory was asked for before it is given back.
+/// Steps with less than a quarter of the memory in use before it is released.
 const PATIENCE_STEPS: u32 = 32;
 
-/// The parts of rapier that need not be kept between steps. They are made anew in a copy.
+/// The parts of rapier that need not be kept between steps. A copy makes them anew.
 pub(crate) struct Workspace {
     pub(crate) pipeline: PhysicsPipeline,
     pub(crate) ccd: CCDSolver,
     pub(crate) multibodies: MultibodyJointSet,
     pub(crate) soft_bodies: SoftBodySet,
-    /// The most bodies that were awake since the pipeline was made.
+    /// The most awake bodies since the pipeline was made.
     most: usize,
     /// Steps since more than a quarter of that were.
     quiet_steps: u32,
@@ -33,7 +33,7 @@ impl Workspace {
         }
     }
 
-    /// Gives memory back that was needed when far more bodies were awake than now: rapier keeps what its largest step took.
+    /// Releases memory that was needed when far more bodies were awake than now: rapier keeps that of its largest step.
     pub(crate) fn fit(&mut self, awake: usize) {
         self.most = self.most.max(awake);
         self.quiet_steps = if 4 * awake < self.most && self.most > FEW_BODIES {

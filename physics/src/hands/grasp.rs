@@ -10,7 +10,7 @@ pub enum Grasp {
     /// It follows the hand within one physics step, as far as the hand's force allows.
     #[default]
     Kinematic,
-    /// It hangs on the hand by a spring and damper, with its weight: it sags by g over the square of 2 pi times the
+    /// It is attached to the hand by a spring and damper, with its weight: it sags by g over the square of 2 pi times the
     /// frequency, lags and swings.
     Spring {
         /// Natural frequency, Hz; 0.5 to 20.

@@ -1,4 +1,4 @@
-//! Carrying: a held thing follows the hand in front of the eye as a rigid body, so that walls stop it.
+//! Carrying: a held object follows the hand in front of the eye as a rigid body, so that walls stop it.
 
 use super::Grasp;
 use crate::body::BodyHandle;
@@ -9,21 +9,21 @@ use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::TAU;
 
-/// Space between the body and what it holds, m.
+/// Gap between the agent's body and its held object, m.
 const GAP_M: f32 = 0.12;
 /// Height of the hand below the eye, m.
 const BELOW_EYE_M: f32 = 0.2;
-/// The hand follows the look within these pitches, rad.
+/// Range of pitches within which the hand follows the view, rad.
 const PITCHES: [f32; 2] = [-0.9, 0.4];
 /// Highest speed of the hand, m/s.
 const FASTEST_HAND_M_S: f32 = 5.0;
-/// Highest turning speed of the hand, rad/s.
+/// Highest angular speed of the hand, rad/s.
 const FASTEST_TURN_RAD_S: f32 = 12.0;
-/// Distance beyond which what is held counts as stuck, m.
+/// Distance beyond which a held object counts as stuck, m.
 const FAR_M: f32 = 0.35;
 /// Time for which it may be stuck before it slips, s.
 const GRIP_S: f32 = 0.5;
-/// Force of the hand besides the thing's weight, N.
+/// Force of the hand besides the object's weight, N.
 const HAND_FORCE_N: f32 = 150.0;
 /// Highest acceleration of the hand, m/s².
 const HAND_M_S2: f32 = 150.0;
@@ -34,7 +34,7 @@ const GENTLE_M_S: f32 = 0.6;
 const GENTLE_M_S2: f32 = 3.0;
 const GENTLE_S: f32 = 4.0;
 
-/// A hand that holds something.
+/// A grip of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct HeldObject {
     pub(crate) object: ObjectId,
@@ -42,7 +42,7 @@ pub(crate) struct HeldObject {
     pub(crate) agent: AgentId,
     /// Orientation of the object in the hand.
     hand_from_body: Quat,
-    /// The middle of the thing in its own frame, m.
+    /// The middle of the object in its own frame, m.
     middle_in_body: Vec3,
     /// Half of its largest horizontal edge, m.
     half_m: f32,
@@ -55,7 +55,7 @@ pub(crate) struct HeldObject {
 }
 
 impl HeldObject {
-    /// Takes hold of a body where it is.
+    /// Grips a body at its present pose.
     pub(crate) fn new(
         model: &PhysicsModel,
         body: u32,
@@ -86,7 +86,7 @@ impl HeldObject {
     }
 }
 
-/// Returns where a held body shall be.
+/// Returns the target pose of a held body.
 pub(crate) fn hand_pose(grip: &HeldObject, holder: &AgentState) -> Pose {
     let yaw = dwell_scene::space::rotation_from_yaw_pitch(holder.yaw_rad, 0.0);
     let pitch = holder.pitch_rad.clamp(PITCHES[0], PITCHES[1]);
@@ -171,7 +171,7 @@ pub(crate) fn carry(
     grip.stuck_s > if grip.loaded { GENTLE_S } else { GRIP_S }
 }
 
-/// A damped spring that is stepped implicitly, so that no stiffness makes it grow.
+/// A damped spring that is integrated implicitly, so that it is stable for any stiffness.
 struct ImplicitSpring {
     rate_rad_s: f32,
     damping_ratio: f32,
@@ -179,8 +179,8 @@ struct ImplicitSpring {
 }
 
 impl ImplicitSpring {
-    /// The change of a velocity in one step, `away` from the target (m or rad); `velocity`: relative to the target, as the
-    /// step would end without the spring.
+    /// Returns the change of a velocity in one step, `away` from the target (m or rad); `velocity`: relative to the target,
+    /// as the step would end without the spring.
     fn change(&self, away: Vec3, velocity: Vec3) -> Vec3 {
         let k = self.rate_rad_s * self.rate_rad_s;
         let d = 2.0 * self.damping_ratio * self.rate_rad_s;
@@ -195,13 +195,13 @@ impl HeldObject {
         self.grasp == Grasp::Kinematic
     }
 
-    /// Returns where a held body's middle is, m.
+    /// Returns the position of a held body's middle, m.
     pub(crate) fn middle_at(&self, world_from_body: &rapier3d::math::Pose) -> Vec3 {
         *world_from_body * self.middle_in_body
     }
 }
 
-/// Lets go of a body: it has its weight again (`gravity_scale` of it) and the speed of whoever held it.
+/// Releases a body: it gets its weight back (`gravity_scale` of it) and has its holder's velocity.
 pub(crate) fn release(
     engine: &mut RapierWorld,
     body: &BodyHandle,

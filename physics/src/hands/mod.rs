@@ -1,4 +1,4 @@
-//! Hands: what agents hold, and what they have just let go.
+//! Hands: objects that agents hold, and those just released.
 
 mod grasp;
 mod held_object;
@@ -18,12 +18,12 @@ use rapier3d::dynamics::RigidBody;
 pub(crate) struct Hands {
     /// Held objects, by agent.
     pub(crate) grips: Vec<HeldObject>,
-    /// Bodies that were let go and still overlap the agent that held them.
+    /// Released bodies that still overlap the agent that held them.
     pub(crate) released_overlapping: Vec<(u32, AgentId)>,
 }
 
 impl Hands {
-    /// Returns whether some hand holds a body or has just let go of it.
+    /// Returns whether some hand holds a body or has just released it.
     pub(crate) fn involve(&self, body: usize) -> bool {
         self.grips.iter().any(|grip| grip.body as usize == body)
             || self
@@ -32,7 +32,7 @@ impl Hands {
                 .any(|(released, _)| *released as usize == body)
     }
 
-    /// Opens hands that hold more than they lift: since they took it they have become weaker, or it heavier.
+    /// Opens hands that hold more than they can lift, after a change of their strength or of the object's mass.
     pub(crate) fn drop_too_heavy(
         &mut self,
         dynamics: &mut Dynamics,
@@ -73,7 +73,7 @@ impl Hands {
         }
     }
 
-    /// Opens the hand that holds the grip at `place` of the list.
+    /// Opens the hand of the grip at index `place`.
     pub(crate) fn ungrip(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
         let grip = self.grips.remove(place);
         let velocity = state.agents[grip.agent].velocity;
@@ -87,11 +87,11 @@ impl Hands {
         );
         state.agents[grip.agent].holding = None;
         state.held_by[grip.object] = None;
-        // The pair meets again once they have parted.
+        // The pair collides again once they have parted.
         self.released_overlapping.push((grip.body, grip.agent));
     }
 
-    /// The share of its weight that a body has: none in a hand that holds it firmly, else what laws leave of it.
+    /// Returns the share of its weight that a body has: none in a firm grasp, else as laws set it.
     pub(crate) fn gravity_scale(&self, dynamics: &Dynamics, body: usize) -> f32 {
         let carried = |grip: &HeldObject| grip.body as usize == body && grip.is_firm();
         if self.grips.iter().any(carried) {
@@ -100,7 +100,7 @@ impl Hands {
         dynamics.weights.altered[body].map_or(1.0, |inertia| inertia.gravity_scale)
     }
 
-    /// Moves what is held for one physics step, and opens the hands from which something slips.
+    /// Moves held objects for one physics step, and opens the hands from which one slips.
     pub(crate) fn carry(
         &mut self,
         dynamics: &mut Dynamics,
@@ -132,8 +132,8 @@ impl Hands {
         }
     }
 
-    /// Takes back what was pressed through a sheet in the last physics step. Contacts stop what is held, but a hand that
-    /// presses a thin card against a thin wall overcomes them.
+    /// Moves back bodies that were pressed through a thin wall in the last physics step. Contacts stop a held object, but a
+    /// hand that presses a thin card against a thin wall overcomes them.
     pub(crate) fn keep_inside(&self, dynamics: &mut Dynamics) {
         let mut moved = false;
         for place in 0..self.grips.len() {
@@ -164,7 +164,7 @@ impl Hands {
         }
     }
 
-    /// Lets bodies and the agents that held them meet again once they are apart.
+    /// Lets bodies and the agents that held them collide again once they are apart.
     pub(crate) fn end_separations(&mut self, dynamics: &mut Dynamics, state: &State) {
         if self.released_overlapping.is_empty() {
             return;

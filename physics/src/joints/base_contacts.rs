@@ -1,8 +1,8 @@
-//! A tree over a free root in one step: what it stands on holds it, as far as it presses and does not slip.
+//! Support contacts of a tree with a free root in one step: they hold as far as they press and do not slip.
 //!
-//! A point that stands brakes its own motion so strongly that next to nothing is left of it. With these brakes the root's
-//! six freedoms are eliminated, so that each joint resists with what it really has to move: a knee under load a whole
-//! trunk, not a shank. What carries is found in a few rounds, in which points that would pull are let go and points that
+//! A sticking point brakes its own motion so strongly that next to nothing is left of it. With these brakes the root's six
+//! freedoms are eliminated, so that each joint has its true effective inertia: a knee under load a whole trunk, not a
+//! shank. The supporting points are found in a few iterations, in which points that would pull are released and points that
 //! would need more friction than there is slip.
 
 use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
@@ -24,7 +24,7 @@ pub(super) enum SupportState {
 }
 
 impl SupportState {
-    /// Returns which directions it holds.
+    /// Returns the directions in which it holds.
     fn holds(self) -> [bool; 3] {
         match self {
             Self::Sticks => [true; 3],
@@ -33,7 +33,7 @@ impl SupportState {
         }
     }
 
-    /// The force that is there whatever its motion.
+    /// Returns the force that is independent of its motion.
     fn force(self) -> DVec3 {
         match self {
             Self::Slips(force) => force,
@@ -42,14 +42,14 @@ impl SupportState {
     }
 }
 
-/// The velocity of a point by the root's freedoms and by the joints', one direction.
+/// The Jacobian of a point by the root's freedoms and by the joints', in one direction.
 struct PointJacobian {
     root: [f64; 6],
     /// Shape (freedom,).
     joints: Vec<f64>,
 }
 
-/// The root's part of a step.
+/// The root's part of a step's equations.
 pub(super) struct BaseContactSolver {
     factor: CholeskyFactor,
     /// Coupling inertia of root and joints. Shape (freedom, 6).
@@ -58,7 +58,7 @@ pub(super) struct BaseContactSolver {
     before: [f64; 6],
     /// Shape (support, 3).
     rows: Vec<[PointJacobian; 3]>,
-    /// Force for each unit of velocity of a point that stands, N·s/m.
+    /// Force for each unit of velocity of a sticking point, N·s/m.
     brake: f64,
     dt_s: f64,
 }
@@ -81,7 +81,7 @@ pub(super) struct ReducedProblem {
 }
 
 impl ReducedProblem {
-    /// `holds`: how each support stands.
+    /// `holds`: the state of each support.
     pub(super) fn of(
         motion: &TreeDynamics<'_>,
         loads: &TreeLoads,
@@ -185,7 +185,7 @@ impl ReducedProblem {
     }
 }
 
-/// Returns how a point of a joint's body (or the root) moves, in three directions.
+/// Returns the Jacobian of a point of a joint's body (or the root), in three directions.
 fn rows(
     motion: &TreeDynamics<'_>,
     floating: &FloatingBase,
@@ -210,7 +210,7 @@ fn rows(
 }
 
 impl BaseContactSolver {
-    /// Returns what the root does when the joints have these velocities at the end of the step.
+    /// Returns the root's response when the joints have these velocities at the end of the step.
     pub(super) fn answer(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
         let mut left = self.momentum;
         for (column, velocity) in self.shared.iter().zip(velocities) {
@@ -237,8 +237,7 @@ impl BaseContactSolver {
     }
 }
 
-/// Lets go of what pulls, and lets slip what friction under the weight there does not hold. Returns whether anything
-/// changed.
+/// Releases points that pull, and lets points slip whose friction does not suffice. Returns whether anything changed.
 pub(super) fn update_support_states(
     motion: &TreeDynamics<'_>,
     loads: &TreeLoads,
@@ -266,7 +265,7 @@ pub(super) fn update_support_states(
 }
 
 impl BaseResponse {
-    /// The force of a support as a load on its body about the body's centre.
+    /// Returns the force of a support as a load on its body about the body's centre.
     pub(super) fn wrench(&self, support: usize, at: DVec3, center: DVec3) -> Wrench {
         let force = self.forces[support];
         Wrench {

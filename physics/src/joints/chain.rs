@@ -1,4 +1,4 @@
-//! A tree as numbers: what moves with each joint, and where all of it is for given positions.
+//! A tree in numbers: the bodies that each joint moves, and forward kinematics for given positions.
 
 use super::PhysicsJoint;
 use super::efforts::LinkWrenchFn;
@@ -16,12 +16,12 @@ use rapier3d::dynamics::RigidBodyHandle;
 /// A body and the joint that moves it.
 #[derive(Clone, Copy, Debug)]
 struct ChainLink {
-    /// The number of the body's plan in the model.
+    /// Index of the body's plan in the model.
     body: u32,
     kind: JointKind,
     /// In the joint's frame, unit length.
     axis: DVec3,
-    /// Which of the free joints moves its parent.
+    /// The free joint that moves its parent.
     parent: Option<usize>,
     parent_handle: RigidBodyHandle,
     /// The parent body, where no free joint moves it.
@@ -49,7 +49,7 @@ pub(super) struct Chain {
     root: BodyAcceleration,
     root_velocity: DVec3,
     free_root: Option<LumpedBody>,
-    /// The number of a free root's plan in the model.
+    /// Index of a free root's plan in the model.
     root_body: Option<u32>,
     supports: Vec<SupportPoint>,
     touches: Vec<ExternalContact>,
@@ -59,7 +59,7 @@ pub(super) struct Chain {
 }
 
 impl Chain {
-    /// `free`: which of the tree's joints may move.
+    /// `free`: the tree's joints that may move.
     pub(super) fn of(
         engine: &RapierWorld,
         tree: &KinematicTree,
@@ -97,7 +97,7 @@ impl Chain {
         chain
     }
 
-    /// Takes over where what the tree hangs on is and how it moves.
+    /// Reads the pose and motion of the root, and of parents that no free joint moves.
     pub(super) fn follow_root(&mut self, engine: &RapierWorld, tree: &KinematicTree) {
         for link in self.links.iter_mut().filter(|link| link.parent.is_none()) {
             let parent = engine.bodies.get(link.parent_handle);
@@ -117,7 +117,7 @@ impl Chain {
             && root.angvel() == glam::Vec3::ZERO;
     }
 
-    /// Finds what carries the tree and what presses on it.
+    /// Finds the support and contact forces on the tree.
     fn feel(
         &mut self,
         engine: &RapierWorld,
@@ -143,13 +143,13 @@ impl Chain {
         self.touches = external_contact::of_tree(engine, &bodies, floats);
     }
 
-    /// Returns whether what the tree hangs on stands.
+    /// Returns whether the root is not dynamic and at rest.
     pub(super) fn stands(&self) -> bool {
         self.stands
     }
 
-    /// The tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each. `pushed`: `None` where no
-    /// law pushes.
+    /// Returns the tree with its joints at these positions, rad or m, and velocities. Shape (freedom,) each. `pushed`:
+    /// `None` where no law exerts a wrench.
     pub(super) fn at(
         &self,
         positions: &[f64],
@@ -214,7 +214,7 @@ impl Chain {
 }
 
 impl LawWrenchQuery<'_> {
-    /// Returns how laws push at a body that moves with this velocity and spin.
+    /// Returns the wrench of laws on a body with this velocity and angular velocity.
     fn at(&self, body: u32, lump: &LumpedBody, velocity: DVec3, spin: DVec3) -> ExternalWrench {
         (self.push)(LinkStep {
             body,
@@ -230,7 +230,7 @@ impl LawWrenchQuery<'_> {
 }
 
 impl Chain {
-    /// Returns how laws push at a free root: it is looked at as the step begins.
+    /// Returns the wrench of laws on a free root, evaluated at the beginning of the step.
     fn root_push(&self, pushed: &LawWrenchQuery<'_>) -> ExternalWrench {
         let (Some(lump), Some(body)) = (&self.free_root, self.root_body) else {
             return ExternalWrench::default();
@@ -242,7 +242,7 @@ impl Chain {
         begins.at(body, lump, self.root_velocity, self.root.angular)
     }
 
-    /// Returns how laws push at each joint's body. Shape (freedom,).
+    /// Returns the wrenches of laws on each joint's body. Shape (freedom,).
     fn pushes(
         &self,
         pushed: &LawWrenchQuery<'_>,
@@ -270,7 +270,7 @@ impl RigidTransform {
         turn: DQuat::IDENTITY,
     };
 
-    /// The motion of a joint about or along its axis.
+    /// The displacement of a joint about or along its axis.
     pub(super) fn along(kind: JointKind, axis: DVec3, position: f64) -> Self {
         match kind {
             JointKind::Hinge => Self {

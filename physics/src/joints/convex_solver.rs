@@ -1,8 +1,8 @@
-//! The efforts of all joints of a tree in one step, together.
+//! Solver for the efforts of all joints of a tree in one step, together.
 //!
 //! Every effort here falls with the velocity at the end of the step, so velocities minimize a convex function: the kinetic
-//! energy of what differs from free motion, plus each effort's integral. Newton's method with a line search finds them; a
-//! few iterations do, whatever the gains.
+//! energy of the difference from free motion, plus each effort's integral. Newton's method with a line search finds them; a
+//! few iterations suffice, whatever the gains.
 //!
 //! # Source
 //! The formulation is that of J. J. Moreau's time stepping; E. Todorov, "Convex and analytically-invertible dynamics with
@@ -18,13 +18,13 @@ const HALVINGS: usize = 40;
 pub(super) struct EffortTerm {
     /// The degree of freedom it acts along.
     pub(super) index: usize,
-    /// Another one that it acts against: the velocity is then that of `index` less the second number times that one's.
+    /// Another one that it acts against: the velocity is then that of `index` less the second number times the other's.
     pub(super) follows: Option<(usize, f64)>,
     pub(super) offset: f64,
     /// At least 0.
     pub(super) slope: f64,
     pub(super) bounds: [f64; 2],
-    /// A speed beyond which it does not drive, and how steeply it gives way there.
+    /// A speed beyond which it does not drive, and the slope there.
     pub(super) speed: Option<(f64, f64)>,
 }
 
@@ -34,7 +34,7 @@ impl EffortTerm {
         all[self.index] - other
     }
 
-    /// The effort at a velocity, and how fast it falls there.
+    /// Returns the effort at a velocity, and its slope there.
     pub(super) fn at(&self, velocity: f64) -> (f64, f64) {
         let [low, high] = self.bounds;
         let linear = self.offset - self.slope * velocity;
@@ -56,7 +56,7 @@ impl EffortTerm {
         (effort, fall)
     }
 
-    /// Adds a number along the element's degrees of freedom.
+    /// Adds a value along the term's degrees of freedom.
     fn add(&self, value: f64, to: &mut [f64]) {
         to[self.index] += value;
         if let Some((k, share)) = self.follows {
@@ -102,7 +102,7 @@ impl SymmetricMatrix {
         (0..self.size).map(row).collect()
     }
 
-    /// Cholesky's factor; an entry on the diagonal that rounding has lost becomes tiny instead of negative.
+    /// Returns the Cholesky factor; a diagonal entry lost to rounding becomes tiny instead of negative.
     pub(super) fn factor(&self) -> CholeskyFactor {
         let n = self.size;
         let mut l = vec![0.0; n * n];
@@ -125,7 +125,7 @@ impl SymmetricMatrix {
     }
 }
 
-/// A matrix made ready to be solved.
+/// A Cholesky factor.
 pub(super) struct CholeskyFactor {
     size: usize,
     l: Vec<f64>,
@@ -154,14 +154,14 @@ impl CholeskyFactor {
 /// The effort problem of a tree in one step.
 pub(super) struct EffortProblem {
     pub(super) inertia: SymmetricMatrix,
-    /// The velocities at the end of the step if there were no efforts. Shape (freedom,).
+    /// The velocities at the end of the step without efforts. Shape (freedom,).
     pub(super) free: Vec<f64>,
     pub(super) elements: Vec<EffortTerm>,
     pub(super) dt_s: f64,
 }
 
 impl EffortProblem {
-    /// The velocities at the end of the step. Shape (freedom,).
+    /// Returns the velocities at the end of the step. Shape (freedom,).
     pub(super) fn solve(&self) -> Vec<f64> {
         let mut velocity = self.free.clone();
         let mut before: Option<Vec<f64>> = None;
@@ -178,7 +178,7 @@ impl EffortProblem {
                 }
                 falls.push(fall);
             }
-            // A whole step along unchanged slopes has arrived.
+            // A whole step along unchanged slopes is exact.
             if before.as_ref() == Some(&falls) {
                 break;
             }
@@ -193,7 +193,7 @@ impl EffortProblem {
         velocity
     }
 
-    /// The efforts that lead to these velocities. Shape (freedom,).
+    /// Returns the efforts that lead to these velocities. Shape (freedom,).
     pub(super) fn efforts(&self, velocity: &[f64]) -> Vec<f64> {
         let mut efforts = vec![0.0; velocity.len()];
         for element in &self.elements {
@@ -215,7 +215,7 @@ impl EffortProblem {
         gradient
     }
 
-    /// Returns how far to go along `way`: to the lowest point, at most 1.
+    /// Returns the step length along `way`: to the minimum, at most 1.
     fn stride(&self, from: &[f64], way: &[f64]) -> f64 {
         let rise = |stride: f64| -> f64 {
             let there: Vec<f64> = from.iter().zip(way).map(|(v, d)| v + stride * d).collect();
@@ -225,7 +225,7 @@ impl EffortProblem {
                 .map(|(g, d)| g * d)
                 .sum()
         };
-        // Against the slope at the start, what rounding leaves at the end is nothing.
+        // Relative to the slope at the start, the rest at the end is rounding.
         if rise(1.0) <= 1e-9 * rise(0.0).abs() {
             return 1.0;
         }

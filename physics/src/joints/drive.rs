@@ -28,7 +28,7 @@ pub(crate) struct HandDrive {
     pub(crate) goal: f32,
     /// Present position of the hand.
     ramp: f32,
-    /// For how long nothing has moved, s.
+    /// Time without motion, s.
     stalled_s: f32,
     /// The agent that pulls, if any.
     pub(crate) agent: Option<AgentId>,
@@ -62,7 +62,7 @@ impl HandDrive {
         }
     }
 
-    /// Moves the hand on by one control step and judges the joint.
+    /// Advances the hand by one control step and updates the drive's state.
     fn follow(
         &mut self,
         kind: JointKind,
@@ -72,7 +72,7 @@ impl HandDrive {
     ) -> DriveProgress {
         let (rate, lead) = speed_and_lead(kind);
         let left = (position - self.goal).abs();
-        // Half open it must stand before the hand lets go, or it would coast on.
+        // A joint that stays half open must be at rest before the hand lets go, or it would coast on.
         let slow = if limits.is_some_and(|limits| limits.contains(&self.goal)) {
             STOPPED
         } else {
@@ -92,8 +92,8 @@ impl HandDrive {
             self.ramp = self.goal;
         }
         self.ramp = self.ramp.clamp(position - lead, position + lead);
-        // A light lid with much friction follows the hand without a velocity at the end of a step: what counts is whether it
-        // follows.
+        // A light lid with much friction follows the hand but has no velocity at the end of a step: progress is judged by
+        // its position.
         let strains = (self.ramp - position).abs() > 0.99 * lead;
         if stands && strains {
             self.stalled_s += step_s;
@@ -108,9 +108,8 @@ impl HandDrive {
     }
 }
 
-/// Returns what pulls at a joint during the next control step, and how its hand stands. `values`: what is in force at the joint;
-/// `command`: what it is told;
-/// `hand`: the hand that moves a joint without a servo.
+/// Returns the actuation of a joint during the next control step, and the state of its hand. `values`: the joint's
+/// parameters in force; `command`: its command; `hand`: the hand that moves a joint without a servo.
 pub(crate) fn advance(
     kind: JointKind,
     values: &JointParameters,

@@ -1,4 +1,4 @@
-//! Efforts along joints that answer to the velocity at the end of a step.
+//! Joint efforts that depend on the velocity at the end of a step.
 
 use super::SlipSpring;
 use super::convex_solver::EffortTerm;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Steepness of a rigid constraint, relative to inertia over step: it leaves a millionth of the velocity.
 const RIGID: f64 = 1e6;
-/// The same for positions, which are mended within a few steps.
+/// The same for positions, which are corrected within a few steps.
 const STOP: f64 = 1e2;
 
 /// The actuation of a joint during a control step.
@@ -17,7 +17,7 @@ pub(crate) struct JointActuation {
     pub(crate) target: f32,
     /// N·m or N.
     pub(crate) max_effort: f32,
-    /// It drives to no higher speed, rad/s or m/s; may be infinite.
+    /// Highest speed to which it drives, rad/s or m/s; may be infinite.
     pub(crate) max_velocity: f32,
     /// Share of the weight on the joint that is compensated besides.
     pub(crate) feed_forward: f32,
@@ -38,21 +38,21 @@ pub(crate) enum ActuationGain {
     Effort,
 }
 
-/// The share of what a linkage is off that it mends in a step: all of it at once would swing with what its joints hold.
+/// Share of a mimic joint's error that is corrected in a step: all of it at once would excite oscillations.
 const LINKED: f64 = 0.1;
-/// The fastest that it mends it, rad/s or m/s: a linkage that is set elsewhere goes there, and is not shot there.
+/// Highest speed of that correction, rad/s or m/s: a mimic joint that is set elsewhere moves back, and is not shot back.
 const LINKED_SPEED: f64 = 4.0;
 
 /// One degree of freedom before a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointDof {
-    /// Its number in the problem.
+    /// Its index in the problem.
     pub(super) index: usize,
     pub(super) position: f64,
     pub(super) velocity: f64,
     /// Effective inertia along it with all else fixed, kg·m² or kg.
     pub(super) inertia: f64,
-    /// The effort that carries the weight of what hangs on it.
+    /// The effort that compensates the weight on it.
     pub(super) weight: f64,
     pub(super) dt_s: f64,
 }
@@ -69,8 +69,8 @@ impl JointDof {
         }
     }
 
-    /// Viscous damping. What is between the beginning and the end of the step is weighed so that a joint that it alone
-    /// brakes slows down as the exponential, for any step.
+    /// Viscous damping. The weights of the beginning and the end of the step are chosen so that a joint with no other
+    /// effort slows down exponentially, for any step.
     ///
     /// # Source
     /// W. Liniger, R. A. Willoughby, Efficient integration methods for stiff systems of ordinary differential equations,
@@ -86,14 +86,14 @@ impl JointDof {
         self.element(offset, damping * end, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// Coulomb friction: what stops the motion within the step, up to its bound.
+    /// Coulomb friction: the effort that stops the motion within the step, up to its bound.
     pub(super) fn friction(&self, friction: f64) -> EffortTerm {
         let slope = RIGID * self.inertia / self.dt_s;
         self.element(0.0, slope, [-friction, friction])
     }
 
-    /// A spring that slips: the effort in the middle of the step, where the midpoint rule takes nothing from what rings; at
-    /// its end where the spring is too stiff for the step to follow.
+    /// A slipping spring: the effort at the middle of the step, where the midpoint rule keeps the energy of oscillations;
+    /// at its end where the spring is too stiff for the step to follow.
     pub(super) fn elastic(&self, spring: &SlipSpring) -> EffortTerm {
         let (stiffness, most) = (f64::from(spring.stiffness), f64::from(spring.max_effort));
         let stiff = stiffness * self.dt_s * self.dt_s > self.inertia;
@@ -103,7 +103,7 @@ impl JointDof {
         self.element(offset, slope, [-most, most])
     }
 
-    /// A stop that is not passed: from below (`side` 1) or from above (-1).
+    /// A stop: from below (`side` 1) or from above (-1).
     pub(super) fn stop(&self, limit: f64, side: f64) -> EffortTerm {
         let stiffness = STOP * self.inertia / (self.dt_s * self.dt_s);
         let bounds = if side > 0.0 {
@@ -115,8 +115,8 @@ impl JointDof {
         self.element(offset, stiffness * self.dt_s, bounds)
     }
 
-    /// A linkage: this position shall be `multiplier` times another's plus `offset`, or the nearest within `stops`, against
-    /// which it would press without bound.
+    /// The constraint of a mimic joint: its position is `multiplier` times another's plus `offset`, or the nearest within
+    /// `stops`, against which it would press without bound.
     pub(super) fn follow(
         &self,
         leader: &Self,
@@ -166,7 +166,7 @@ impl JointDof {
     }
 }
 
-/// The unit in which a hinge or a slide is near a limit, rad or m.
+/// Returns whether rapier can enforce limits of a hinge or slide, rad or m.
 pub(crate) fn rapier_holds(kind: JointKind, limits: [f32; 2]) -> bool {
     use std::f32::consts::PI;
     // rapier compares sines of half angles: beyond half a turn they fall again.
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// The effort of elements on one degree of freedom that would move with `free` without them, and its velocity.
+    /// Returns the effort of terms on one degree of freedom that would move with `free` without them, and its velocity.
     fn effort(elements: Vec<EffortTerm>, free: f64) -> (f64, f64) {
         let mut inertia = SymmetricMatrix::zero(1);
         inertia.set(0, 0, 0.1);

@@ -1,9 +1,9 @@
-//! The efforts that act along joints: motors and hands, damping, friction, stops and linkages.
+//! Efforts along joints: motors and hands, damping, friction, stops and mimic joints.
 //!
-//! rapier's own motors are solved in turn with the rows that hold joints together, and creep under load. Here the efforts
-//! of a whole tree are computed once a physics step, implicitly and together, so that stiff gains stay stable and a robot
-//! at rest is held, and are given to rapier as forces. A tree that nothing touches is then put where its joints go: rapier
-//! holds joints together after the fact, which costs energy.
+//! rapier's own motors are solved in turn with the constraint rows of joints, and creep under load. Here the efforts of a
+//! whole tree are computed once a physics step, implicitly and together, so that stiff gains stay stable and a robot at
+//! rest is held, and are given to rapier as forces. A tree that nothing touches is then put at its predicted joint
+//! positions: rapier closes joints after the fact, which costs energy.
 
 use super::PhysicsJoint;
 use super::effort_term::JointActuation;
@@ -26,7 +26,7 @@ pub(crate) struct JointDrivers<'a> {
     pub(crate) joints: &'a [PhysicsJoint],
     /// The actuation of each joint. Shape (joint,).
     pub(crate) pulls: &'a [Option<JointActuation>],
-    /// The numbers of each, as the last step left them. Shape (joint,).
+    /// Each joint's coordinates after the last step. Shape (joint,).
     pub(crate) joint_coordinates: &'a [JointCoordinate],
     /// Changes of joint resistance by laws; `None`: no law changes it.
     pub(crate) resist: Option<&'a ResistanceFn<'a>>,
@@ -38,13 +38,13 @@ pub(crate) struct JointDrivers<'a> {
 /// The wrench of laws on a body.
 pub(crate) type LinkWrenchFn<'a> = dyn Fn(LinkStep) -> ExternalWrench + 'a;
 
-/// Changes what a joint resists with under a load.
+/// Changes a joint's resistance under a load.
 pub(crate) type ResistanceFn<'a> = dyn Fn(JointId, &JointLoad, &mut JointResistance) + 'a;
 
 /// The predicted motion of one joint in a step.
 #[derive(Clone, Copy, Debug)]
 struct PredictedJoint {
-    /// Its place in the world's joints.
+    /// Its index among the world's joints.
     joint: usize,
     /// Before and after the step, rad or m.
     positions: [f64; 2],
@@ -64,7 +64,7 @@ pub(crate) struct TreePrediction {
     loose: bool,
 }
 
-/// Gives rapier the efforts of a tree for the next step. `None` for a tree that is asleep or shut.
+/// Gives rapier the efforts of a tree for the next step. Returns `None` for a tree that is asleep or latched.
 pub(crate) fn apply_efforts(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
@@ -97,8 +97,8 @@ pub(crate) fn apply_efforts(
     })
 }
 
-/// Gives every body all that acts on it, the reactions of its joints included: rapier's rows, which are solved in turn and
-/// would give way under a long chain, then find nothing left to do.
+/// Applies to every body all forces on it, the reactions of its joints included: rapier's rows, which are solved in turn
+/// and would give way under a long chain, then have nothing left to do.
 fn carry(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
@@ -121,8 +121,8 @@ fn carry(
 }
 
 impl PredictedJoint {
-    /// Returns whether a joint that was as `before` came to `now` as it was expected to. rapier takes a whole step for the blow of a
-    /// stop, and may leave the joint short of it.
+    /// Returns whether a joint that was at `before` came to `now` as predicted. rapier takes a whole step for the impact at
+    /// a stop, and may leave the joint short of it.
     fn as_predicted(
         &self,
         engine: &RapierWorld,
@@ -194,7 +194,7 @@ pub(crate) fn settle(
     true
 }
 
-/// Puts the bodies of a tree where its joints go.
+/// Puts the bodies of a tree at its joints' predicted positions.
 fn follow(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
@@ -208,7 +208,7 @@ fn follow(
     }
 }
 
-/// Holds a tree together that slept when the step began and was woken in it. Returns whether it was moved.
+/// Closes the joints of a tree that slept when the step began and was woken in it. Returns whether it was moved.
 pub(crate) fn project_woken(
     engine: &mut RapierWorld,
     tree: &KinematicTree,
@@ -223,7 +223,7 @@ pub(crate) fn project_woken(
     true
 }
 
-/// Takes the efforts of the last step back, before new ones are given.
+/// Removes the efforts of the last step, before new ones are applied.
 pub(crate) fn clear_efforts(engine: &mut RapierWorld, joint: &PhysicsJoint) {
     for handle in [joint.child_handle, joint.parent_handle] {
         let awake = engine.bodies.get(handle).is_some_and(|body| {

@@ -1,8 +1,8 @@
 //! Contact forces on the bodies of a tree, besides the support of a free root.
 //!
-//! Joints' efforts answer to the velocity at the end of a step. A finger that presses on a thing does not get the velocity
-//! that it would get alone, and a motor that reckoned with that would hardly press. So the problem of a tree holds the forces
-//! that touched it in the last step; from step to step they come to be those that its motors give.
+//! Joints' efforts depend on the velocity at the end of a step. A finger that presses on an object does not get the
+//! velocity that it would have alone, and a motor that assumed so would hardly press. So the equations of a tree include
+//! the contact forces of the last step; from step to step these converge to those that its motors give.
 
 use super::support;
 use super::tree_dynamics::Wrench;
@@ -17,16 +17,16 @@ const PARTING_M_S: f64 = 0.02;
 /// A surface that presses on a body of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ExternalContact {
-    /// Which joint's body is touched; `None`: the root.
+    /// The joint whose body is touched; `None`: the root.
     pub(super) link: Option<usize>,
     /// Point of application, m.
     pub(super) at: DVec3,
-    /// Push and friction, and torsional friction about `at`.
+    /// Normal force and friction, and torsional friction about `at`.
     wrench: Wrench,
 }
 
 impl ExternalContact {
-    /// Force and moment about a point.
+    /// Returns force and moment about a point.
     pub(super) fn about(&self, point: DVec3) -> Wrench {
         let Wrench { force, moment } = self.wrench;
         Wrench {
@@ -35,14 +35,14 @@ impl ExternalContact {
         }
     }
 
-    /// The same about the world's origin.
+    /// Returns the same about the world's origin.
     pub(super) fn about_origin(&self) -> Wrench {
         self.about(DVec3::ZERO)
     }
 }
 
-/// Returns what touches the bodies of a tree, in a fixed order. `stands`: whether what carries it from below is left out; what it
-/// carries of itself never is, or it would press on itself one way only.
+/// Returns the contact forces on the bodies of a tree, in a fixed order. `stands`: whether support from below is left out;
+/// contacts within the tree never are, or it would press on itself one way only.
 pub(super) fn of_tree(
     engine: &RapierWorld,
     bodies: &[(RigidBodyHandle, Option<usize>)],
@@ -102,7 +102,7 @@ fn of_plane(
         let Some(point) = plane.points.get(contact.contact_indices()[0] as usize) else {
             continue;
         };
-        // The last substep's: what an impact gave before it is over.
+        // That of the last substep: an impact's earlier impulse is over.
         let push = f64::from(point.data.warmstart_impulse) * per_s;
         press += push;
         moment += support::place(engine, pair, plane, contact) * push;
@@ -127,7 +127,7 @@ fn of_plane(
     if (velocity(body) - velocity(other)).dot(normal) > PARTING_M_S {
         return None;
     }
-    // rapier keeps what acts on the first body, and turns it about the normal that points into it.
+    // rapier keeps the impulse on the first body, and turns it about the normal that points into it.
     Some(ExternalContact {
         link,
         at,

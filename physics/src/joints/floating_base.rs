@@ -1,10 +1,10 @@
-//! A root that is free to answer what its joints do.
+//! Floating base: a free root that reacts to its joints.
 
 use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
 use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, Wrench};
 use glam::DVec3;
 
-/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
+/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints were locked, and its rotation.
 ///
 /// # Source
 /// R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: floating bases, here with the root's freedoms eliminated
@@ -13,7 +13,7 @@ pub(super) struct FloatingBase {
     /// The tree as one body.
     pub(super) whole: LumpedBody,
     factor: CholeskyFactor,
-    /// Linear and angular momentum about the centre of mass of all for each unit of a joint's velocity. Shape (freedom, 6).
+    /// Linear and angular momentum about the common centre of mass for each unit of a joint's velocity. Shape (freedom, 6).
     pub(super) columns: Vec<[f64; 6]>,
 }
 
@@ -39,7 +39,7 @@ impl FloatingBase {
             .zip(carried)
             .filter(|(axis, _)| axis.parent.is_none());
         let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
-        // About the centre of mass of all, linear and angular momentum are apart.
+        // About the common centre of mass, linear and angular momentum are decoupled.
         let columns = momenta
             .iter()
             .zip(carried)
@@ -57,7 +57,7 @@ impl FloatingBase {
         }
     }
 
-    /// Takes off what the joints' inertia loses because the root gives way.
+    /// Subtracts the inertia that joints lose because the root is free.
     pub(super) fn subtract_base_inertia(&self, inertia: &mut SymmetricMatrix) {
         for (k, column) in self.columns.iter().enumerate() {
             let answer = self.factor.solve(column);
@@ -67,18 +67,18 @@ impl FloatingBase {
         }
     }
 
-    /// Returns what the six freedoms resist with.
+    /// Returns the inertia matrix of the six freedoms.
     pub(super) fn inertia(&self) -> SymmetricMatrix {
         six_by_six(&self.whole)
     }
 
-    /// The six velocities of a root whose centre of mass moves like this.
+    /// Returns the six velocities of a root with this motion and velocity of its centre of mass.
     pub(super) fn before(&self, root: &BodyAcceleration, velocity: DVec3) -> [f64; 6] {
         let there = velocity + root.angular.cross(self.whole.center - root.center);
         six(there, root.angular)
     }
 
-    /// A load about the origin as what the six freedoms feel.
+    /// Returns a load about the origin as a generalized force on the six freedoms.
     pub(super) fn generalized_force(&self, load: &Wrench) -> [f64; 6] {
         six(
             load.force,
@@ -86,7 +86,7 @@ impl FloatingBase {
         )
     }
 
-    /// Takes off what the joints' efforts lose because the root gives way under a load.
+    /// Subtracts the efforts that joints lose because the root is free under a load.
     pub(super) fn subtract_base_load(&self, load: &Wrench, efforts: &mut [f64]) {
         let answer = self.factor.solve(&self.generalized_force(load));
         for (effort, column) in efforts.iter_mut().zip(&self.columns) {
@@ -94,7 +94,7 @@ impl FloatingBase {
         }
     }
 
-    /// The root when its six velocities change like this, per second.
+    /// Returns the root's motion when its six velocities change at this rate, per second.
     pub(super) fn accelerated(
         &self,
         root: &BodyAcceleration,

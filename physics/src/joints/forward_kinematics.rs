@@ -1,4 +1,4 @@
-//! Puts the bodies of a tree where its joints are said to stand, with the velocities they are said to have.
+//! Forward kinematics: places the bodies of a tree at given joint positions and velocities.
 
 use super::frame::RigidTransform;
 use super::{KinematicTree, PhysicsJoint};
@@ -19,13 +19,13 @@ pub(crate) struct JointPlacement {
     pub(crate) shut: bool,
 }
 
-/// A difference that rounding makes between a joint's number and what its bodies say: rad or m, and rad/s or m/s.
+/// Tolerance for rounding between a joint's value and that of its bodies: rad or m, and rad/s or m/s.
 const ROUNDING: f32 = 5e-7;
-/// The least component of an axis along which the rest of a rounded velocity goes.
+/// The least component of an axis along which the remainder of a rounded velocity goes.
 const ALONG: f64 = 0.2;
 
-/// Places a tree's bodies, parents first; what stands and moves as told is left alone, so that it may sleep on. `stands`:
-/// for each of the world's joints.
+/// Places a tree's bodies, parents first; bodies that already have the commanded pose and velocity are left alone, so that
+/// they may sleep on. `stands`: for each of the world's joints.
 pub(crate) fn place(
     engine: &mut RapierWorld,
     joints: &[PhysicsJoint],
@@ -50,7 +50,7 @@ pub(crate) fn place(
     }
 }
 
-/// Puts the body of a joint at a position (rad or m) with a velocity over where its parent is and how that moves.
+/// Puts the body of a joint at a position (rad or m) with a velocity, relative to its parent's pose and motion.
 pub(super) fn put(
     engine: &mut RapierWorld,
     joint: &PhysicsJoint,
@@ -94,8 +94,9 @@ pub(super) fn put(
     child.set_angvel(angular, wake);
 }
 
-/// A velocity in f32 whose part along an axis is as near as f32 can have it: what rounding leaves along the axis goes to the
-/// components that are told most finely. Bodies hold sums along a chain, whose rounding is too coarse for one joint.
+/// Returns a velocity in f32 whose component along an axis is as near as f32 can have it: the rounding remainder along the
+/// axis goes to the components with the finest spacing. Bodies hold sums along a chain, whose rounding is too coarse for
+/// one joint.
 fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
     let mut rounded = velocity.as_vec3();
     let grain = |k: usize| velocity[k].abs() * axis[k].abs();
@@ -111,7 +112,7 @@ fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
 }
 
 impl JointPlacement {
-    /// Returns whether this is what bodies say, within these shares, or these numbers below 1.
+    /// Returns whether a position and velocity agree with these, within these shares, or these values below 1.
     fn says(&self, (position, velocity): (f64, f64), within: [f32; 2]) -> bool {
         let same = |told: f32, found: f64, within: f32| {
             (found - f64::from(told)).abs() <= f64::from(within * told.abs().max(1.0))
@@ -120,8 +121,8 @@ impl JointPlacement {
     }
 }
 
-/// Returns whether bodies say the same of a joint as the numbers it was told, up to their rounding. A slide's numbers are differences
-/// of places and velocities in the world, and round as those do.
+/// Returns whether bodies agree with a joint's given coordinates, up to their rounding. A slide's coordinates are
+/// differences of positions and velocities in the world, and round as those do.
 pub(crate) fn matches_bodies(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
@@ -146,8 +147,8 @@ mod tests {
     use super::*;
     use dwell_scene::random::RandomKey;
 
-    /// Random sums of 30 rad/s about random axes: along the axis within 1e-6, where plain rounding is off by twice that, and no
-    /// component is moved by more than ten times its rounding.
+    /// Random sums of 30 rad/s about random axes: along the axis within 1e-6, where plain rounding is off by twice that,
+    /// and no component is moved by more than ten times its rounding.
     #[test]
     fn a_velocity_is_rounded_so_that_its_part_along_the_axis_stays() {
         let (mut plain, mut worst) = (0.0_f64, 0.0_f64);

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, Quat};
 use rapier3d::math::Pose as RapierPose;
 
-/// A rigid motion in f64: rapier's own rounding does not pile up along a chain.
+/// A rigid transform in f64, so that rounding does not accumulate along a chain.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigidTransform {
     pub(super) at: DVec3,

@@ -1,7 +1,7 @@
-//! Trees that are struck: how fast points of their bodies go, and how their joints answer an impulse.
+//! Impulse dynamics of trees: velocities of their bodies' points, and the response of their joints to impulses.
 //!
-//! A leaf that is struck beside its hinge gives way about the hinge and nowhere else. Rebounds that took its body for a loose
-//! one, or for one that stands, would part too fast or too slowly.
+//! A leaf that is hit beside its hinge gives way about the hinge and nowhere else. Rebounds that took its body for a free
+//! or a fixed one would part too fast or too slowly.
 //!
 //! # Source
 //! R. Featherstone, Rigid Body Dynamics Algorithms (2008), 11.7: impulsive dynamics in joint space.
@@ -22,15 +22,15 @@ const AT_STOP: f64 = 1e-4;
 /// Factor on the inertia of a rigid joint.
 const RIGID: f64 = 1e6;
 
-/// A tree after a step, as impulses change how it moves.
+/// A tree after a step, whose velocities impulses change.
 pub(crate) struct ImpulseDynamics {
-    /// Its place among the world's trees.
+    /// Its index among the world's trees.
     tree: usize,
-    /// The joints that may move, by their places in the tree. Shape (freedom,).
+    /// The joints that may move, by their indices in the tree. Shape (freedom,).
     free: Vec<usize>,
     /// rad or m. Shape (freedom,).
     positions: Vec<f64>,
-    /// The lower and the upper stop of each where the joint stands or stood at it when the step began. Shape (freedom,).
+    /// The lower and the upper stop of each where the joint is at it, or was when the step began. Shape (freedom,).
     at_stop: Vec<[Option<f64>; 2]>,
     axes: Vec<JointAxisState>,
     /// The bodies that the joints move. Shape (freedom,).
@@ -41,12 +41,12 @@ pub(crate) struct ImpulseDynamics {
     floating: Option<FloatingBase>,
     /// The joint-space inertia matrix, with a free root's six freedoms.
     inertia: SymmetricMatrix,
-    /// Of the joints, and of a free root's six freedoms.
+    /// Velocities of the joints, and of a free root's six freedoms.
     velocities: Vec<f64>,
     moved: bool,
 }
 
-/// A point of a tree's bodies and a direction in which it may be pushed.
+/// A point of a tree's bodies and the direction of an impulse on it.
 pub(crate) struct ImpulsePoint {
     /// Jacobian row: its speed in that direction for each unit of the tree's velocities.
     row: Vec<f64>,
@@ -57,14 +57,14 @@ pub(crate) struct ImpulsePoint {
 }
 
 impl ImpulsePoint {
-    /// Returns how fast the point goes after 1 N·s, m/s.
+    /// Returns the speed of the point after 1 N·s, m/s.
     pub(crate) fn inverse_effective_mass(&self) -> f64 {
         dot(&self.row, &self.answer)
     }
 }
 
 impl ImpulseDynamics {
-    /// Returns which of the world's trees a body is of.
+    /// Returns the index of a body's tree among the world's.
     pub(crate) fn tree_of(
         trees: &[KinematicTree],
         joints: &[PhysicsJoint],
@@ -77,8 +77,8 @@ impl ImpulseDynamics {
         trees.iter().position(of)
     }
 
-    /// The tree as it moves now; `None` where it sleeps or is shut. The numbers of each of the world's joints before the step and
-    /// now.
+    /// Returns the tree in its present motion; `None` where it sleeps or is latched. Takes each of the world's joints'
+    /// coordinates before the step and now.
     pub(crate) fn of(
         engine: &RapierWorld,
         (trees, tree): (&[KinematicTree], usize),
@@ -145,13 +145,13 @@ impl ImpulseDynamics {
         self.moved = true;
     }
 
-    /// Its place among the world's trees.
+    /// Returns its index among the world's trees.
     pub(crate) fn tree(&self) -> usize {
         self.tree
     }
 
-    /// A point of a body where it is pushed in a direction; `None` for a body that does not give way. A joint that this pushes
-    /// against its stop stays there: rapier's stops would throw it back.
+    /// Returns a point of a body with a direction of impulse; `None` for a body that does not give way. A joint that this
+    /// presses against its stop stays there: rapier's stops would throw it back.
     pub(crate) fn point(
         &mut self,
         body: RigidBodyHandle,
@@ -188,7 +188,7 @@ impl ImpulseDynamics {
         })
     }
 
-    /// Returns what 1 N·s adds to the velocities. Joints at a stop are not pushed through it.
+    /// Returns the velocity change by 1 N·s. Joints at a stop are not moved through it.
     fn answer(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
         let mut answer = inertia.factor().solve(row);
@@ -212,12 +212,12 @@ impl ImpulseDynamics {
         }
     }
 
-    /// Returns how fast a point goes in its direction, m/s.
+    /// Returns the speed of a point in its direction, m/s.
     pub(crate) fn speed(&self, point: &ImpulsePoint) -> f64 {
         dot(&point.row, &self.velocities) + point.root_velocity_along
     }
 
-    /// Pushes at a point in its direction, N·s.
+    /// Applies an impulse at a point in its direction, N·s.
     pub(crate) fn push(&mut self, point: &ImpulsePoint, impulse: f64) {
         for (velocity, answer) in self.velocities.iter_mut().zip(&point.answer) {
             *velocity += impulse * answer;
@@ -225,18 +225,18 @@ impl ImpulseDynamics {
         self.moved |= impulse != 0.0;
     }
 
-    /// Returns how it moves, to be given back to [`ImpulseDynamics::restore_velocities`].
+    /// Returns the velocities, for [`ImpulseDynamics::restore_velocities`].
     pub(crate) fn velocities(&self) -> Vec<f64> {
         self.velocities.clone()
     }
 
-    /// Lets it move as it did.
+    /// Restores velocities.
     pub(crate) fn restore_velocities(&mut self, velocities: &[f64]) {
         self.velocities.copy_from_slice(velocities);
     }
 
-    /// Gives the bodies what became of their velocities; `joint_coordinates`: the numbers of each of the world's joints. Returns whether
-    /// anything was changed.
+    /// Writes the velocities to the bodies; `joint_coordinates`: the coordinates of each of the world's joints. Returns
+    /// whether anything was changed.
     pub(crate) fn write(
         &self,
         engine: &mut RapierWorld,
@@ -268,7 +268,7 @@ impl ImpulseDynamics {
     }
 }
 
-/// Joins the joints of linkages: those that follow move only as their leaders do.
+/// Couples mimic joints: they move only as their leaders do.
 fn link(
     inertia: &mut SymmetricMatrix,
     tree: &KinematicTree,
@@ -289,7 +289,7 @@ fn link(
     }
 }
 
-/// The inertia of `n` joints and of a root that is free.
+/// Returns the inertia matrix of `n` joints and of a free root.
 fn with_root(joints: &SymmetricMatrix, floating: &FloatingBase, n: usize) -> SymmetricMatrix {
     let mut all = SymmetricMatrix::zero(n + 6);
     for k in 0..n {

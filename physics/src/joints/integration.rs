@@ -1,8 +1,8 @@
-//! The course of a tree through one physics step.
+//! Integration of a tree over one physics step.
 //!
-//! Efforts are implicit and found together for all joints; inertia and what motion and weight ask for are taken at the
-//! middle of the step, which is found by iteration: the implicit midpoint rule, symmetric in time, so that what swings
-//! freely neither gains nor loses energy for long. What turns fast takes shorter steps.
+//! Efforts are implicit and computed together for all joints; inertia, gravity and velocity terms are taken at the middle
+//! of the step, which is found by iteration: the implicit midpoint rule, symmetric in time, so that oscillations keep their
+//! energy. Fast rotations take shorter steps.
 //!
 //! # Source
 //! E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), II.1.1 and XI.3: the midpoint rule, and the
@@ -17,17 +17,17 @@ use super::tree_dynamics::TreeDynamics;
 use super::{JointDrivers, PhysicsJoint};
 use super::{JointLoad, JointResistance};
 
-/// A way within a step, rad or m, below which a tree counts as standing.
+/// Displacement in a step, rad or m, below which a tree counts as at rest.
 pub(super) const AT_REST: f64 = 1e-5;
-/// The longest way of a joint in one part of a step, rad or m.
+/// Longest displacement of a joint in one part of a step, rad or m.
 const STRIDE: f64 = 0.05;
-/// The most parts of a step: as many as the fastest that may be set, 1000 rad/s, takes at 120 Hz.
+/// Most parts of a step: those of the highest speed that may be set, 1000 rad/s, at 120 Hz.
 const MOST_PARTS: f64 = 168.0;
 /// Iterations for the middle of a part.
 const SWEEPS: usize = 3;
 /// Most iterations of friction and the load that depends on it.
 const FRICTION_SWEEPS: usize = 8;
-/// Loads that differ by less count as found: N·m or N, and as a share.
+/// Convergence tolerance of loads: N·m or N, and as a share.
 const FOUND: f64 = 1e-6;
 /// Bounds on the slope of a load over the load assumed for it.
 const FALLS: [f64; 2] = [-20.0, 0.5];
@@ -37,7 +37,7 @@ const GROUND_ROUNDS: usize = 6;
 /// The free joints of a tree in a step.
 pub(super) struct TreeSolver<'a> {
     pub(super) tree: &'a KinematicTree,
-    /// Their places in the tree.
+    /// Their indices in the tree.
     pub(super) free: &'a [usize],
     pub(super) joints: &'a [&'a PhysicsJoint],
     pub(super) drivers: &'a JointDrivers<'a>,
@@ -78,7 +78,7 @@ fn plus(a: &[f64], b: &[f64], share: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| a + share * b).collect()
 }
 
-/// Returns what changes in a time, per second.
+/// Returns the rate of change, per second.
 fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
     let pairs = before.iter().zip(after);
     pairs
@@ -86,8 +86,8 @@ fn rate(before: &[f64], after: &[f64], time_s: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Returns what to take for the loads next, where `taken` led to `seen`: the latter or, where a load answers to what was taken for it,
-/// where the line through both pairs meets itself (Steffensen). Shape (freedom,).
+/// Returns the next estimate of the loads, where `taken` led to `seen`: the latter or, where a load depends on the
+/// estimate, the fixed point of the line through both pairs (Steffensen). Shape (freedom,).
 fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> Vec<f64> {
     let Some([taken_before, seen_before]) = before else {
         return seen.to_vec();
@@ -104,7 +104,7 @@ fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> 
 }
 
 impl TreeSolver<'_> {
-    /// Returns where the tree goes from here.
+    /// Integrates the tree from here.
     pub(super) fn integrate<'c>(
         &self,
         chain: &'c Chain,
@@ -148,7 +148,7 @@ impl TreeSolver<'_> {
             v = plus(&v, &gained, part_s);
             left -= 1.0;
         }
-        // What is faster than numbers can follow stops where it is.
+        // Velocities that overflow stop at their last value.
         if !q.iter().chain(&v).all(|number| number.is_finite()) {
             (q, v, answer) = (positions.to_vec(), vec![0.0; velocities.len()], None);
         }
@@ -173,8 +173,8 @@ impl TreeSolver<'_> {
         }
     }
 
-    /// Returns where joints are after a part of a step that would end at `next`. Stops act on the velocity at its end, and the mean
-    /// velocity may pass them.
+    /// Returns the joints' positions after a part of a step that would end at `next`. Stops act on the velocity at its end,
+    /// and the mean velocity may pass them.
     fn within_stops(&self, from: &[f64], mut next: Vec<f64>) -> Vec<f64> {
         for ((joint, from), next) in self.joints.iter().zip(from).zip(&mut next) {
             if let Some([low, high]) = joint.values.limits.map(|limits| limits.map(f64::from)) {
@@ -184,8 +184,8 @@ impl TreeSolver<'_> {
         next
     }
 
-    /// The accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia and loads
-    /// as in `motion`.
+    /// Returns the accelerations in a part of a step that begins with positions `from` and velocities `now`, with inertia
+    /// and loads as in `motion`.
     fn part(
         &self,
         motion: &TreeDynamics<'_>,
@@ -223,7 +223,7 @@ impl TreeSolver<'_> {
         }
     }
 
-    /// The velocities at the end of a part of a step.
+    /// Returns the velocities at the end of a part of a step.
     fn solve(&self, reduced: &ReducedProblem, seen: &SubstepStart<'_>) -> Vec<f64> {
         let SubstepStart {
             from,
@@ -251,7 +251,7 @@ impl TreeSolver<'_> {
             .collect();
         let gives =
             |k: usize, velocity: f64| pulls[k].as_ref().map_or(0.0, |pull| pull.at(velocity).0);
-        // What each joint resists with depends on what loads it and on its speed, and these on what it resists with.
+        // Each joint's resistance depends on its load and speed, and these on its resistance.
         let mut ends = now.to_vec();
         let mut external: Vec<f64> = weights.iter().map(|weight| -weight).collect();
         let mut before: Option<[Vec<f64>; 2]> = None;
@@ -311,7 +311,7 @@ impl TreeSolver<'_> {
         }
     }
 
-    /// Returns what a joint resists with under a load.
+    /// Returns a joint's resistance under a load.
     fn resistance(&self, k: usize, load: &JointLoad) -> JointResistance {
         let joint = self.joints[k];
         let mut resistance = JointResistance {
@@ -326,7 +326,7 @@ impl TreeSolver<'_> {
         resistance
     }
 
-    /// Returns what acts along a joint by its motor and by what it resists with.
+    /// Returns the efforts along a joint of its motor and its resistance.
     fn own_elements<'a>(
         &'a self,
         freedom: &'a JointDof,
@@ -342,7 +342,7 @@ impl TreeSolver<'_> {
         [damps, rubs, springs, pulls].into_iter().flatten()
     }
 
-    /// All that acts along the joints.
+    /// Returns all efforts along the joints.
     fn elements(&self, freedoms: &[JointDof], resistances: &[JointResistance]) -> Vec<EffortTerm> {
         let mut elements = Vec::with_capacity(3 * freedoms.len());
         for ((joint, freedom), place) in self.joints.iter().zip(freedoms).zip(self.free) {

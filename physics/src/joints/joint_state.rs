@@ -14,8 +14,8 @@ use glam::DVec3;
 use rapier3d::dynamics::RigidBody;
 use std::f64::consts::TAU;
 
-/// The numbers that physics goes on from at a joint: where it stands and how it moves. Bodies hold the same as places and
-/// velocities in the world, rounded to f32 where they are.
+/// The coordinates of a joint from which physics goes on: position and velocity. Bodies hold the same as poses and
+/// velocities in the world, rounded to f32.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct JointCoordinate {
     /// rad or m.
@@ -39,14 +39,14 @@ pub(super) struct JointReading {
     spins: [DVec3; 2],
 }
 
-/// Returns where a joint stands and how fast it moves, rad or m (and per second). `last_known` picks the turn of a hinge.
+/// Returns position and velocity of a joint, rad or m (and per second). `last_known` picks the turn of a hinge.
 pub(crate) fn read(engine: &RapierWorld, joint: &PhysicsJoint, last_known: f64) -> (f64, f64) {
     let reading = JointReading::of(engine, joint, last_known);
     (reading.position, reading.velocity)
 }
 
-/// The numbers that physics goes on from at a joint that is said to have those of `last_known`: the same, where bodies differ from
-/// them by no more than their rounding.
+/// Returns the coordinates from which physics goes on at a joint with the coordinates `last_known`: the same, where bodies
+/// differ from them by no more than their rounding.
 pub(crate) fn stands(
     engine: &RapierWorld,
     joint: &PhysicsJoint,
@@ -55,8 +55,8 @@ pub(crate) fn stands(
     JointReading::before(engine, joint, last_known).coordinate()
 }
 
-/// By how much bodies may misstate a joint's position and velocity because they are f32: rad or m, and per second. A place
-/// is rounded as far as it is from the world's origin, a velocity as the bodies' own.
+/// Returns the rounding error of a joint's position and velocity because bodies are f32: rad or m, and per second. A
+/// position is rounded by its distance from the world's origin, a velocity by the bodies' own.
 fn rounding(engine: &RapierWorld, joint: &PhysicsJoint) -> [f64; 2] {
     let grain = ROUNDINGS * f64::from(f32::EPSILON);
     let mut sizes = [1.0_f64, 0.0];
@@ -80,12 +80,12 @@ fn rounding(engine: &RapierWorld, joint: &PhysicsJoint) -> [f64; 2] {
     sizes.map(|size| grain * size)
 }
 
-/// Returns how many substeps a physics step has, and how long each is, s.
+/// Returns the number of substeps in a physics step, and their length, s.
 fn substeps(engine: &RapierWorld) -> (f64, f64) {
     (engine.substeps().into(), engine.substep_s().into())
 }
 
-/// The velocity of a body's point, m/s.
+/// Returns the velocity of a body's point, m/s.
 fn velocity_at(body: &RigidBody, at: DVec3) -> DVec3 {
     let arm = at - body.center_of_mass().as_dvec3();
     body.linvel().as_dvec3() + body.angvel().as_dvec3().cross(arm)
@@ -103,8 +103,8 @@ impl JointReading {
         Self::with(engine, joint, |_, _| (last_known, 0.0))
     }
 
-    /// The joint before a step. Where bodies differ from `last_known` by no more than their rounding, it has those numbers: what was
-    /// put at a stop is at the stop, and a slide far from the origin goes on as finely as one near it.
+    /// Returns the joint before a step. Where bodies differ from `last_known` by no more than their rounding, it has those
+    /// coordinates: a joint put at a stop is at the stop, and a slide far from the origin moves as finely as one near it.
     pub(super) fn before(
         engine: &RapierWorld,
         joint: &PhysicsJoint,
@@ -123,10 +123,11 @@ impl JointReading {
         }
     }
 
-    /// The joint at the end of a physics step that began with `self`.
+    /// Returns the joint at the end of a physics step that began with `self`.
     ///
-    /// The turn is the right one while the joint's acceleration is even, however fast it turns, and for an impact that changes
-    /// its velocity by less than a turn a physics step, 754 rad/s at 120 Hz: when in the step it came is not known.
+    /// The turn is the right one while the joint's acceleration is constant, however fast it turns, and for an impact that
+    /// changes its velocity by less than a turn a physics step, 754 rad/s at 120 Hz: the time of the impact in the step is
+    /// not known.
     pub(super) fn later(&self, engine: &RapierWorld, joint: &PhysicsJoint) -> Self {
         let (count, substep_s) = substeps(engine);
         let turns_alone = is_untouched(engine, joint);
@@ -142,15 +143,16 @@ impl JointReading {
         })
     }
 
-    /// Returns how far the joint goes in a physics step that it ends with a velocity, rad or m, when its acceleration is even: rapier
-    /// goes on with the velocity at the end of each substep.
+    /// Returns the displacement of the joint in a physics step that it ends with a velocity, rad or m, at constant
+    /// acceleration: rapier uses the velocity at the end of each substep.
     pub(super) fn way(&self, engine: &RapierWorld, velocity: f64) -> f64 {
         let (count, substep_s) = substeps(engine);
         let gained = (velocity - self.velocity) * 0.5 * (count + 1.0) / count;
         (self.velocity + gained) * count * substep_s
     }
 
-    /// `expect`: from how the joint moves now and its axis in the world, about where its bodies have it, and what they miss.
+    /// `expect`: from the joint's present motion and its axis in the world, its approximate position by its bodies, and
+    /// their lost rotation.
     fn with(
         engine: &RapierWorld,
         joint: &PhysicsJoint,
@@ -211,7 +213,7 @@ pub(super) fn is_untouched(engine: &RapierWorld, joint: &PhysicsJoint) -> bool {
     body.is_dynamic() && !body.is_sleeping() && !body.colliders().iter().any(|c| pressed(*c))
 }
 
-/// Returns what a body that turned with `before` and now turns with `after`, rad/s, has turned too little in `count` substeps, rad.
+/// Returns the rotation that `count` substeps lose of a body that turned with `before` and now turns with `after`, rad/s; rad.
 fn missing_turn(before: DVec3, after: DVec3, count: f64, substep_s: f64) -> DVec3 {
     let mut missing = DVec3::ZERO;
     let mut k = 1.0;
@@ -233,7 +235,7 @@ fn missing_turn(before: DVec3, after: DVec3, count: f64, substep_s: f64) -> DVec
 mod tests {
     use super::*;
 
-    /// rapier's way of turning, repeated by hand in complex numbers: what is missing makes up for it at any speed.
+    /// Rapier's rotation update repeated in complex numbers: the correction makes up for the loss at any speed.
     #[test]
     fn what_is_missing_makes_up_for_substeps() {
         for (before, after) in [(1.0, 3.0), (90.0, 100.0), (-400.0, 300.0), (1000.0, 1000.0)] {

@@ -1,11 +1,11 @@
-//! Doors that are shut stay shut: their leaf stands until it is opened.
+//! Latches: closed doors are fixed until they are opened.
 
 use super::{PhysicsJoint, child_at};
 use crate::body::{BodyHandle, BodyStatus, body_type};
 use crate::engine::RapierWorld;
 use dwell_scene::{Articulation, JointKind};
 
-/// Returns how near to its closed position a joint counts as shut, rad or m.
+/// Returns the distance from its closed position within which a joint counts as closed, rad or m.
 pub(crate) fn tolerance(kind: JointKind) -> f32 {
     match kind {
         JointKind::Hinge => 0.02,
@@ -13,7 +13,7 @@ pub(crate) fn tolerance(kind: JointKind) -> f32 {
     }
 }
 
-/// Returns whether a joint at `position` is shut.
+/// Returns whether a joint at `position` is closed.
 pub(crate) fn stands_shut(
     joint: &PhysicsJoint,
     articulation: &Articulation,
@@ -22,7 +22,7 @@ pub(crate) fn stands_shut(
     joint.latchable && (position - articulation.closed).abs() <= tolerance(joint.kind)
 }
 
-/// Shuts a joint at its closed position.
+/// Latches a joint at its closed position.
 pub(crate) fn shut(
     engine: &mut RapierWorld,
     joint: &PhysicsJoint,
@@ -40,7 +40,7 @@ pub(crate) fn shut(
     }
 }
 
-/// Lets a shut joint move again.
+/// Releases a latched joint.
 pub(crate) fn release(engine: &mut RapierWorld, body: &BodyHandle, hold: &mut BodyStatus) {
     if *hold == BodyStatus::Latched {
         if let Some(rigid) = engine.bodies.get_mut(body.handle) {

@@ -1,22 +1,22 @@
-//! Laws that push at bodies which joints move, or which joints hang on.
+//! Laws that exert forces on jointed bodies, or on roots of trees.
 //!
-//! Such a body goes where the joints of its tree let it, so that a law cannot change its velocity between steps as that of a
-//! free body: it says with which force it pushes, and the tree's course is found with all forces at once.
+//! Such a body moves as the joints of its tree allow, so that a law cannot change its velocity between steps as that of a
+//! free body: it returns a force, and the tree is integrated with all forces at once.
 
 use glam::{DMat3, DVec3};
 use std::fmt::Debug;
 
-/// A law that pushes at bodies of trees of joints.
+/// A law that exerts forces on bodies of kinematic trees.
 pub(crate) trait LinkLaw: Debug + Send + Sync {
-    /// Returns how it pushes at a body that a joint moves, or that joints hang on and that is free. It is asked several
-    /// times in a step, until the tree's course and what pushes at it fit.
+    /// Returns the wrench on a jointed body, or on a free root of a tree. It is called several times in a step, until the
+    /// tree's motion and the wrenches agree.
     fn push(&self, link: &LinkStep) -> ExternalWrench;
 }
 
-/// A body of a tree of joints, at the beginning of a step or at its middle.
+/// A body of a kinematic tree, at the beginning of a step or at its middle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkStep {
-    /// The number of its plan in the model.
+    /// Index of its plan in the model.
     pub(crate) body: u32,
     pub(crate) mass_kg: f64,
     /// About its centre of mass, world axes, kg·m².
@@ -41,7 +41,7 @@ pub(crate) struct ExternalWrench {
 }
 
 impl ExternalWrench {
-    /// Both at once.
+    /// Returns the sum of both.
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
             force: self.force + other.force,
@@ -51,8 +51,8 @@ impl ExternalWrench {
 }
 
 impl LinkStep {
-    /// The share of its momentum that a body loses each second under a decay with `rate_per_s`, for the whole step, so that a
-    /// body that nothing else holds slows as the exponential and none is ever turned round.
+    /// Returns the share of its momentum that a body loses each second under a decay with `rate_per_s`, for the whole step,
+    /// so that an otherwise free body slows exponentially and never reverses.
     pub(crate) fn decay_per_s(&self, rate_per_s: f64) -> f64 {
         let times = rate_per_s * self.dt_s;
         if self.middle {
@@ -63,7 +63,7 @@ impl LinkStep {
         }
     }
 
-    /// The same for a decay whose rate is `per_m` times the speed against the air.
+    /// Returns the same for a decay whose rate is `per_m` times the speed against the air.
     pub(crate) fn quadratic_decay_per_s(&self, per_m: f64, speed_m_s: f64) -> f64 {
         let rate = per_m * speed_m_s;
         if self.middle {
@@ -91,7 +91,7 @@ mod tests {
         }
     }
 
-    /// For any step, by either end's formula, what is left is the exponential.
+    /// For any step, by either end's formula, the decay is exponential.
     #[test]
     fn a_decay_is_exact_for_any_step() {
         for dt_s in [1e-4, 1.0 / 120.0, 0.5, 20.0] {

@@ -1,4 +1,4 @@
-//! Doors, drawers, lids and robots: rapier's impulse joints hold the axis and the limits, efforts are ours.
+//! Doors, drawers, lids and robots: rapier's impulse joints hold the axis and the limits, the efforts are computed here.
 
 mod base_contacts;
 mod chain;
@@ -57,7 +57,7 @@ pub(crate) struct PhysicsJoint {
     handle: ImpulseJointHandle,
     child_handle: RigidBodyHandle,
     parent_handle: RigidBodyHandle,
-    /// The parent part's place on its body.
+    /// Pose of the parent part on its body.
     body_from_parent: Pose,
     parent_from_joint: RapierPose,
     child_from_joint: RapierPose,
@@ -73,20 +73,20 @@ impl PhysicsJoint {
         self.values.axis.as_dvec3().normalize_or(DVec3::X)
     }
 
-    /// Returns where it stops, rad or m; infinite where it does not.
+    /// Returns its stops, rad or m; infinite without them.
     fn stops(&self) -> [f64; 2] {
         let limits = self.values.limits.map(|limits| limits.map(f64::from));
         limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// Returns how far the joint's frame is from the origins of the bodies that it holds, m.
+    /// Returns the distance of the joint's frame from the origins of its two bodies, m.
     fn reach_m(&self) -> f32 {
         let [parent, child] = [self.parent_from_joint, self.child_from_joint];
         parent.translation.length() + child.translation.length()
     }
 }
 
-/// Inserts the joints of a house. `anchor` is a fixed body at the origin that carries no collider.
+/// Inserts the joints of a house. `anchor` is a fixed body at the origin without colliders.
 pub(crate) fn insert(
     engine: &mut RapierWorld,
     model: &PhysicsModel,
@@ -137,7 +137,7 @@ pub(crate) fn insert(
     joints
 }
 
-/// The axis that rapier leaves free.
+/// Returns the axis that rapier leaves free.
 fn free_axis(kind: JointKind) -> JointAxis {
     match kind {
         JointKind::Hinge => JointAxis::AngX,
@@ -149,7 +149,7 @@ fn free_axis(kind: JointKind) -> JointAxis {
 /// violation, and push.
 const SLACK: f32 = 1e-5;
 
-/// The limits that rapier keeps too.
+/// Returns the limits that rapier enforces too.
 fn held_by_rapier(kind: JointKind, values: &JointParameters) -> Option<[f32; 2]> {
     let limits = values.limits?;
     effort_term::rapier_holds(kind, limits).then_some([limits[0] - SLACK, limits[1] + SLACK])
@@ -160,7 +160,7 @@ fn to_x(axis: Vec3) -> RapierPose {
     RapierPose::from_rotation(Quat::from_rotation_arc(Vec3::X, axis.normalize_or(Vec3::X)))
 }
 
-/// The body that a joint hangs on, the part's place on it, and whether it never moves.
+/// Returns a joint's parent body, the parent part's pose on it, and whether it never moves.
 fn parent(
     model: &PhysicsModel,
     bodies: &[BodyHandle],
@@ -188,7 +188,7 @@ fn offset(model: &PhysicsModel, body: u32, part: PartId) -> Pose {
         .map_or(Pose::IDENTITY, |(_, place)| *place)
 }
 
-/// Sets what is in force at a joint from the state's parameters. Returns whether it was different before.
+/// Sets a joint's parameters in force from the state. Returns whether they changed.
 pub(crate) fn set_values(
     engine: &mut RapierWorld,
     model: &PhysicsModel,
@@ -225,7 +225,7 @@ pub(crate) fn set_values(
     true
 }
 
-/// Returns where the child's body stands when the joint is at `position` and its parent where it is.
+/// Returns the pose of the child's body with the joint at `position` and its parent at its present pose.
 pub(crate) fn child_at(engine: &RapierWorld, joint: &PhysicsJoint, position: f32) -> RapierPose {
     let parent = engine
         .bodies

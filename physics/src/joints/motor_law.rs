@@ -1,4 +1,4 @@
-//! Laws of motors: what a motor follows, and what it gives for that.
+//! Laws of motors: changes of the command that a motor follows, and of its effort.
 
 use super::JointActuation;
 use dwell_scene::{JointCommand, JointId, State};
@@ -6,24 +6,24 @@ use std::fmt::Debug;
 
 /// The state of a motor's or joint's law between steps.
 pub(crate) trait LawMemory {
-    /// Notes that a joint was put at `position` (rad or m) from outside, which is no motion.
+    /// Notes that a joint was set to `position` (rad or m) from outside, which is no motion.
     fn placed(&mut self, _joint: JointId, _position: f32) {}
 
-    /// Returns what it remembers, for snapshots.
+    /// Returns its state, for snapshots.
     fn memory(&self) -> Vec<f32> {
         Vec::new()
     }
 
-    /// Takes back what [`LawMemory::memory`] gave.
+    /// Restores the state from [`LawMemory::memory`].
     fn restore_memory(&mut self, _memory: &[f32]) {}
 }
 
-/// A law that changes what motors do in each physics step.
+/// A law that changes motors in each physics step.
 pub(crate) trait MotorLaw: LawMemory + Debug + Send + Sync {
-    /// Changes the command that a joint's motor follows in one physics step. It is asked for every motor in every step.
+    /// Changes the command that a joint's motor follows in one physics step. It is called for every motor in every step.
     fn drive(&mut self, _motor: &MotorStep, _command: &mut JointCommand) {}
 
-    /// Changes what a joint's motor gives for its command in one physics step.
+    /// Changes the actuation by a joint's motor for its command in one physics step.
     fn modify_motor(&self, _joint: JointId, _pull: &mut JointActuation) {}
 
     /// Returns a copy.
@@ -49,7 +49,7 @@ pub(crate) struct MotorStep {
 }
 
 impl MotorStep {
-    /// The number of a command of this kind that asks for what is there already.
+    /// Returns the value of a command of this kind that keeps the present state.
     pub(crate) fn rest(&self, command: JointCommand) -> f32 {
         match command {
             JointCommand::Position(_) => self.position,
@@ -59,7 +59,7 @@ impl MotorStep {
     }
 }
 
-/// Returns what a joint's motor is told in this control step.
+/// Returns the command of a joint's motor in this control step.
 pub(crate) fn commanded(state: &State, joint: JointId) -> JointCommand {
     let command = state.joint_command[joint];
     if command.is_finite() {

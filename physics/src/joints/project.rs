@@ -1,8 +1,8 @@
-//! Holds a tree together that something pressed on in a step.
+//! Projection of a tree that was touched in a step onto its joint constraints.
 //!
-//! rapier solves the rows that hold joints and those of contacts in turn, and leaves both a little wrong: a light finger
-//! between a hand and what it holds wobbles in its joint until the grip is lost. Of the motion that rapier leaves, joints
-//! keep what they can do, with the same momentum along each, and bodies are put where their joints stand.
+//! rapier solves the rows of joints and of contacts in turn, and leaves errors in both: a light finger between a hand and
+//! its held object wobbles in its joint until the grip is lost. Of the motion that rapier leaves, joints keep the part that
+//! they allow, with the same momentum along each, and bodies are put at their joints' positions.
 //!
 //! # Source
 //! C. F. Gauss's principle of least constraint: of the motions that joints allow, the one nearest to the unconstrained one,
@@ -23,9 +23,9 @@ use glam::DVec3;
 const RIGID: f64 = 1e6;
 
 impl TreeStep {
-    /// Puts the bodies of a tree where its joints stand after a step, with velocities that its joints allow. `ends`: where a joint
-    /// that went its way undisturbed comes to, if it moved; the middle of all mass stays where it is. `joint_coordinates`: the numbers of each
-    /// of the world's joints.
+    /// Puts the bodies of a tree at their joints' positions after a step, with velocities that its joints allow. `ends`:
+    /// the end position of a joint whose motion was undisturbed, if it moved; the common centre of mass stays.
+    /// `joint_coordinates`: the coordinates of each of the world's joints.
     pub(super) fn project(
         mut self,
         engine: &mut RapierWorld,
@@ -84,7 +84,7 @@ impl TreeStep {
     }
 }
 
-/// Returns where a joint at `position` stands that would come to `end` undisturbed: at the stop that it ran into, and not short of it.
+/// Returns the position of a joint at `position` that would come to `end` undisturbed: at the stop that it reached, and not short of it.
 fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     let [low, high] = joint.stops();
     match end {
@@ -93,7 +93,7 @@ fn arrives(joint: &PhysicsJoint, position: f64, end: Option<f64>) -> f64 {
     }
 }
 
-/// Returns what keeps joints that are past their stops from going on: a plastic impact, with the momentum that it gives the others.
+/// Returns the impulses that stop joints beyond their stops: a plastic impact, with the momentum that it gives the others.
 fn held_by_stops(
     joints: &[&PhysicsJoint],
     positions: &[f64],
@@ -122,7 +122,7 @@ fn held_by_stops(
 }
 
 impl TreeDynamics<'_> {
-    /// A velocity and rotation of a body, less what a root that is led gives it. A free root counts with the others.
+    /// Returns the velocity and angular velocity of a body relative to a kinematic root. A free root counts with the others.
     fn beside_root(&self, center: DVec3, linear: DVec3, angular: DVec3) -> (DVec3, DVec3) {
         if self.free_root.is_some() {
             return (linear, angular);
@@ -131,7 +131,7 @@ impl TreeDynamics<'_> {
         (linear - with_root, angular - self.root.angular)
     }
 
-    /// The middle of all mass that moves, m.
+    /// Returns the common centre of mass of all that moves, m.
     fn middle(&self) -> DVec3 {
         let root = self.free_root.unwrap_or_default();
         let whole = self
@@ -141,8 +141,8 @@ impl TreeDynamics<'_> {
         whole.center
     }
 
-    /// The joints' velocities, and those of a free root's centre of mass and its rotation, that have these momenta about the
-    /// origin, less what stops take: those of the joints' bodies, shape (freedom,), and the root's own.
+    /// Returns the joints' velocities, and those of a free root's centre of mass and its rotation, that have these momenta
+    /// about the origin, less those taken by stops: of the joints' bodies, shape (freedom,), and of the root.
     fn allowed(
         &self,
         floating: Option<&FloatingBase>,

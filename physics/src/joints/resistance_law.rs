@@ -1,16 +1,16 @@
-//! Laws of what joints resist with.
+//! Laws of joint resistance.
 
 use super::LawMemory;
 use dwell_scene::JointId;
 use std::fmt::Debug;
 
-/// A law that changes how joints resist.
+/// A law that changes the resistance of joints.
 pub(crate) trait ResistanceLaw: LawMemory + Debug + Send + Sync {
-    /// Notes that a joint stands at `position` (rad or m) at the beginning of a physics step.
+    /// Notes a joint's position (rad or m) at the beginning of a physics step.
     fn follow(&mut self, _joint: JointId, _position: f32) {}
 
-    /// Changes how a joint resists in one physics step. It is asked several times in a step, until what the joint resists
-    /// with and what loads it fit.
+    /// Changes the resistance of a joint in one physics step. It is called several times in a step, until resistance and
+    /// load agree.
     fn resist(&self, joint: JointId, load: &JointLoad, resistance: &mut JointResistance);
 
     /// Returns a copy.
@@ -42,11 +42,11 @@ pub(crate) struct JointLoad {
 /// The resistance of a joint in one physics step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct JointResistance {
-    /// The largest effort with which it holds or brakes whatever the speed, N·m or N.
+    /// Largest effort of friction, whatever the speed, N·m or N.
     pub(crate) friction: f32,
     /// N·m·s/rad or N·s/m.
     pub(crate) damping: f32,
-    /// Inertia of the joint's own, kg·m² or kg.
+    /// Inertia of the joint itself, kg·m² or kg.
     pub(crate) armature: f32,
     /// A spring that slips.
     pub(crate) elastic: Option<SlipSpring>,

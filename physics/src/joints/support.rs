@@ -18,17 +18,17 @@ const LYING: f32 = 0.2;
 /// Relative regularization of the three equations where fewer than three points support.
 const RIDGE: f64 = 1e-9;
 
-/// A point where a tree stands on something.
+/// A contact point on which a tree stands.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SupportPoint {
-    /// Which joint's body stands there; `None`: the root.
+    /// The joint whose body is supported; `None`: the root.
     pub(super) link: Option<usize>,
     /// m.
     pub(super) at: DVec3,
     pub(super) friction: f64,
 }
 
-/// The points where a body stands on what is not of its tree.
+/// Returns the points where a body stands on something outside its tree.
 pub(super) fn of_body(
     engine: &RapierWorld,
     handle: RigidBodyHandle,
@@ -71,8 +71,8 @@ pub(super) fn of_body(
     supports
 }
 
-/// Returns whether a plane of contact carries a body from below on points that stand. A wheel does not: it stands on another line in every
-/// step. `first`: whether the body's is the first of its colliders.
+/// Returns whether a contact plane supports a body from below on fixed points. A wheel's does not: it stands on another
+/// line in every step. `first`: whether the body's is the first of its colliders.
 pub(super) fn carries(
     engine: &RapierWorld,
     own: ColliderHandle,
@@ -91,8 +91,8 @@ pub(super) fn carries(
     normal.y >= UPRIGHT && !engine.colliders.get(own).is_some_and(on_its_side)
 }
 
-/// Returns where the surfaces of a point touch now, m. What is flat carries its points along; on what rolls they stay where it is
-/// nearest.
+/// Returns the present position of a contact point's surfaces, m. Flat bodies carry their points along; on rolling ones
+/// they stay where it is nearest.
 pub(super) fn place(
     engine: &RapierWorld,
     pair: &ContactPair,
@@ -125,7 +125,7 @@ pub(super) fn place(
     })
 }
 
-/// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can. Shape
+/// Returns the vertical forces with the least squares that support a weight (about the origin), as far as pushes can. Shape
 /// (support,), N.
 pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) -> Vec<f64> {
     let mut carries = vec![true; supports.len()];
@@ -136,7 +136,7 @@ pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) 
         let arm = support.at - center;
         [1.0, -arm.z, arm.x]
     };
-    // Each round one point at least is let go that would have to pull.
+    // Each iteration releases at least one point that would have to pull.
     for _ in 0..supports.len() {
         let mut squares = SymmetricMatrix::zero(3);
         for (support, _) in supports

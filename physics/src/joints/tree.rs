@@ -1,4 +1,4 @@
-//! Which joints act on each other: a tree of bodies over one root.
+//! Kinematic trees: joints that act on each other, over one root body.
 
 use super::PhysicsJoint;
 use crate::engine::RapierWorld;
@@ -7,33 +7,33 @@ use dwell_scene::JointId;
 use rapier3d::dynamics::{RigidBody, RigidBodyHandle};
 use std::collections::BTreeMap;
 
-/// Joints whose efforts are found together.
+/// A tree of joints whose efforts are computed together.
 #[derive(Clone, Debug)]
 pub(crate) struct KinematicTree {
-    /// The body that the first joint hangs on.
+    /// The parent body of the first joint.
     pub(super) root: RigidBodyHandle,
-    /// The number of that body's plan in the model; `None`: it never moves.
+    /// Index of that body's plan in the model; `None`: it never moves.
     pub(super) root_body: Option<u32>,
-    /// Places in the world's joints, parents first.
+    /// Indices among the world's joints, parents first.
     pub(crate) joints: Vec<usize>,
-    /// For each, the place in this tree of the joint that moves its parent. Shape (joint,).
+    /// For each joint, the index in this tree of the joint that moves its parent. Shape (joint,).
     pub(super) parents: Vec<Option<usize>>,
-    /// For each, the place in this tree of the joint that it follows. Shape (joint,).
+    /// For each joint, the index in this tree of its leader. Shape (joint,).
     pub(super) follows: Vec<Option<usize>>,
 }
 
 impl KinematicTree {
-    /// The body that the first joint hangs on.
+    /// Returns the parent body of the first joint.
     pub(crate) fn root(&self) -> RigidBodyHandle {
         self.root
     }
 
-    /// The number of that body's plan in the model; `None`: it never moves.
+    /// Returns the index of that body's plan in the model; `None`: it never moves.
     pub(crate) fn root_body(&self) -> Option<u32> {
         self.root_body
     }
 
-    /// The number in the model of a root that is free to answer what its joints do; they push back on it.
+    /// Returns the index in the model of a free root, on which the joints' efforts react.
     pub(crate) fn floating_root(
         &self,
         engine: &RapierWorld,
@@ -46,8 +46,8 @@ impl KinematicTree {
     }
 }
 
-/// Sorts a world's joints into trees. Joints hang together where one's child is another's parent, where they hang on one
-/// body that may move, and where one follows the other.
+/// Sorts a world's joints into trees. Joints are connected where one's child is another's parent, where they share a parent
+/// that may move, and where one follows the other.
 pub(crate) fn trees(
     joints: &[PhysicsJoint],
     model: &PhysicsModel,
@@ -74,7 +74,7 @@ pub(crate) fn trees(
             groups.join(k, other);
         }
     }
-    // How many joints stand between each and the root; a part stands after the one that it hangs on.
+    // Number of joints between each and the root; a part comes after its parent.
     let mut depths = vec![0_usize; joints.len()];
     let mut by_part: Vec<usize> = (0..joints.len()).collect();
     by_part.sort_by_key(|k| house.joints[joints[*k].id].child);
@@ -87,7 +87,7 @@ pub(crate) fn trees(
     }
     let mut places = vec![0_usize; joints.len()];
     let tree = |mut order: Vec<usize>| {
-        // Those of a depth as the house has them.
+        // Those of equal depth in the order of the house.
         order.sort_by_key(|k| depths[*k]);
         for (place, k) in order.iter().enumerate() {
             places[*k] = place;
@@ -109,14 +109,14 @@ pub(crate) fn trees(
     orders.into_values().map(tree).collect()
 }
 
-/// Numbers in groups; each group is known by its first one.
+/// A union-find structure; each group is represented by its first element.
 struct UnionFind {
-    /// Of each, one of its group that is not behind it.
+    /// For each, an element of its group that is not behind it.
     before: Vec<usize>,
 }
 
 impl UnionFind {
-    /// Each by itself.
+    /// Each element in a group of its own.
     fn new(count: usize) -> Self {
         Self {
             before: (0..count).collect(),
@@ -125,7 +125,7 @@ impl UnionFind {
 
     fn first(&mut self, mut k: usize) -> usize {
         while self.before[k] != k {
-            // Ways get shorter with each use.
+            // Paths are compressed with each use.
             self.before[k] = self.before[self.before[k]];
             k = self.before[k];
         }

@@ -14,12 +14,12 @@ use dwell_scene::JointKind;
 use glam::{DMat3, DVec3};
 use rapier3d::dynamics::RigidBody;
 
-/// A body as the dynamics see it.
+/// The mass properties of a body.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LumpedBody {
     /// kg.
     pub(super) mass: f64,
-    /// kg that gravity pulls at: less under water.
+    /// Mass that gravity acts on, kg: less under water.
     pub(super) weight_mass: f64,
     /// Centre of mass, m.
     pub(super) center: DVec3,
@@ -38,7 +38,7 @@ impl LumpedBody {
         }
     }
 
-    /// The same in the body's own frame.
+    /// Returns the same in the body's own frame.
     pub(super) fn own(body: &RigidBody) -> Self {
         let local = &body.mass_properties().local_mprops;
         let principal = local.principal_inertia().as_dvec3();
@@ -52,7 +52,7 @@ impl LumpedBody {
         }
     }
 
-    /// Two bodies as one.
+    /// Returns two bodies as one.
     pub(super) fn with(&self, other: &Self) -> Self {
         let mass = self.mass + other.mass;
         if mass <= 0.0 {
@@ -67,7 +67,7 @@ impl LumpedBody {
         }
     }
 
-    /// The inertia about another point (Steiner).
+    /// Returns the inertia about another point (Steiner).
     fn about(&self, point: DVec3) -> DMat3 {
         let d = self.center - point;
         let outer = DMat3::from_cols(d * d.x, d * d.y, d * d.z);
@@ -75,20 +75,20 @@ impl LumpedBody {
     }
 }
 
-/// One degree of freedom in the world.
+/// The axis of one degree of freedom in the world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct JointAxisState {
     pub(super) kind: JointKind,
     pub(super) direction: DVec3,
     /// A point on it, m.
     pub(super) at: DVec3,
-    /// Which of the tree's free joints moves its parent.
+    /// The free joint that moves its parent.
     pub(super) parent: Option<usize>,
     pub(super) velocity: f64,
 }
 
 impl JointAxisState {
-    /// Velocity of a point, and rotation, for each unit of this joint's velocity.
+    /// Returns the velocity of a point, and the angular velocity, for each unit of this joint's velocity.
     pub(super) fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
         match self.kind {
             JointKind::Hinge => (self.direction.cross(point - self.at), self.direction),
@@ -96,7 +96,7 @@ impl JointAxisState {
         }
     }
 
-    /// Returns what it feels of a force and moment about the origin: what acts along it.
+    /// Returns the generalized force of a wrench about the origin: its component along the joint.
     pub(super) fn generalized_force_of(&self, wrench: &Wrench) -> f64 {
         let Wrench { force, moment } = *wrench;
         match self.kind {
@@ -116,7 +116,7 @@ pub(super) struct BodyAcceleration {
 }
 
 impl BodyAcceleration {
-    /// A body that stands or moves evenly.
+    /// A body at rest or at constant velocity.
     pub(super) fn at_constant_velocity(center: DVec3, angular: DVec3) -> Self {
         Self {
             center,
@@ -144,7 +144,7 @@ pub(super) struct TreeDynamics<'a> {
     pub(super) angular: Vec<DVec3>,
     /// The motion of the root.
     pub(super) root: BodyAcceleration,
-    /// The root's own mass if it is free to answer, its joints' efforts pushing back on it.
+    /// The root's own mass if it is free, its joints' efforts reacting on it.
     pub(super) free_root: Option<LumpedBody>,
     /// The velocity of the root's centre of mass, m/s.
     pub(super) root_velocity: DVec3,
@@ -156,7 +156,7 @@ pub(super) struct TreeDynamics<'a> {
 }
 
 impl TreeDynamics<'_> {
-    /// The mass that each joint moves, and the momentum of it for each unit of its velocity. Shape (freedom,) each.
+    /// Returns the mass that each joint moves, and its momentum for each unit of the joint's velocity. Shape (freedom,) each.
     fn carried(&self) -> (Vec<LumpedBody>, Vec<(DVec3, DVec3)>) {
         let mut carried = self.masses.clone();
         for k in (0..carried.len()).rev() {
@@ -172,7 +172,7 @@ impl TreeDynamics<'_> {
         (carried, momenta)
     }
 
-    /// Returns what the joints resist with. Shape (freedom, freedom).
+    /// Returns the joint-space inertia matrix. Shape (freedom, freedom).
     pub(super) fn inertia(&self) -> SymmetricMatrix {
         let mut inertia = self.held_inertia();
         if let Some(floating) = self.floating() {
@@ -181,7 +181,7 @@ impl TreeDynamics<'_> {
         inertia
     }
 
-    /// The same while the root is held. Shape (freedom, freedom).
+    /// Returns the same while the root is held. Shape (freedom, freedom).
     pub(super) fn held_inertia(&self) -> SymmetricMatrix {
         let n = self.axes.len();
         let (carried, momenta) = self.carried();
@@ -197,14 +197,14 @@ impl TreeDynamics<'_> {
         inertia
     }
 
-    /// Returns how the root answers; `None` for one that does not.
+    /// Returns the floating base; `None` for a root that is not free.
     pub(super) fn floating(&self) -> Option<FloatingBase> {
         let root = self.free_root.as_ref()?;
         let (carried, momenta) = self.carried();
         Some(FloatingBase::of(root, &self.axes, &carried, &momenta))
     }
 
-    /// Returns how every body moves when the joints accelerate like this. Shape (freedom,).
+    /// Returns the motion of every body when the joints accelerate at this rate. Shape (freedom,).
     fn moving(&self, accelerations: &[f64]) -> Vec<BodyAcceleration> {
         self.moving_over(self.root, accelerations)
     }
@@ -237,7 +237,7 @@ impl TreeDynamics<'_> {
         moving
     }
 
-    /// Returns what the touches of the last step do: to the joints, shape (freedom,), and to a free root's six.
+    /// Returns the generalized forces of the last step's contacts: on the joints, shape (freedom,), and on a free root's six freedoms.
     pub(super) fn touched(&self, floating: Option<&FloatingBase>) -> (Vec<f64>, [f64; 6]) {
         let mut efforts = vec![0.0; self.axes.len()];
         let mut whole = Wrench::default();
@@ -254,9 +254,9 @@ impl TreeDynamics<'_> {
         (efforts, root)
     }
 
-    /// The force on each body besides its weight and what carries it, and the moment about its centre of mass besides the
-    /// gyroscopic one, with which joints and root accelerate like this: those of the joints' bodies, shape (freedom,), and
-    /// that of a free root. Within a tree over a free root they add up to what laws push with.
+    /// Returns the force on each body besides its weight and support, and the moment about its centre of mass besides the
+    /// gyroscopic one, with which joints and root accelerate at this rate: those of the joints' bodies, shape (freedom,),
+    /// and that of a free root. Within a tree over a free root they sum to the wrenches of laws.
     pub(super) fn wrenches(
         &self,
         accelerations: &[f64],
@@ -298,7 +298,7 @@ impl TreeDynamics<'_> {
         (wrenches, of_root)
     }
 
-    /// Returns what all bodies need so that no joint accelerates, and neither does the root.
+    /// Returns the loads of all bodies at zero joint and root acceleration.
     pub(super) fn loads(&self) -> TreeLoads {
         let n = self.axes.len();
         let own = |body: &BodyAcceleration, lump: &LumpedBody| {
@@ -366,7 +366,7 @@ impl TreeDynamics<'_> {
         }
     }
 
-    /// The efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
+    /// Returns the efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
     pub(super) fn along(&self, loads: &TreeLoads, which: usize) -> Vec<f64> {
         let pairs = self.axes.iter().zip(&loads.links);
         pairs
@@ -374,8 +374,8 @@ impl TreeDynamics<'_> {
             .collect()
     }
 
-    /// The efforts that carry weight: a free root is carried where it or a joint's body stands on something, and gives way
-    /// otherwise. Shape (freedom,).
+    /// Returns the efforts that carry weight: a free root is supported where it or a joint's body stands on something, and
+    /// gives way otherwise. Shape (freedom,).
     pub(super) fn weights(&self, loads: &TreeLoads) -> Vec<f64> {
         let mut efforts = self.along(loads, 1);
         if let Some(floating) = self.floating() {
@@ -401,11 +401,11 @@ impl Wrench {
     }
 }
 
-/// Forces and moments about the world's origin: with motion, and of weight and what carries it alone.
+/// Wrenches about the world's origin: with motion, and of weight and support alone.
 pub(super) struct TreeLoads {
     /// On each joint's body and all beyond it. Shape (freedom,).
     pub(super) links: Vec<[Wrench; 2]>,
-    /// On everything.
+    /// On the whole tree.
     pub(super) root: [Wrench; 2],
     /// The weight on each support, N.
     pub(super) carried: Vec<f64>,

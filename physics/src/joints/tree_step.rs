@@ -1,4 +1,4 @@
-//! The joints of a tree that may move, as a step finds them and as it leaves them.
+//! The joints of a tree that may move, before and after a step.
 
 use super::chain::Chain;
 use super::joint_state::{JointCoordinate, JointReading};
@@ -12,10 +12,10 @@ const STILL: f32 = 2e-4;
 /// Largest distance of a body in place from where its joint puts it, m and rad.
 const IN_PLACE: f32 = 2e-5;
 
-/// A tree in a step: made before it, and used again after it.
+/// A tree in a step: made before it, and reused after it.
 #[derive(Clone, Debug)]
 pub(crate) struct TreeStep {
-    /// The joints that may move, by their places in the tree. Shape (freedom,).
+    /// The joints that may move, by their indices in the tree. Shape (freedom,).
     pub(super) free: Vec<usize>,
     /// Shape (freedom,).
     pub(super) readings: Vec<JointReading>,
@@ -23,7 +23,7 @@ pub(crate) struct TreeStep {
 }
 
 impl TreeStep {
-    /// `joint_coordinates`: the numbers of each of the world's joints. `None` for a tree that is asleep or shut.
+    /// `joint_coordinates`: the coordinates of each of the world's joints. Returns `None` for a tree that is asleep or latched.
     pub(super) fn of(
         engine: &RapierWorld,
         tree: &KinematicTree,
@@ -50,7 +50,7 @@ impl TreeStep {
         })
     }
 
-    /// Looks at the joints again, after the step. Returns how they were before.
+    /// Reads the joints again, after the step. Returns their state before.
     pub(super) fn again(
         &mut self,
         engine: &RapierWorld,
@@ -63,8 +63,8 @@ impl TreeStep {
         std::mem::replace(&mut self.readings, now)
     }
 
-    /// Returns whether nothing of a tree moves and its bodies are where its joints say. It is then left to rapier, which lets it sleep:
-    /// whatever is put somewhere, however near, it keeps awake.
+    /// Returns whether nothing of a tree moves and its bodies are at their joints' positions. It is then left to rapier,
+    /// which lets it sleep: setting a pose, however near, keeps a body awake.
     pub(super) fn rests(
         &self,
         engine: &RapierWorld,
@@ -105,7 +105,7 @@ impl TreeStep {
         self.readings.iter().map(|r| r.velocity).collect()
     }
 
-    /// The free joints. Shape (freedom,).
+    /// Returns the free joints. Shape (freedom,).
     pub(super) fn joints<'a>(
         &self,
         tree: &KinematicTree,

@@ -10,20 +10,21 @@ use std::fmt::Debug;
 
 /// A law that acts on bodies between physics steps.
 pub(crate) trait BodyLaw: Debug + Send + Sync {
-    /// Acts on bodies for half a physics step, before and after it (Strang's splitting).
+    /// Acts on bodies for half a physics step, before and after it (Strang splitting).
     fn apply_half_step(&self, _stage: &mut LawContext<'_>, _half_dt_s: f32) {}
 
-    /// Acts on bodies once before each physics step, with what the contacts of the last step carried.
+    /// Acts on bodies once before each physics step, with the contact loads of the last step.
     fn before_step(&self, _stage: &mut LawContext<'_>) {}
 }
 
-/// The world as a law sees it between steps.
+/// The world as laws see it between steps.
 pub(crate) struct LawContext<'a> {
     pub(crate) engine: &'a mut RapierWorld,
-    /// By the number of the body's plan in the model.
+    /// By the index of the body's plan in the model.
     pub(crate) bodies: &'a [BodyHandle],
     pub(crate) plans: &'a [BodyPlan],
-    /// Bodies that joints hang on and that answer to what these do: laws push at them as at links, through [`LinkLaw`](crate::joints::LinkLaw).
+    /// Free bodies that are roots of trees and react to their joints: laws exert wrenches on them as on links, through
+    /// [`LinkLaw`](crate::joints::LinkLaw).
     pub(crate) floating_roots: &'a [u32],
     /// The entry of each collider, by its user data.
     pub(crate) entries: &'a [ColliderEntry],
@@ -41,7 +42,7 @@ impl LawContext<'_> {
         self.tick as f64 * f64::from(self.dt_s)
     }
 
-    /// A body that moves, freely or with a joint; `None` for one that is shut, frozen or has no mass.
+    /// Returns a body that moves, freely or with a joint; `None` for one that is latched, frozen or has no mass.
     pub(crate) fn movable(&mut self, body: u32) -> Option<&RigidBody> {
         let rigid = self.engine.bodies.get(self.bodies[body as usize].handle)?;
         let moves = rigid.is_dynamic()
@@ -52,7 +53,7 @@ impl LawContext<'_> {
         (moves && rigid.mass() > 0.0).then_some(rigid)
     }
 
-    /// A body that is awake and that moves without joints.
+    /// Returns a body that is awake and moves without joints.
     pub(crate) fn free(&mut self, body: u32) -> Option<&mut RigidBody> {
         let handle = self.bodies[body as usize].handle;
         let on_joint = self.plans[body as usize].joint.is_some();
@@ -63,7 +64,7 @@ impl LawContext<'_> {
         self.engine.bodies.get_mut(handle)
     }
 
-    /// Wakes a body and keeps it awake for as long as one that was just woken.
+    /// Wakes a body and restarts its time until sleep.
     pub(crate) fn wake(&mut self, body: u32) {
         let handle = self.bodies[body as usize].handle;
         self.engine.wake(handle);

@@ -1,4 +1,4 @@
-//! The laws that are at work in a world, by the stage of the step at which they act.
+//! The laws in effect in a world, by the stage of the step at which they act.
 
 use super::body_law::BodyLaw;
 use crate::bases::BaseLaw;
@@ -16,7 +16,7 @@ pub(crate) enum LawEffect {
     Mass(Arc<dyn MassLaw>),
     /// Bodies between steps.
     Body(Arc<dyn BodyLaw>),
-    /// Forces on the bodies of trees of joints.
+    /// Forces on the bodies of kinematic trees.
     Link(Arc<dyn LinkLaw>),
     /// The values of contacts.
     Contact(Arc<dyn ContactLaw>),
@@ -30,17 +30,17 @@ pub(crate) enum LawEffect {
     Base(Arc<dyn BaseLaw>),
 }
 
-/// An effect that remembers, with the place of its law among those installed.
+/// An effect with state, with the index of its law among those installed.
 #[derive(Clone, Debug)]
 pub(crate) struct NumberedEffect<T> {
     law: usize,
     pub(crate) effect: T,
 }
 
-/// The laws that are at work; each list is in the order in which they were installed.
+/// The laws in effect; each list is in the order of installation.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LawSet {
-    /// The words by which each was installed.
+    /// The spec of each law.
     specs: Vec<LawSpec>,
     pub(crate) masses: Vec<Arc<dyn MassLaw>>,
     pub(crate) bodies: Vec<Arc<dyn BodyLaw>>,
@@ -73,12 +73,12 @@ impl LawSet {
         }
     }
 
-    /// Returns the words by which the laws were installed, in order.
+    /// Returns the laws' specs, in order of installation.
     pub(crate) fn specs(&self) -> &[LawSpec] {
         &self.specs
     }
 
-    /// Returns the values of colliders under these laws.
+    /// Returns the contact values of colliders under these laws.
     pub(crate) fn contact_properties<'a>(
         &'a self,
         house: &'a House,
@@ -92,14 +92,14 @@ impl LawSet {
         }
     }
 
-    /// Notes that a joint was put at `position` (rad or m) from outside.
+    /// Notes that a joint was set to `position` (rad or m) from outside.
     pub(crate) fn placed(&mut self, joint: JointId, position: f32) {
         for (_, effect) in self.remembering() {
             effect.placed(joint, position);
         }
     }
 
-    /// Returns what each law remembers. Shape (law, number).
+    /// Returns the state of each law. Shape (law, number).
     pub(crate) fn memory(&self) -> Vec<Vec<f32>> {
         let mut memory = vec![Vec::new(); self.specs.len()];
         for motor in &self.motors {
@@ -111,7 +111,7 @@ impl LawSet {
         memory
     }
 
-    /// Gives a law back what it remembered.
+    /// Restores a law's state.
     pub(crate) fn restore_memory(&mut self, law: usize, memory: &[f32]) {
         for (owner, effect) in self.remembering() {
             if owner == law {

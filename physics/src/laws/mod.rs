@@ -1,11 +1,10 @@
 //! Physical effects that the basic model lacks. One file each, one line in the list.
 //!
-//! A law at its default is not installed, so that nothing changes bit for bit. A law has one effect or more, each a trait of
-//! the stage of the step at which it acts: mass and inertia (`MassLaw`), bodies between steps (`BodyLaw`), forces on trees
-//! of joints (`LinkLaw`), the values of contacts (`ContactLaw`) and how they give, motors (`MotorLaw`), what joints resist
-//! with (`ResistanceLaw`), bases on wheels (`BaseLaw`). What wakes a body that
-//! sleeps: laws of air and of contact act on what moves, and leave asleep what sleeps, apart from wind, which wakes what
-//! it is strong enough to move.
+//! A law at its default is not installed, so that nothing changes bit for bit. A law has one effect or more, each a trait
+//! of the stage of the step at which it acts: mass and inertia (`MassLaw`), bodies between steps (`BodyLaw`), forces on
+//! kinematic trees (`LinkLaw`), the values of contacts (`ContactLaw`) and their compliance, motors (`MotorLaw`), joint
+//! resistance (`ResistanceLaw`), wheeled bases (`BaseLaw`). Laws of air and of contact act on moving bodies and leave
+//! sleeping ones asleep, apart from wind, which wakes bodies that it is strong enough to move.
 
 mod actuators;
 mod bases;
@@ -24,13 +23,13 @@ use crate::model::PhysicsModel;
 use dwell_scene::{LawInfo, LawSpec, State};
 use std::sync::LazyLock;
 
-/// A law of this engine: what is known about it, and how it is put to work.
+/// A law of this engine: its description, and its installation.
 struct PhysicsLaw {
     info: LawInfo,
     install: InstallFn,
 }
 
-/// Puts a law to work on what its spec names.
+/// Installs a law on its spec's target.
 type InstallFn =
     fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Vec<LawEffect>, PhysicsError>;
 
@@ -64,7 +63,7 @@ static LAWS: &[PhysicsLaw] = &[
     bases::gyro_bias_scale::LAW,
 ];
 
-/// Returns what is known about each law of this engine.
+/// Returns the descriptions of all laws of this engine.
 ///
 /// ```
 /// let drag = dwell_physics::laws::all().iter().find(|law| law.id == "drag").unwrap();
@@ -76,8 +75,8 @@ pub fn all() -> &'static [LawInfo] {
     &INFOS
 }
 
-/// Installs the state's laws that belong to this engine and differ from their default. A law that was there before, on
-/// the same target, keeps its memory.
+/// Installs the state's laws that belong to this engine and differ from their default. A law that was installed before, on
+/// the same target, keeps its state.
 pub(crate) fn install(
     model: &PhysicsModel,
     state: &State,
@@ -95,7 +94,7 @@ pub(crate) fn install(
             continue;
         }
         let effects = (law.install)(spec, &law.info, model, state)?;
-        // Two laws of one kind on one target are told apart by their order.
+        // Two laws of one kind on one target are distinguished by their order.
         let same = |old: &LawSpec| old.id == spec.id && old.target == spec.target;
         let number = installed.specs().len();
         let earlier = installed.specs().iter().filter(|old| same(old)).count();
@@ -108,7 +107,7 @@ pub(crate) fn install(
     Ok(installed)
 }
 
-/// The value of a law's parameter.
+/// Returns the value of a law's parameter.
 fn value(spec: &LawSpec, info: &LawInfo, name: &str) -> f32 {
     spec.value(info, name).unwrap_or(0.0) as f32
 }

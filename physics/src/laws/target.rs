@@ -4,7 +4,7 @@ use crate::error::PhysicsError;
 use crate::model::{BodyPlan, PhysicsModel};
 use dwell_scene::{LawInfo, LawSpec, PartId};
 
-/// The bodies that a spec acts on, free or moved by joints: those of the object that it names, the one of the part that it
+/// Returns the bodies that a spec acts on, free or jointed: those of the object that it names, the one of the part that it
 /// names as `OBJECT/PART`, or all; in order.
 pub(super) fn moving_bodies<'a>(
     spec: &LawSpec,

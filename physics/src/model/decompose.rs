@@ -1,23 +1,23 @@
-//! Convex pieces of a mesh that came without any.
+//! Convex decomposition of meshes without collision pieces.
 
 use super::shapes::{self, PlacedShape};
 use dwell_scene::Mesh;
 use glam::{Affine3A, Vec3};
 use rapier3d::parry::transformation::vhacd::{VHACD, VHACDParameters};
 
-/// A mesh that fills so much of its hull is its hull.
+/// Share of its hull's volume from which a mesh is replaced by its hull.
 const CONVEX_SHARE: f64 = 0.9;
-/// The most pieces of one mesh.
+/// Most pieces of one mesh.
 const MOST_PIECES: u32 = 12;
 /// Voxels along the longest edge.
 const RESOLUTION: u32 = 32;
-/// Depth of a hollow that is left, as a share of the hull's volume.
+/// Depth of a concavity that is left, as a share of the hull's volume.
 const CONCAVITY: f32 = 0.01;
-/// Beyond so many triangles the hull must do: it bounds the time.
+/// Number of triangles beyond which the hull is used, to bound the time.
 const MOST_TRIANGLES: usize = 50_000;
 
-/// Convex pieces of what a part looks like, in part space: the hull of what is nearly convex, else an approximate convex
-/// decomposition. Nothing without a finite point.
+/// Returns convex pieces of a part's visible mesh, in part space: the hull if it is nearly convex, else an approximate
+/// convex decomposition. Empty without a finite point.
 ///
 /// # Source
 /// K. Mamou and F. Ghorbel, A simple and efficient approach for 3D mesh approximate convex decomposition, ICIP 2009, in its
@@ -89,7 +89,7 @@ mod tests {
         assert!((volume_m3(&pieces) - 0.024).abs() < 1e-5);
     }
 
-    /// Under a table there is room: its hull fills that, its pieces do not; nor do they weigh as much as it would.
+    /// The space under a table is free: its hull fills it, its pieces do not; nor do they have the hull's mass.
     #[test]
     fn under_a_table_there_is_room() {
         let mesh = table();

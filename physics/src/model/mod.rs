@@ -13,7 +13,7 @@ use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;
 
-/// The collision pieces and rigid bodies of a house. Making one reads every mesh; a world over it reads none.
+/// The collision pieces and rigid bodies of a house. Construction reads every mesh; a world over it reads none.
 pub struct PhysicsModel {
     pub(crate) house: Arc<House>,
     /// Pieces that never move, in world space: structure in order, then fixed parts in order.
@@ -22,9 +22,9 @@ pub struct PhysicsModel {
     pub(crate) bodies: Vec<BodyPlan>,
     /// The body of each part that moves.
     pub(crate) body_of_part: IdVec<PartId, Option<u32>>,
-    /// Objects that move and came without collision pieces: they have convex pieces of what is seen.
+    /// Moving objects without collision pieces of their own, which have convex pieces of their visible mesh.
     pub(crate) stand_ins: Vec<ObjectId>,
-    /// Cylinders of bodies.
+    /// The cylinders of bodies.
     pub(crate) rollers: Vec<RollingCylinder>,
     /// The box around all static pieces and bodies at the start, m.
     pub(crate) bounds: Aabb,
@@ -41,12 +41,12 @@ impl PhysicsModel {
         &self.house
     }
 
-    /// Returns how many rigid bodies can move.
+    /// Returns the number of rigid bodies that can move.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
     }
 
-    /// Returns how many pieces never move.
+    /// Returns the number of static pieces.
     pub fn static_piece_count(&self) -> usize {
         self.statics.len()
     }
@@ -71,7 +71,7 @@ mod tests {
     };
     use glam::{Affine3A, DMat3, DVec3, Mat3, Quat, Vec3};
 
-    /// A thing of one part, in a room.
+    /// An object of one part, in a room.
     fn thing(mesh: Mesh, colliders: Vec<Collider>, density_kg_m3: f32) -> PhysicsModel {
         let room = House::shoebox([4.0, 3.0, 4.0], &ShoeboxMaterials::default()).unwrap();
         let mut data = room.data().clone();
@@ -152,7 +152,7 @@ mod tests {
         let (mass, center, inertia) = by_hand(&boxes, 640.0);
         assert!((f64::from(found.mass_kg) / mass - 1.0).abs() < 1e-5);
         assert!((found.center.as_dvec3() - center).length() < 1e-6);
-        // Off the diagonal it is not zero: the bars lie on both sides of the centre.
+        // Its off-diagonal entries are not zero: the bars lie on both sides of the centre.
         assert!(inertia.x_axis.y.abs() > 0.01);
         let error = apart(found.tensor, inertia);
         assert!(error < 1e-4 * inertia.x_axis.x, "{error} of {inertia}");
@@ -180,7 +180,7 @@ mod tests {
         assert!(apart(found.tensor, expected) < 1e-4 * expected.x_axis.x);
     }
 
-    /// A mesh without collision pieces: its pieces together weigh what its volume says, within their overlap.
+    /// A mesh without collision pieces: the mass of its pieces is that of its volume, within their overlap.
     #[test]
     fn an_l_without_pieces_is_taken_apart() {
         let mut mesh = Mesh::cuboid(Vec3::ZERO, Vec3::new(0.4, 0.1, 0.08));

@@ -1,4 +1,4 @@
-//! Which parts move together, what they weigh, and what touches.
+//! Plans of rigid bodies: parts that move together, their masses, and collision pieces.
 
 use super::PhysicsModel;
 use super::decompose;
@@ -25,14 +25,14 @@ pub(crate) enum PieceOwner {
     Structure(StructureId),
     /// A part of an object.
     Part(PartId),
-    /// The box of last resort around the house.
+    /// The fallback box around the house.
     LastBox,
 }
 
 /// The materials of a piece.
 #[derive(Clone, Debug)]
 pub(crate) enum MaterialAssignment {
-    /// One material all over; `None` when the part names none.
+    /// One material for all; `None` when the part names none.
     Uniform(Option<MaterialId>),
     /// A material for each triangle of the shape.
     PerTriangle(Arc<[MaterialId]>),
@@ -54,7 +54,7 @@ pub(crate) struct CollisionPiece {
 #[derive(Clone)]
 pub(crate) struct BodyPlan {
     pub(crate) object: ObjectId,
-    /// The parts with their places on the body; the body's own frame is that of the first.
+    /// The parts with their poses on the body; the body's own frame is that of the first.
     pub(crate) parts: Vec<(PartId, Pose)>,
     pub(crate) pieces: Vec<CollisionPiece>,
     /// The joint that moves it, if it is not free.
@@ -65,18 +65,18 @@ pub(crate) struct BodyPlan {
     pub(crate) states_inertia: bool,
 }
 
-/// A mesh's shape, and the mesh's triangle for each of its triangles.
+/// A mesh's shape, and the mesh's triangle for each of the shape's.
 type ExactShape = (SharedShape, Arc<[u32]>);
 
 /// Shapes of exact meshes, shared between instances of a model.
 #[derive(Default)]
 struct ShapeCache {
     made: BTreeMap<MeshKey, Option<ExactShape>>,
-    /// Convex pieces of meshes that came without any.
+    /// Convex pieces of meshes without collision pieces.
     convex: BTreeMap<MeshKey, Vec<(SharedShape, RapierPose)>>,
 }
 
-/// A mesh and its place on the part, bit for bit.
+/// A mesh and its transform on the part, bit for bit.
 type MeshKey = (MeshId, [u32; 12]);
 
 impl ShapeCache {
@@ -95,7 +95,7 @@ impl ShapeCache {
             .clone()
     }
 
-    /// Convex pieces of what a part looks like, in part space.
+    /// Returns convex pieces of a part's visible mesh, in part space.
     fn convex(&mut self, house: &House, part: PartId) -> Vec<(SharedShape, RapierPose)> {
         let part = &house.parts[part];
         let made = || {
@@ -116,7 +116,7 @@ fn mesh_key(mesh: MeshId, part_from_mesh: &Affine3A) -> MeshKey {
     (mesh, part_from_mesh.to_cols_array().map(f32::to_bits))
 }
 
-/// One material, or one for each triangle where substances differ.
+/// Returns one material, or one for each triangle where substances differ.
 fn cover(
     house: &House,
     mesh: MeshId,
@@ -145,7 +145,7 @@ fn cover(
     }
 }
 
-/// The pieces of a part in part space.
+/// Returns the pieces of a part in part space.
 fn part_pieces(
     house: &House,
     meshes: &mut ShapeCache,
@@ -196,7 +196,7 @@ fn volume_m3(pieces: &[CollisionPiece]) -> f32 {
         .sum()
 }
 
-/// The pieces of one moving part with densities that give its mass.
+/// Returns the pieces of one moving part with densities that give its mass.
 fn moving_pieces(house: &House, meshes: &mut ShapeCache, id: PartId) -> Vec<CollisionPiece> {
     let part = &house.parts[id];
     let mut pieces = part_pieces(house, meshes, id, part.density_kg_m3);
@@ -205,7 +205,7 @@ fn moving_pieces(house: &House, meshes: &mut ShapeCache, id: PartId) -> Vec<Coll
     pieces
 }
 
-/// Gives the pieces of a part densities that make up its mass; none where the part states its inertia itself.
+/// Gives the pieces of a part densities that give its mass; none where the part states its inertia itself.
 fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
     if part.inertial.is_some() {
         for piece in pieces {
@@ -216,8 +216,8 @@ fn set_part_density(pieces: &mut [CollisionPiece], part: &Part) {
     }
 }
 
-/// Returns what a part of a body states of its mass, in the body's frame: its mass and moments times `factor`. `inertial`: where its
-/// mass sits.
+/// Returns the stated mass properties of a part, in the body's frame: its mass and moments times `factor`. `inertial`: its
+/// centre of mass and moments.
 fn given(
     house: &House,
     (id, body_from_part): &(PartId, Pose),
@@ -360,7 +360,7 @@ fn structure_pieces(house: &House, meshes: &mut ShapeCache) -> Vec<CollisionPiec
     pieces
 }
 
-/// Convex pieces of what a body's parts look like, for a body that came without collision pieces.
+/// Returns convex pieces of the visible meshes of a body's parts, for a body without collision pieces.
 fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> Vec<CollisionPiece> {
     let mut pieces = Vec::new();
     for (id, body_from_part) in &body.parts {
@@ -382,7 +382,7 @@ fn stand_in_pieces(house: &House, meshes: &mut ShapeCache, body: &BodyPlan) -> V
         pieces.extend(own.into_iter().map(|piece| moved(piece, &place)));
     }
     if pieces.is_empty() {
-        // Nothing to see and nothing to touch: a crumb, so that it has a weight.
+        // A body without mesh and colliders gets a tiny piece, so that it has mass.
         let crumb = PlacedShape {
             shape: SharedShape::ball(0.005),
             part_from_shape: RapierPose::IDENTITY,
@@ -418,7 +418,7 @@ fn bounds(house: &House, statics: &[CollisionPiece], bodies: &[BodyPlan]) -> Aab
 }
 
 impl PieceOwner {
-    /// The part, if it is one.
+    /// Returns the part, if it is one.
     pub(crate) fn part(self) -> Option<PartId> {
         match self {
             Self::Part(part) => Some(part),
@@ -426,7 +426,7 @@ impl PieceOwner {
         }
     }
 
-    /// A name for reports.
+    /// Returns a name for reports.
     pub(crate) fn name(self, house: &House) -> String {
         match self {
             Self::Structure(id) => house.structure[id].name.clone(),
@@ -437,12 +437,12 @@ impl PieceOwner {
 }
 
 impl BodyPlan {
-    /// The first part, whose frame is the body's.
+    /// Returns the first part, whose frame is the body's.
     pub(crate) fn root(&self) -> PartId {
         self.parts[0].0
     }
 
-    /// The box around its pieces under a pose, m.
+    /// Returns the box around its pieces under a pose, m.
     pub(crate) fn bounds(&self, world_from_body: &RapierPose) -> Aabb {
         self.pieces.iter().fold(Aabb::EMPTY, |all, piece| {
             all.union(&shapes::bounds(
@@ -452,7 +452,7 @@ impl BodyPlan {
         })
     }
 
-    /// Returns what its parts state of their mass in a world, each times its factor. Shape of `factors`: (part,).
+    /// Returns the stated mass properties of its parts in a world, each times its factor. Shape of `factors`: (part,).
     pub(crate) fn given_mass(
         &self,
         house: &House,
@@ -466,13 +466,13 @@ impl BodyPlan {
         stated.reduce(|all, one| all + one)
     }
 
-    /// Mass with the densities of its parts multiplied, kg. Shape of `factors`: (part,).
+    /// Returns the mass with the densities of its parts multiplied, kg. Shape of `factors`: (part,).
     pub(crate) fn mass_kg(&self, factors: &[f32]) -> f32 {
         let parts = self.part_mass_kg.iter().zip(factors);
         parts.map(|(mass, factor)| mass * factor).sum()
     }
 
-    /// The factor of a piece: that of its part. Shape of `factors`: (part,).
+    /// Returns the factor of a piece: that of its part. Shape of `factors`: (part,).
     pub(crate) fn factor_of(&self, piece: &CollisionPiece, factors: &[f32]) -> f32 {
         let owner = piece.owner.part();
         let place = self.parts.iter().position(|(id, _)| Some(*id) == owner);
@@ -482,7 +482,7 @@ impl BodyPlan {
             .unwrap_or(1.0)
     }
 
-    /// A number that orders bodies: that of the first part.
+    /// Returns a number that orders bodies: that of the first part.
     pub(crate) fn order(&self) -> usize {
         self.root().index()
     }

@@ -12,13 +12,13 @@ const ROLLS_M_S: f32 = 0.01;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RollingCylinder {
     body: u32,
-    /// Its number among the body's pieces.
+    /// Its index among the body's pieces.
     piece: usize,
     axis_in_body: Vec3,
     radius_m: f32,
 }
 
-/// All cylinders of bodies, in order.
+/// Returns all cylinders of bodies, in order.
 pub(crate) fn rollers(bodies: &[BodyPlan]) -> Vec<RollingCylinder> {
     let of_body = |(index, plan): (usize, &BodyPlan)| {
         let roller = move |(piece, shaped): (usize, &CollisionPiece)| {
@@ -43,12 +43,12 @@ impl RollingCylinder {
         (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S
     }
 
-    /// The place in a list of bodies.
+    /// Returns the index of its body.
     pub(crate) fn body(&self) -> usize {
         self.body as usize
     }
 
-    /// The collider that it is of a body.
+    /// Returns its collider on a body.
     pub(crate) fn collider(&self, body: &RigidBody) -> Option<ColliderHandle> {
         body.colliders().get(self.piece).copied()
     }

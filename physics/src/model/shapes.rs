@@ -13,7 +13,7 @@ const MOST_HULL_CORNERS: usize = 96;
 /// Twice the area below which a triangle is left out: it has no normal, m².
 const FLAT_TRIANGLE: f32 = 1e-9;
 
-/// A shape and where it stands on its part; the triangles kept, for a mesh.
+/// A shape and its pose on its part; the triangles kept, for a mesh.
 pub(crate) struct PlacedShape {
     pub(crate) shape: SharedShape,
     pub(crate) part_from_shape: RapierPose,
@@ -31,7 +31,7 @@ impl PlacedShape {
     }
 }
 
-/// The shape of a convex piece; `None` for [`Collider::ExactMesh`] and for pieces without extent.
+/// Returns the shape of a convex piece; `None` for [`Collider::ExactMesh`] and for pieces without extent.
 pub(crate) fn convex(piece: &Collider) -> Option<PlacedShape> {
     match piece {
         Collider::Cuboid {
@@ -72,7 +72,7 @@ pub(crate) fn convex(piece: &Collider) -> Option<PlacedShape> {
     }
 }
 
-/// The convex hull of points, or their box where they span no volume; `None` without a finite point.
+/// Returns the convex hull of points, or their box where they span no volume; `None` without a finite point.
 pub(crate) fn hull(points: &[Vec3]) -> Option<PlacedShape> {
     let bounds = Aabb::from_points(points.iter().copied());
     if bounds.is_empty() {
@@ -96,7 +96,7 @@ pub(crate) fn hull(points: &[Vec3]) -> Option<PlacedShape> {
     })
 }
 
-/// The points themselves, or the outermost ones along evenly spread directions where there are many.
+/// Returns the points themselves, or the outermost ones along evenly spread directions where there are many.
 fn outermost(points: &[Vec3]) -> Vec<Vec3> {
     let finite: Vec<Vec3> = points.iter().copied().filter(|p| p.is_finite()).collect();
     if finite.len() <= MOST_HULL_CORNERS {
@@ -122,7 +122,7 @@ fn outermost(points: &[Vec3]) -> Vec<Vec3> {
     kept.into_iter().map(|k| finite[k]).collect()
 }
 
-/// The triangles of a mesh under `part_from_mesh`, touched from both sides; `None` when none has an area.
+/// Returns the triangles of a mesh under `part_from_mesh`, two-sided; `None` when none has an area.
 pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<PlacedShape> {
     let corners: Vec<Vec3> = mesh
         .positions
@@ -152,18 +152,18 @@ pub(crate) fn exact(mesh: &Mesh, part_from_mesh: &Affine3A) -> Option<PlacedShap
     })
 }
 
-/// A shape's box under a pose, m.
+/// Returns a shape's box under a pose, m.
 pub(crate) fn bounds(shape: &SharedShape, world_from_shape: &RapierPose) -> Aabb {
     let aabb = shape.compute_aabb(world_from_shape);
     Aabb::new(aabb.mins, aabb.maxs)
 }
 
-/// Gap between a house and the box of last resort, m.
+/// Gap between a house and the fallback box, m.
 const LAST_GAP_M: f32 = 0.5;
 /// Thickness of that box's sides, m: more than anything falls in a physics step.
 const LAST_SIDE_M: f32 = 1.0;
 
-/// The box of last resort, side by side: whatever leaves the house through an open door or window stays in it.
+/// Returns the sides of the fallback box: objects that leave the house through an open door or window stay in it.
 pub(crate) fn last_box(house_bounds: &Aabb) -> [(SharedShape, Pose); 6] {
     let inner = house_bounds.grown(LAST_GAP_M);
     let (half, center) = (inner.size() * 0.5, inner.center());

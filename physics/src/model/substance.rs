@@ -8,17 +8,17 @@ use super::shapes;
 use dwell_scene::{House, MaterialId, PartId};
 use glam::Vec3;
 
-/// The most faces that are looked at, the largest first; of so many or fewer four points each, else the middle.
+/// Most faces that are sampled, the largest first; up to this number four points each, else the middle.
 const MOST_FACES: usize = 512;
 const FEW_FACES: usize = 128;
 /// Difference of distances to two pieces up to which a face belongs to both, m.
 const ALIKE_M: f32 = 1e-4;
 
-/// A point of a face, with the area that it stands for.
+/// A sample of a face, with the area that it represents.
 struct SurfaceSample {
     point: Vec3,
     area_m2: f64,
-    /// Its place among the part's materials.
+    /// Its index among the part's materials.
     slot: usize,
 }
 
@@ -68,7 +68,7 @@ fn is_convex(piece: &CollisionPiece) -> bool {
     piece.shape.as_trimesh().is_none()
 }
 
-/// The material with the largest area, of equal ones the first; none where there is no area.
+/// Returns the material with the largest area, of equal ones the first; `None` where there is no area.
 fn most(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
     let of = |material: MaterialId| -> f64 {
         let own = materials.iter().zip(areas);
@@ -86,7 +86,7 @@ fn most(materials: &[MaterialId], areas: &[f64]) -> Option<MaterialId> {
     best.map(|(material, _)| material)
 }
 
-/// Points all over the largest faces of a part, in part space.
+/// Returns samples all over the largest faces of a part, in part space.
 fn spots(house: &House, part: PartId) -> Vec<SurfaceSample> {
     let part = &house.parts[part];
     let mesh = &house.meshes[part.mesh];

@@ -17,11 +17,11 @@ use std::collections::{BTreeMap, BTreeSet};
 const LEAF_MARGIN_M: f32 = 0.01;
 
 impl StartResolver<'_> {
-    /// Returns what the leaves of joints pass through: their own object, and what they overlap where they stand. A robot's links
-    /// pass through fewer things: the links they are joined with, and what they are inside of at the start.
+    /// Returns the collision exclusions of joints' leaves: their own object, and the things that they overlap at the start.
+    /// A robot's links have fewer: the links that they are jointed to, and the things that they are inside of at the start.
     ///
     /// # Errors
-    /// [`PhysicsError::TooMany`] where that is too much to remember.
+    /// [`PhysicsError::TooMany`] for more pairs than a world holds.
     pub(crate) fn passing(
         &self,
         report: &mut StartReport,
@@ -115,7 +115,7 @@ impl StartResolver<'_> {
         })
     }
 
-    /// Returns whether a body's object stands on its own feet.
+    /// Returns whether a body's object has a free root.
     fn is_free(&self, plan: &BodyPlan) -> bool {
         self.model.house.objects[plan.object].mobility == Mobility::Movable
     }
@@ -137,7 +137,7 @@ impl StartResolver<'_> {
     }
 }
 
-/// The pieces of objects with joints, by object and body (`None`: those that never move), and who hangs on whom.
+/// The pieces of objects with joints, by object and body (`None`: static ones), and their parents.
 struct ObjectPieces {
     pieces: BTreeMap<(ObjectId, Option<u32>), Vec<u32>>,
     children: BTreeMap<u32, Vec<u32>>,
@@ -166,14 +166,14 @@ impl ObjectPieces {
         Self { pieces, children }
     }
 
-    /// The pieces of an object but those of one of its bodies.
+    /// Returns the pieces of an object but those of one of its bodies.
     fn beside(&self, object: ObjectId, body: u32) -> impl Iterator<Item = u32> {
         let all = self.pieces.range((object, None)..=(object, Some(u32::MAX)));
         let others = all.filter(move |((_, owner), _)| *owner != Some(body));
         others.flat_map(|(_, pieces)| pieces.iter().copied())
     }
 
-    /// The pieces of an object that a joint joins with one of its bodies, or what of the object never moves.
+    /// Returns the pieces of an object that a joint connects with one of its bodies, or the object's static ones.
     fn joined(&self, model: &PhysicsModel, body: u32) -> impl Iterator<Item = u32> {
         let plan = &model.bodies[body as usize];
         let children = self.children.get(&body).into_iter().flatten();

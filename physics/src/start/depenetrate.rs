@@ -1,4 +1,4 @@
-//! Ways out of an overlap: a push, a lift, others that make way, a place near by.
+//! Penetration resolution: by a push, a lift, moving neighbours, or another place near by.
 
 use super::overlap::Penetration;
 use super::placed_bodies::{PlacedBodies, PlacedBody};
@@ -18,17 +18,17 @@ use std::f32::consts::TAU;
 const MOST_PUSHES: usize = 24;
 /// Heights that are tried when pushing does not help.
 const LIFTS: usize = 10;
-/// Distances and directions in which a place is looked for last.
+/// Distances and directions of the final search.
 const DISTANCES: usize = 8;
 const DIRECTIONS: usize = 12;
-/// Pushes that are tried from each.
+/// Most pushes from each of its places.
 const MOST_PUSHES_BESIDE: usize = 3;
 /// Depth of the search for a floor below, m.
 const FLOOR_M: f32 = 100.0;
 
 impl StartResolver<'_> {
-    /// A place near `start` where a body overlaps nothing, on the same side of walls, floors and ceilings; `None` when there
-    /// is none within the bound.
+    /// Returns a place near `start` where a body overlaps nothing, on the same side of walls, floors and ceilings; `None`
+    /// when there is none within the bound.
     pub(super) fn free(
         &self,
         plan: &BodyPlan,
@@ -43,7 +43,7 @@ impl StartResolver<'_> {
             .or_else(lifted)
     }
 
-    /// Up through what a body has sunk into by more than half, where no floor is below it.
+    /// Lifts a body out of something that it has sunk into by more than half, where no floor is below it.
     pub(super) fn raise(
         &self,
         plan: &BodyPlan,
@@ -75,8 +75,7 @@ impl StartResolver<'_> {
         })
     }
 
-    /// Pushes a body to the side or up, or down out of what is above it, but never through a wall,
-    /// floor or ceiling.
+    /// Pushes a body to the side or up, or down from under something, but never through a wall, floor or ceiling.
     fn pushed(
         &self,
         plan: &BodyPlan,
@@ -95,8 +94,8 @@ impl StartResolver<'_> {
         push(Vec3::Y).or_else(down)
     }
 
-    /// Pushes a body out of the deepest overlap again and again: to the side, or where it lies on or under something, the
-    /// `way` up or down. `limits`: how far, m, and how often.
+    /// Pushes a body out of its deepest overlap repeatedly: to the side, or where it lies on or under something, the `way`
+    /// up or down. `limits`: the distance, m, and the number.
     fn push(
         &self,
         plan: &BodyPlan,
@@ -132,7 +131,7 @@ impl StartResolver<'_> {
         overlap.is_none_or(|overlap| !self.counts(&overlap)) && from_rapier(place).is_valid()
     }
 
-    /// Returns whether a body's middle goes straight to another place through no wall, floor or ceiling.
+    /// Returns whether a body's middle moves straight to another place through no wall, floor or ceiling.
     fn is_reached(&self, plan: &BodyPlan, start: &RapierPose, place: &RapierPose) -> bool {
         let way = place.translation - start.translation;
         !self.is_barred(plan.bounds(start).center(), way)
@@ -142,8 +141,8 @@ impl StartResolver<'_> {
         self.is_barred(plan.bounds(place).center(), Vec3::NEG_Y * FLOOR_M)
     }
 
-    /// Lets those that have their place already, and that a body overlaps where it stands, move out of its way. Returns them, with
-    /// what they overlapped; `None`, and nothing is changed, when that does not help.
+    /// Moves placed bodies that a body overlaps out of its way. Returns them, with their overlaps; `None`, and nothing is
+    /// changed, when that does not help.
     pub(super) fn move_neighbours(
         &self,
         index: usize,
@@ -189,7 +188,7 @@ impl StartResolver<'_> {
         )
     }
 
-    /// Returns where a body goes from `start`, and where the others go that it overlaps there, each out of the way of those before.
+    /// Returns the displacement of a body from `start`, and of the bodies that it overlaps there, each out of the way of those before.
     fn ways(
         &self,
         index: usize,
@@ -211,7 +210,7 @@ impl StartResolver<'_> {
         Some((place, ways))
     }
 
-    /// The nearest place beside a body where it overlaps nothing; never behind a wall.
+    /// Returns the nearest place beside a body where it overlaps nothing; never behind a wall.
     pub(super) fn search(
         &self,
         plan: &BodyPlan,

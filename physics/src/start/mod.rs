@@ -1,4 +1,4 @@
-//! Overlaps at the start: found on the collision pieces, resolved by small moves, or frozen, and reported.
+//! Overlaps at the start: detected on the collision pieces, resolved by small moves, or frozen, and reported.
 
 mod collision_exclusions;
 mod depenetrate;
@@ -17,11 +17,11 @@ use placed_bodies::PlacedBodies;
 use rapier3d::math::Pose as RapierPose;
 use std::collections::BTreeMap;
 
-/// Gap that a resolved overlap is left with, m.
+/// Gap left by a resolved overlap, m.
 const CLEARANCE_M: f32 = 5e-4;
 
-/// Most things that one may be in so that a way out of them is looked for: none is found within some centimetres, and each
-/// try asks all of them.
+/// Most things that a body may overlap for its overlap to be resolved: with more, no place is found within some
+/// centimetres, and each try tests all of them.
 const MOST_OVERLAPPED: usize = 32;
 
 pub(crate) struct StartResolver<'a> {
@@ -48,7 +48,7 @@ impl StartResolver<'_> {
             .map_or(RapierPose::IDENTITY, |rigid| *rigid.position())
     }
 
-    /// Frees every body from what it overlaps, from the lowest up.
+    /// Frees every body from its overlaps, from the lowest up.
     pub(crate) fn resolve(&self, report: &mut StartReport) -> Vec<ResolvedBody> {
         let mut resolved: Vec<ResolvedBody> = (0..self.bodies.len())
             .map(|body| ResolvedBody {
@@ -106,7 +106,7 @@ impl StartResolver<'_> {
         resolved
     }
 
-    /// Returns whether a body is in so many others that no way out of them is looked for.
+    /// Returns whether a body overlaps too many others to be freed.
     fn is_crowded(&self, plan: &BodyPlan, place: &RapierPose, placed: &PlacedBodies) -> bool {
         let near = placed.near(&plan.bounds(place));
         let found = near

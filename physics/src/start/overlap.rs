@@ -10,7 +10,7 @@ use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::query;
 use rapier3d::pipeline::QueryFilter;
 
-/// The deepest overlap of a body somewhere.
+/// The deepest overlap of a body at a pose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Penetration {
     pub(super) depth_m: f32,
@@ -20,7 +20,7 @@ pub(super) struct Penetration {
 }
 
 impl StartResolver<'_> {
-    /// The deepest overlap of a body under a pose with static pieces and with bodies that have their place.
+    /// Returns the deepest overlap of a body under a pose with static pieces and with placed bodies.
     pub(super) fn overlap(
         &self,
         plan: &BodyPlan,
@@ -61,7 +61,7 @@ impl StartResolver<'_> {
         deepest(found.into_iter())
     }
 
-    /// The deepest overlap of a body under a pose with another one whose box it meets.
+    /// Returns the deepest overlap of a body under a pose with another one whose box it intersects.
     pub(super) fn overlap_of_two(
         &self,
         plan: &BodyPlan,
@@ -97,7 +97,7 @@ impl StartResolver<'_> {
     }
 }
 
-/// The first of the deepest.
+/// Returns the first of the deepest.
 fn deepest(overlaps: impl Iterator<Item = Penetration>) -> Option<Penetration> {
     overlaps.reduce(|worst, one| {
         if one.depth_m > worst.depth_m {
@@ -108,7 +108,7 @@ fn deepest(overlaps: impl Iterator<Item = Penetration>) -> Option<Penetration> {
     })
 }
 
-/// Returns how deep a piece is in an obstacle.
+/// Returns the penetration depth of a piece in an obstacle.
 pub(super) fn depth(
     there: &RapierPose,
     obstacle: &dyn rapier3d::geometry::Shape,

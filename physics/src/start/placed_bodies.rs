@@ -1,4 +1,4 @@
-//! The things that have their place while others are resolved, found by where they are.
+//! Spatial index of the bodies that are placed while others are resolved.
 
 use crate::model::PhysicsModel;
 use dwell_scene::Aabb;
@@ -6,7 +6,7 @@ use rapier3d::math::Pose as RapierPose;
 use rapier3d::parry::partitioning::Bvh;
 use std::collections::BTreeMap;
 
-/// A thing that stands where it is while others are resolved.
+/// A body that is placed while others are resolved.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlacedBody {
     pub(super) body: u32,
@@ -16,7 +16,7 @@ pub(super) struct PlacedBody {
     rank: u32,
 }
 
-/// All of them.
+/// All placed bodies.
 #[derive(Default)]
 pub(super) struct PlacedBodies {
     tree: Bvh,
@@ -25,7 +25,7 @@ pub(super) struct PlacedBodies {
 }
 
 impl PlacedBodies {
-    /// Lets a body stand at a place; who stands already goes there and keeps the rank.
+    /// Places a body; one that is placed already moves there and keeps its rank.
     pub(super) fn put(&mut self, model: &PhysicsModel, body: usize, place: RapierPose) {
         let number = body as u32;
         let rank = self
@@ -41,14 +41,14 @@ impl PlacedBodies {
         });
     }
 
-    /// Lets one stand again that was taken.
+    /// Puts a removed body back.
     pub(super) fn put_back(&mut self, placed: PlacedBody) {
         self.take(placed.body as usize);
         self.tree.insert(to_parry(&placed.bounds), placed.body);
         self.by_body.insert(placed.body, placed);
     }
 
-    /// Takes a body away.
+    /// Removes a body.
     pub(super) fn take(&mut self, body: usize) {
         let number = body as u32;
         if self.by_body.remove(&number).is_some() {
@@ -56,7 +56,7 @@ impl PlacedBodies {
         }
     }
 
-    /// Those whose boxes meet a box, who came first first.
+    /// Returns the bodies whose boxes intersect a box, in order of placement.
     pub(super) fn near(&self, bounds: &Aabb) -> Vec<PlacedBody> {
         let around = to_parry(bounds);
         let found = self.tree.intersect_aabb(&around);
@@ -79,7 +79,7 @@ mod tests {
     use dwell_scene::random::RandomKey;
     use glam::Vec3;
 
-    /// Against a list that is walked: who meets a box, in order, while things come, go and move.
+    /// Against a linear list: the bodies near a box, in order, while bodies come, go and move.
     #[test]
     fn those_near_a_box_are_those_of_a_list() {
         let mut stream = RandomKey::root(4).stream();

@@ -1,4 +1,4 @@
-//! Agents that are put somewhere from outside, moving in any way that their bodies can.
+//! Placement of agents from outside, with any velocity that their bodies can have.
 
 use super::PhysicsWorld;
 use crate::agents::{self, FASTEST_FALL_M_S, PassiveVelocity, STEEPEST_LOOK_RAD};
@@ -9,17 +9,17 @@ use crate::hands::hand_pose;
 use dwell_scene::{AgentId, AgentState, BaseState, DifferentialDrive, Id, Locomotion, State, math};
 use glam::Vec3;
 
-/// The furthest that an agent is put, m: coordinates are exact to some millimetres there.
+/// Largest coordinate of an agent, m: coordinates are exact to some millimetres there.
 const FURTHEST_M: f32 = 32_768.0;
-/// The fastest that one turns, rad/s.
+/// Highest yaw rate, rad/s.
 const FASTEST_TURN_RAD_S: f32 = 100.0;
 
 /// The pose of an agent, and its velocities.
 ///
-/// What a body does by its own will is for its controls: an agent on legs that is given a velocity slides on (feet brake it) or
-/// flies on, and its rate of turn is what its gyro reads in this moment. The wheels of a differential drive turn as its speed
-/// ahead and its rate of turn ask for, unless they are given, and it slides with what is left; a holonomic base has all of it, within
-/// its limits. What flies on wheels keeps its velocity until it lands, and then has that of its wheels.
+/// Commanded motion is up to controls: an agent on legs that is given a velocity slides on (feet brake it) or flies on, and
+/// its yaw rate is its gyro's present reading. The wheels of a differential drive turn as its forward speed and yaw rate
+/// require, unless they are given, and it slides with the remaining velocity; a holonomic base takes all of it, within its
+/// limits. A wheeled base in the air keeps its velocity until it lands, and then has that of its wheels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AgentPlacement {
     /// The agent.
@@ -36,7 +36,7 @@ pub struct AgentPlacement {
     pub yaw_rate_rad_s: f32,
     /// Reduction of its body's height, m: more than 0 while it crouches. Only on legs.
     pub crouched_by_m: f32,
-    /// Speeds of the left and right wheel of a differential drive, rad/s, instead of a level velocity and a rate of turn.
+    /// Speeds of the left and right wheel of a differential drive, rad/s, instead of a horizontal velocity and a yaw rate.
     pub wheel_rad_s: Option<[f32; 2]>,
 }
 
@@ -109,7 +109,7 @@ impl AgentPlacement {
         }
     }
 
-    /// The agent as it is put, and what it has of speed that is not its own will. `truth`: how it gets about in this world.
+    /// Returns the placed agent, and its velocity that is not commanded. `truth`: its locomotion in this world.
     fn put(
         &self,
         before: &AgentState,
@@ -172,7 +172,7 @@ impl AgentPlacement {
             }
             _ => {}
         }
-        // What flies on wheels keeps its velocity as a body does.
+        // A wheeled base in the air keeps its velocity as a free body does.
         if !agent.grounded && !walks {
             slide = Vec3::ZERO;
         }
@@ -183,7 +183,7 @@ impl AgentPlacement {
         Ok((agent, passive_velocities))
     }
 
-    /// Gives the wheels of a differential drive their speeds. Returns the velocity that they make, m/s.
+    /// Gives the wheels of a differential drive their speeds. Returns the resulting velocity, m/s.
     fn turn_wheels(
         &self,
         agent: &mut AgentState,
@@ -228,7 +228,7 @@ impl AgentPlacement {
 }
 
 impl PhysicsWorld {
-    /// Puts an agent somewhere, at rest, together with what it holds.
+    /// Places an agent, at rest, together with its held object.
     ///
     /// # Errors
     /// As [`PhysicsWorld::set_agents`].
@@ -242,8 +242,8 @@ impl PhysicsWorld {
         self.set_agents(state, &[AgentPlacement::at_rest(agent, position, yaw_rad)])
     }
 
-    /// Puts agents to poses and velocities, together with what they hold. They may be put inside things; they then work their
-    /// way out. The state then says exactly what was set.
+    /// Places agents with poses and velocities, together with their held objects. They may be placed inside things; they
+    /// then work their way out. The state then holds exactly the values that were set.
     ///
     /// # Errors
     /// [`PhysicsError::UnknownAgent`]; [`PhysicsError::Range`] for numbers that are not finite or that the agent's body cannot
@@ -286,8 +286,8 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// Brings what an agent holds to where its hand is now: as near to the hand as nothing is in the way, never beyond a
-    /// wall. Where there is no room at all, the agent lets go of it, and it stays where it was.
+    /// Brings an agent's held object to its hand: as near as nothing is in the way, never beyond a wall. Where there is no
+    /// room at all, the agent releases it, and it stays.
     fn bring_held(&mut self, state: &mut State, place: usize, here: &AgentState) {
         let grip = self.hands.grips[place];
         let body = grip.body as usize;

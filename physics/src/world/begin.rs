@@ -12,7 +12,7 @@ use dwell_scene::State;
 use rapier3d::dynamics::RigidBodyHandle;
 
 impl PhysicsWorld {
-    /// Resolves overlaps, hangs joints and shuts doors.
+    /// Resolves overlaps, attaches joints and latches doors.
     pub(super) fn begin(
         &mut self,
         state: &mut State,
@@ -83,8 +83,8 @@ impl PhysicsWorld {
     }
 }
 
-/// Puts every joint's part where its joint says, unless it stands there already; a joint beyond its limits, as a parameter may
-/// have set them, stands at the nearer one.
+/// Puts every joint's part at its joint's position, unless it is there already; a joint beyond its limits, as overrides may
+/// have set them, is put at the nearer one.
 pub(super) fn align_joints(model: &PhysicsModel, state: &mut State) {
     for (id, joint) in model.house.joints.iter_ids() {
         let values = state.joint_values(&model.house, id);

@@ -1,4 +1,4 @@
-//! Changes from outside: agents that come, states that are taken over.
+//! Changes from outside: added agents, adopted states.
 
 use super::PhysicsWorld;
 use crate::articulation::joint_from_state;
@@ -14,7 +14,7 @@ impl PhysicsWorld {
     /// Adds an agent to the state and the world. It may be placed inside things; it then works its way out.
     ///
     /// # Errors
-    /// [`PhysicsError::Scene`] for a body out of range, [`PhysicsError::Range`] for a place that is not finite,
+    /// [`PhysicsError::Scene`] for a body out of range, [`PhysicsError::Range`] for a position that is not finite,
     /// [`PhysicsError::ForeignState`] for a state with other agents.
     pub fn add_agent(
         &mut self,
@@ -42,8 +42,8 @@ impl PhysicsWorld {
         Ok(id)
     }
 
-    /// Takes over poses, velocities and joint positions that were set in `state` from outside: what differs from where
-    /// physics has it is moved there and woken. Frozen and shut things that are moved, or given a velocity, become free.
+    /// Adopts poses, velocities and joint positions that were set in `state` from outside: bodies that differ are moved
+    /// there and woken. Frozen and latched bodies that are moved, or given a velocity, become free.
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another house's state; [`PhysicsError::Range`] for a pose that is not rigid.
@@ -74,7 +74,7 @@ impl PhysicsWorld {
             }
         }
         let (mut disturbed_roots, mut set) = (BTreeSet::new(), Vec::new());
-        // What is not moved by a joint comes first: joints hang on it.
+        // Bodies without a joint come first: they are parents of others.
         for (index, plan) in model.bodies.iter().enumerate() {
             if plan.joint.is_some() {
                 continue;
@@ -107,7 +107,7 @@ impl PhysicsWorld {
             };
             if !same_velocity(&there, &velocity, arm) {
                 if self.dynamics.holds[index] != BodyStatus::Free {
-                    // What stands would go through everything with its velocity.
+                    // A fixed body with a velocity would pass through everything.
                     self.dynamics.holds[index] = BodyStatus::Free;
                     rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 }
@@ -178,7 +178,7 @@ impl PhysicsWorld {
                 state.part_velocity[root] = velocity;
             }
         }
-        // The state keeps the numbers it was given: what physics reads off its bodies differs by rounding.
+        // The state keeps the values that it was given: those computed from bodies differ by rounding.
         for (joint, stand) in self.articulation.joints.iter().zip(&stands) {
             let read = (
                 state.joint_position[joint.id].into(),
@@ -193,12 +193,12 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// Returns where a joint stands and how fast it moves, rad or m and per second, as the next step begins; `None` for a joint that
+    /// Returns position and velocity of a joint, rad or m and per second, as the next step begins; `None` for a joint that
     /// moves nothing.
     ///
-    /// Physics moves joints by their own numbers. It goes on from those of the state where bodies say the same up to the
-    /// rounding of their places and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s at 20 m/s,
-    /// a few times over), and from what bodies say where they do not.
+    /// Physics moves joints by their own coordinates. It goes on from those of the state where bodies agree with them up to
+    /// the rounding of their poses and velocities, which are f32 in the world (some 5e-7 m at 5 m from the origin, 2e-6 m/s
+    /// at 20 m/s, a few times over), and from the bodies' where they do not.
     pub fn measure_joint(&self, state: &State, joint: JointId) -> Option<(f32, f32)> {
         let place = self
             .articulation
@@ -210,8 +210,8 @@ impl PhysicsWorld {
     }
 }
 
-/// Returns whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass, `arm`
-/// away, m.
+/// Returns whether two velocities of a body's origin are the same up to the rounding of moving them to its centre of mass,
+/// `arm` away, m.
 fn same_velocity(a: &Velocity, b: &Velocity, arm: Vec3) -> bool {
     let most = |v: Vec3| v.abs().max_element();
     let rounding = 4.0 * f32::EPSILON * (most(b.linear) + most(b.angular.cross(arm)));

@@ -51,20 +51,21 @@ pub struct PhysicsWorld {
     hands: Hands,
     pushes: Vec<OngoingPush>,
     contacts: ContactRecord,
-    /// The overrides that are in force.
+    /// The overrides in force.
     applied: BTreeMap<Address, f64>,
     /// Outcomes in the last step of operations that take time.
     notices: Vec<DelayedOutcome>,
 }
 
 impl PhysicsWorld {
-    /// Makes the bodies of a house where `state` has its parts. Things that overlap are moved free by small steps, in
-    /// `state` too, or frozen; an agent that would stand in something is put where it has room, at the nearest place on a
-    /// room's floor. The report says which.
+    /// Makes the bodies of a house at the poses of `state`. Overlapping objects are moved apart by small steps, in `state`
+    /// too, or frozen; an agent that would overlap something is moved to the nearest free position on a room's floor. The
+    /// report lists them.
     ///
     /// # Errors
-    /// [`PhysicsError::Range`] for a setting out of range and for an agent's body that has room nowhere in the house, [`PhysicsError::ForeignState`] for another house's state,
-    /// [`PhysicsError::LawTarget`] for a law without its target, [`PhysicsError::TooMany`] for more bodies, joints or pairs than a world holds.
+    /// [`PhysicsError::Range`] for a setting out of range and for an agent's body that fits nowhere in the house,
+    /// [`PhysicsError::ForeignState`] for another house's state, [`PhysicsError::LawTarget`] for a law without its target,
+    /// [`PhysicsError::TooMany`] for more bodies, joints or pairs than a world holds.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "the shape of every engine's entry point"
@@ -148,10 +149,10 @@ impl PhysicsWorld {
         Ok((world, report))
     }
 
-    /// Lets an agent do something with its hand, at once or, for doors and pushes, over the next steps.
+    /// Performs an agent's hand action, at once or, for doors and pushes, over the next steps.
     ///
-    /// `rays` must show `state` as it is. What takes time reports its end through [`PhysicsWorld::notices`]. A state of
-    /// another world or an agent that does not exist is refused like any other action that cannot be.
+    /// `rays` must show `state` as it is. Operations that take time report their end through [`PhysicsWorld::notices`]. A
+    /// state of another world or an agent that does not exist is refused like any other impossible action.
     pub fn act(
         &mut self,
         state: &mut State,
@@ -178,7 +179,7 @@ impl PhysicsWorld {
         context.perform(state, rays, agent, action)
     }
 
-    /// The shapes this world shares with others over its house.
+    /// Returns the model that this world shares with others over its house.
     pub fn model(&self) -> &Arc<PhysicsModel> {
         &self.dynamics.model
     }
@@ -188,19 +189,19 @@ impl PhysicsWorld {
         &self.dynamics.settings.config
     }
 
-    /// Returns what became, in the last step, of doors and grips that take time.
+    /// Returns the outcomes, in the last step, of doors, pushes and grips that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
         &self.notices
     }
 
-    /// The events of the last control step beyond its limit: how many, and how strong together.
+    /// Returns the events of the last control step beyond its limit: their number and total impulse.
     pub fn merged_events(&self) -> MergedEvents {
         self.contacts.merged
     }
 
-    /// Friction and restitution between two things as overrides have them, by their first surfaces (a wall or mesh of
-    /// several materials has others too); `None` for what touches nothing. Laws may change what acts; each contact event
-    /// carries the values of its own surfaces.
+    /// Returns friction and restitution between two things, with overrides, by their first surfaces (a wall or mesh of
+    /// several materials has others too); `None` for a thing without contacts. Laws may change the values that act; each
+    /// contact event has those of its own surfaces.
     pub fn pair(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
         let class = |toucher: ContactEntity| {
             let entry = self.dynamics.entries.iter();
@@ -215,12 +216,12 @@ impl PhysicsWorld {
         self.dynamics.tick as f64 / f64::from(self.dynamics.settings.config.physics_rate_hz)
     }
 
-    /// Returns how many pairs of colliders the world keeps: most of its memory, and of a snapshot's size.
+    /// Returns the number of collider pairs that the world keeps: most of its memory, and of a snapshot's size.
     pub fn pair_counts(&self) -> PairCounts {
         self.dynamics.engine.pair_counts()
     }
 
-    /// Returns how many rigid bodies are awake.
+    /// Returns the number of awake rigid bodies.
     pub fn awake_count(&self) -> usize {
         let awake = |body: &&BodyHandle| {
             let rigid = self.dynamics.engine.bodies.get(body.handle);

@@ -1,13 +1,13 @@
 //! Recovery of bodies that the solver loses: those whose position or velocity is no longer finite.
 //!
-//! rapier takes such a body out of its world for good, where it last was. Here it is put back there, at rest, and a notice says so:
-//! nothing falls out of a world for the rest of an episode.
+//! rapier removes such a body from its world for good. Here it is put back at its last position, at rest, with a notice:
+//! nothing is lost for the rest of an episode.
 
 use super::PhysicsWorld;
 use crate::outcome::{ActionOutcome, DelayedOutcome, OutcomeCode};
 
 impl PhysicsWorld {
-    /// Puts back what the last step lost. Returns whether there was anything.
+    /// Restores bodies that the last step lost. Returns whether there were any.
     pub(crate) fn recover_non_finite(&mut self) -> bool {
         let lost = self.dynamics.engine.take_lost();
         if lost.is_empty() {
@@ -45,7 +45,7 @@ mod tests {
     use glam::Vec3;
     use std::sync::Arc;
 
-    /// A thing whose speed is no number stands where it stood, and the world goes on, from a snapshot, too.
+    /// A body whose velocity is not finite stays where it was, and the world goes on, from a snapshot, too.
     #[test]
     fn what_is_lost_is_stopped_and_told() {
         let house = Arc::new(

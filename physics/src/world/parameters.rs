@@ -14,14 +14,14 @@ use rapier3d::dynamics::{MassProperties, RigidBody};
 use rapier3d::geometry::ColliderHandle;
 
 impl PhysicsWorld {
-    /// Takes over the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity,
-    /// all that [`State::joint_values`] gives of joints. Everything that sleeps is woken if something changed. Where a link's
-    /// length or a joint's axis changed, what hangs on it moves there, in `state` too; a joint beyond a new limit stands at it, at
-    /// rest. Agents have their bodies as the state says.
+    /// Applies the state's overrides and laws: masses, friction and restitution of pairs and materials, gravity, all joint
+    /// parameters of [`State::joint_values`]. All sleeping bodies are woken if something changed. Where a link's length or
+    /// a joint's axis changed, jointed bodies move there, in `state` too; a joint beyond a new limit is put at it, at rest.
+    /// Agents get the bodies of the state.
     ///
     /// # Errors
-    /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed, [`PhysicsError::Range`] for an
-    /// agent's body that has no room where the agent stands; nothing has changed then.
+    /// [`PhysicsError::Scene`] or [`PhysicsError::LawTarget`] for a law that cannot be installed, [`PhysicsError::Range`]
+    /// for an agent's body that does not fit at the agent's place; nothing has changed then.
     pub fn apply_parameters(&mut self, state: &mut State) -> Result<(), PhysicsError> {
         self.check_state(state)?;
         let laws = laws::install(&self.dynamics.model, state, &self.dynamics.laws)?;
@@ -30,8 +30,8 @@ impl PhysicsWorld {
         let table = ContactTable::new(&model.house, state);
         let weights = BodyMasses::new(&model, state, &laws);
         let gravity = Vec3::new(0.0, -state.gravity_m_s2(), 0.0);
-        // What changes shapes, masses or joints is taken over by a step of no length, which looks at all contacts anew; what only
-        // changes how things act from the next step on is not, so that a number set and set back leaves no trace.
+        // Changes of shapes, masses or joints are applied by a step of zero length, which computes all contacts anew;
+        // changes that only act from the next step on are not, so that setting a value and setting it back leaves no trace.
         let mut changed = weights != self.dynamics.weights || table.differs(&self.dynamics.table);
         let values = laws.contact_properties(&model.house, &table);
         let (mut longer, mut shifted) = (false, Vec::new());
@@ -41,7 +41,7 @@ impl PhysicsWorld {
             .iter()
             .enumerate()
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
-        // Entries stand in the order of insertion: statics, bodies, agents.
+        // Entries are in the order of insertion: statics, bodies, agents.
         for (index, (piece, body)) in statics.chain(moving).enumerate() {
             self.dynamics.entries[index].surface = table.surface(&piece.cover);
             let density = body.map(|body| {
@@ -52,7 +52,7 @@ impl PhysicsWorld {
         }
         for (index, inertia) in weights.altered.iter().enumerate() {
             if *inertia == self.dynamics.weights.altered[index] {
-                // Other shares of the parts in the mass move its centre.
+                // Other mass ratios of the parts move the centre of mass.
                 let uneven = |factors: &[f32]| factors.iter().any(|factor| *factor != factors[0]);
                 let (new, old) = (
                     &weights.factors[index],
@@ -119,7 +119,7 @@ impl PhysicsWorld {
         if changed {
             self.dynamics.flush();
         }
-        // Only now, that contacts are looked at under the new laws.
+        // Only now, that contacts are computed under the new laws.
         if longer {
             self.follow_lengths(state);
         }
@@ -129,18 +129,18 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// Wakes what sleeps; with `all`, what is about to sleep waits anew too.
+    /// Wakes sleeping bodies; with `all`, restarts the time until sleep of the others too.
     fn wake_sleepers(&mut self, all: bool) {
         for body in &self.dynamics.bodies {
             let rigid = self.dynamics.engine.bodies.get(body.handle);
-            // rapier sorts its islands anew when it wakes what is awake, and solves in another order.
+            // rapier sorts its islands anew when it wakes an awake body, and solves in another order.
             if all || rigid.is_some_and(RigidBody::is_sleeping) {
                 self.dynamics.engine.wake(body.handle);
             }
         }
     }
 
-    /// Bodies whose centre of mass has moved go on as their parts did. Returns whether joints move some of them.
+    /// Keeps the motion of parts of bodies whose centre of mass has moved. Returns whether some are jointed.
     fn preserve_part_motion(&mut self, state: &State, shifted: &[usize]) -> bool {
         let mut on_joints = false;
         for index in shifted {
@@ -167,7 +167,7 @@ impl PhysicsWorld {
         on_joints
     }
 
-    /// Moves what hangs on joints whose frames have changed; joints keep their positions and velocities.
+    /// Moves jointed bodies whose joint frames have changed; joints keep their positions and velocities.
     fn follow_lengths(&mut self, state: &mut State) {
         let stands: Vec<JointPlacement> = self
             .articulation
@@ -183,7 +183,7 @@ impl PhysicsWorld {
         self.place_joints(state, &stands);
     }
 
-    /// Puts all that hangs on joints where these say, and writes where it is. Shape of `stands`: (joint,).
+    /// Puts all jointed bodies at these placements, and writes their poses. Shape of `stands`: (joint,).
     pub(super) fn place_joints(&mut self, state: &mut State, stands: &[JointPlacement]) {
         for tree in &self.articulation.trees {
             joints::place(
@@ -197,7 +197,7 @@ impl PhysicsWorld {
         self.articulation.write(&self.dynamics, state);
     }
 
-    /// Returns whether a collider is a cylinder that rolls now: its contacts are asked about whatever the materials say.
+    /// Returns whether a collider is a rolling cylinder: the hook is asked about its contacts whatever the materials are.
     fn rolls(&self, collider: ColliderHandle) -> bool {
         self.dynamics.model.rollers.iter().any(|roller| {
             let body = self.dynamics.bodies.get(roller.body());
@@ -206,7 +206,7 @@ impl PhysicsWorld {
         })
     }
 
-    /// Gives a collider its contact values and density. Returns whether they were others before.
+    /// Gives a collider its contact values and density. Returns whether they changed.
     fn redress(
         &mut self,
         entry: usize,

@@ -1,4 +1,4 @@
-//! Bodies and joints that are put somewhere from outside, moving in any way.
+//! Setting poses and velocities of bodies and joints from outside.
 
 use super::PhysicsWorld;
 use crate::body::BodyStatus;
@@ -6,10 +6,10 @@ use crate::convert::{from_rapier, to_rapier};
 use crate::error::PhysicsError;
 use dwell_scene::{Id, JointId, JointKind, PartId, Pose, State, Velocity};
 
-/// The fastest that anything is set to, m/s and rad/s: a turn within a solver substep at the default rates, beyond which
+/// Highest speed that can be set, m/s and rad/s: a turn within a solver substep at the default rates, beyond which
 /// rotations are ambiguous.
 const FASTEST: f32 = 1000.0;
-/// The furthest that anything is put, m: coordinates are exact to some millimetres there.
+/// Largest coordinate that can be set, m: coordinates are exact to some millimetres there.
 const FURTHEST_M: f32 = 32_768.0;
 /// Rounding tolerance of a joint's position beyond a stop, rad or m.
 const AT_STOP: f32 = 1e-5;
@@ -17,7 +17,7 @@ const AT_STOP: f32 = 1e-5;
 /// The pose and velocities of a part that moves freely.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyState {
-    /// A part of the body: a free object's, or the base of a robot that stands free.
+    /// A part of the body: a free object's, or the base of a free robot.
     pub part: PartId,
     /// `world_from_part`.
     pub pose: Pose,
@@ -46,13 +46,13 @@ fn refuse(at: String, field: &'static str, found: String, allowed: &'static str)
 }
 
 impl PhysicsWorld {
-    /// Puts bodies that move freely to poses and velocities, at once; what hangs on them moves along, with its joints where
-    /// they were. What they stood on and they themselves are awake afterwards. The state then says exactly what was set.
+    /// Sets poses and velocities of free bodies, at once; bodies jointed to them move along, with unchanged joint
+    /// positions. They and their supports are awake afterwards. The state then holds exactly the values that were set.
     ///
     /// # Errors
     /// [`PhysicsError::Unmovable`] for a part that is fixed, frozen, held or moved by a joint; [`PhysicsError::Range`] for
-    /// numbers that are not finite, a rotation that is no unit quaternion, a place beyond 32768 m or speeds beyond 1000 m/s
-    /// or rad/s. Nothing has changed then.
+    /// values that are not finite, a rotation that is no unit quaternion, a position beyond 32768 m or speeds beyond 1000
+    /// m/s or rad/s. Nothing has changed then.
     pub fn set_bodies(
         &mut self,
         state: &mut State,
@@ -72,14 +72,15 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// Puts joints to positions and velocities, at once; what hangs on them moves along, and they are awake afterwards.
+    /// Sets joints to positions and velocities, at once; jointed bodies move along, and are awake afterwards.
     ///
-    /// Setting is no motion: a hysteresis' spring is without effort and a backlash's output stands where the joint is put, whatever
-    /// was before, so that equal states go on alike. What motors remember of their commands (latency, lag, rate limit) stays.
+    /// Setting is no motion: a hysteresis spring then has no effort and a backlash's output is at the joint's position,
+    /// whatever was before, so that equal states evolve alike. Motors' states of past commands (latency, lag, rate limit)
+    /// stay.
     ///
-    /// A hinge counts its turns: a continuous one reads the integral of its velocity up to the 1000 rad/s that may be set, as
-    /// long as no impact changes its velocity at once by a turn a physics step (754 rad/s at 120 Hz); beyond that it may read a turn
-    /// too many or too few. A position is told in f32: to 1e-3 rad at 10,000 rad.
+    /// A hinge counts its turns: a continuous one reads the integral of its velocity up to the 1000 rad/s that may be set,
+    /// as long as no impact changes its velocity at once by a turn a physics step (754 rad/s at 120 Hz); beyond that it may
+    /// read a turn too many or too few. A position has f32 precision: 1e-3 rad at 10,000 rad.
     ///
     /// # Errors
     /// [`PhysicsError::Unmovable`] for a joint that does not exist; [`PhysicsError::Range`] for numbers that are not finite, a
@@ -152,7 +153,7 @@ impl PhysicsWorld {
         Ok(within)
     }
 
-    /// Returns what is said of a part as what its body's first part does.
+    /// Returns the pose and velocity of a part as those of its body's first part.
     fn root_state(&self, body: &BodyState) -> Result<(PartId, Pose, Velocity), PhysicsError> {
         let house = &self.dynamics.model.house;
         let Some(part) = house.parts.get(body.part) else {
@@ -226,7 +227,7 @@ impl PhysicsWorld {
         }
     }
 
-    /// Returns how a free body moves as physics itself has it, by one of its parts; `None` for what does not move.
+    /// Returns the motion of a free body as physics has it, by one of its parts; `None` for a body that does not move.
     pub fn measure_body(&self, part: PartId) -> Option<BodyState> {
         let index = (*self.dynamics.model.body_of_part.get(part)?)? as usize;
         let rigid = self

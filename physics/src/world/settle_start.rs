@@ -1,18 +1,18 @@
-//! Things that come to rest before a world begins.
+//! Settling of objects before a world begins.
 
 use super::PhysicsWorld;
 use crate::contact::MergedEvents;
 use crate::error::PhysicsError;
 use dwell_scene::{State, interrupt};
 
-/// The longest that things are given, s.
+/// Longest settling time, s.
 const LONGEST_S: f64 = 60.0;
 
 impl PhysicsWorld {
-    /// Lets things fall, lean and come to rest for at most `longest_s`, 0 to 60 s, less where all rest sooner; agents stand still.
-    /// Then time begins: nothing that happened meanwhile is told.
+    /// Lets objects fall, lean and come to rest for at most `longest_s`, 0 to 60 s, less where all rest sooner; agents
+    /// stand still. Then time begins: no events of the settling are reported.
     ///
-    /// Worlds that are copied from one that has settled begin with most of their bodies laid aside, and so with a tenth of the work.
+    /// Copies of a settled world begin with most of their bodies cached, and so with a tenth of the work.
     ///
     /// # Errors
     /// [`PhysicsError::Range`] for another duration, [`PhysicsError::ForeignState`] for another world's state. Nothing has happened

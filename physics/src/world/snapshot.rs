@@ -1,9 +1,9 @@
-//! A physics world as bytes, without its shapes.
+//! Serialization of a physics world, without its shapes.
 //!
-//! Everything between steps that shapes do not determine is written: bodies, islands, the broad phase's tree, contacts
-//! with their warm-start impulses, joints, and what this crate remembers. Colliders are built again from the model and
-//! the state's parameters, in the same order, at the bodies' places. Between steps no collider is marked as changed, so
-//! that a world built this way is the same, bit for bit.
+//! Everything between steps that shapes do not determine is written: bodies, islands, the broad phase's tree, contacts with
+//! their warm-start impulses, joints, and this crate's own state. Colliders are rebuilt from the model and the state's
+//! parameters, in the same order, at the bodies' poses. Between steps no collider is marked as changed, so that a world
+//! built this way is the same, bit for bit.
 
 use super::PhysicsWorld;
 use crate::actions::OngoingPush;
@@ -94,8 +94,8 @@ fn refuse<T>(why: impl Into<String>) -> Result<T, PhysicsError> {
 }
 
 impl PhysicsWorld {
-    /// This moment as bytes, to be kept: header, version, fingerprints of house and config, check sum, packed body. They hold
-    /// no shape, and not the state: keep [`State::to_bytes`] of the same moment beside them.
+    /// Returns a snapshot to be stored: header, version, fingerprints of house and config, checksum, packed body. It holds
+    /// no shape, and not the state: store [`State::to_bytes`] of the same time beside it.
     ///
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
@@ -104,14 +104,14 @@ impl PhysicsWorld {
         self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
     }
 
-    /// Returns what a snapshot should take at most: 256 KiB and 2 KiB for each body that can move. What would be larger is packed harder; a
-    /// heap in motion may pass it.
+    /// Returns the target size of a snapshot: 256 KiB and 2 KiB for each body that can move. A larger one is packed harder;
+    /// a heap in motion may exceed it.
     pub fn largest_snapshot(&self) -> usize {
         (256 + 2 * self.dynamics.bodies.len()) * 1024
     }
 
-    /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within
-    /// a run, or to be packed beside others.
+    /// As [`PhysicsWorld::snapshot`], but not packed: some three times as large and many times as fast, to go back within a
+    /// run, or to be packed beside others.
     ///
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
@@ -148,7 +148,7 @@ impl PhysicsWorld {
             .expect("rapier's sets are plain data that say how long they are")
     }
 
-    /// A fingerprint of all that [`PhysicsWorld::snapshot`] holds: equal worlds have equal ones.
+    /// Returns a hash of all that [`PhysicsWorld::snapshot`] holds: equal worlds have equal ones.
     ///
     /// # Panics
     /// Never: writing plain data to memory cannot fail.
@@ -170,11 +170,11 @@ impl PhysicsWorld {
         bytes
     }
 
-    /// Goes to the moment of a [`PhysicsWorld::snapshot`] or a [`PhysicsWorld::moment`]; `state` must be the state of that moment. The next steps then give the same bits
-    /// as they did there.
+    /// Restores a [`PhysicsWorld::snapshot`] or a [`PhysicsWorld::moment`]; `state` must be the state of the same time. The
+    /// next steps then give the same bits as they did there.
     ///
     /// # Errors
-    /// [`PhysicsError::Snapshot`] for foreign, damaged or older bytes, another house, other settings or another moment's
+    /// [`PhysicsError::Snapshot`] for foreign, damaged or older bytes, another house, other settings or another time's
     /// state; the world is then as it was before.
     pub fn restore(&mut self, state: &mut State, bytes: &[u8]) -> Result<(), PhysicsError> {
         let body = self.check_header(bytes)?;
@@ -215,7 +215,7 @@ impl PhysicsWorld {
             BodyMasses::new(&model, state, &laws)
         };
         let values = laws.contact_properties(&model.house, &table);
-        // Bodies stand at the places of the snapshot for the moment in which colliders are built.
+        // Bodies are at the poses of the snapshot while colliders are built.
         let place = |index: usize| {
             let handle = self.dynamics.bodies[index].handle;
             let place = bodies

@@ -8,12 +8,11 @@ use crate::error::PhysicsError;
 use dwell_scene::{State, interrupt};
 
 impl PhysicsWorld {
-    /// Makes one control step: agents move as `controls` say (those without one stand still), then bodies, joints and
-    /// contacts; `state` is brought up to date, and impacts, scrapes and rolling are appended to `events` in the order of time
-    /// and pair: at most [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see
-    /// [`PhysicsWorld::merged_events`].
+    /// Makes one control step: agents move by `controls` (those without one stand still), then bodies, joints and contacts;
+    /// `state` is updated, and impacts, sliding and rolling are appended to `events` in the order of time and pair: at most
+    /// [`max_events_per_step`](crate::PhysicsConfig::max_events_per_step), see [`PhysicsWorld::merged_events`].
     ///
-    /// The state's `time_s` and `step` belong to whoever runs the world and are left alone.
+    /// The state's `time_s` and `step` belong to the caller and are left alone.
     ///
     /// # Errors
     /// [`PhysicsError::ForeignState`] for another world's state, [`PhysicsError::UnknownAgent`] for more controls than
@@ -47,7 +46,7 @@ impl PhysicsWorld {
         self.contacts.tell(&self.dynamics, events, first_event);
         finish_movement(&self.dynamics, state, &ways);
         self.hands.end_separations(&mut self.dynamics, state);
-        // What slept all the time stands as it was written.
+        // A body that slept all the time is as it was written.
         if !slept || self.dynamics.engine.islands.num_active_bodies() > 0 {
             self.articulation.write_coordinates(state);
             self.articulation.write(&self.dynamics, state);
@@ -56,8 +55,8 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// One physics step of bodies, joints and contacts. Returns whether something was put somewhere at its end, so that
-    /// colliders stand elsewhere.
+    /// Makes one physics step of bodies, joints and contacts. Returns whether something was placed at its end, so that
+    /// colliders moved.
     fn physics_step(&mut self, state: &State, events: &mut Vec<ContactEvent>) -> bool {
         self.articulation.drive_motors(&mut self.dynamics, state);
         let led = self.agents.list.iter().map(|agent| agent.handle);
@@ -85,7 +84,7 @@ impl PhysicsWorld {
         placed
     }
 
-    /// Moves agents, what they hold and what they push, before a physics step; `first`: the control step's first.
+    /// Moves agents, their held objects and their pushes, before a physics step; `first`: the first of its control step.
     fn move_agents(
         &mut self,
         state: &mut State,
@@ -100,8 +99,8 @@ impl PhysicsWorld {
         actions::advance_pushes(&mut self.pushes, dynamics, state, notices);
     }
 
-    /// Lays aside what fell asleep since `tick_before`. Where the last physics step put something, its colliders follow, so
-    /// that a snapshot continues with the same bits.
+    /// Caches bodies that fell asleep since `tick_before`. Where the last physics step placed something, its colliders
+    /// follow, so that a snapshot continues with the same bits.
     fn lay_sleepers_aside(&mut self, tick_before: u64, placed: bool) {
         let hands = &self.hands;
         self.dynamics
@@ -123,12 +122,12 @@ impl PhysicsWorld {
         Ok(())
     }
 
-    /// The kinetic energy of everything that moves freely or on joints, J: that of the centres of mass and of the spins.
+    /// Returns the kinetic energy of all moving bodies, J: of their centres of mass and of their rotation.
     pub fn kinetic_energy_j(&self) -> f64 {
         self.dynamics.kinetic_energy_j()
     }
 
-    /// The fastest point of any body, m/s.
+    /// Returns the speed of the fastest point of any body, m/s.
     pub fn fastest_m_s(&self) -> f32 {
         self.dynamics.fastest_m_s()
     }

@@ -1,4 +1,4 @@
-//! Trees with two children a node, as builders make them.
+//! Binary trees, as builders make them.
 
 use super::node::WIDTH;
 use crate::bounds::Aabb;
@@ -13,11 +13,11 @@ pub(super) struct BinaryNode {
     pub(super) count: u32,
 }
 
-/// Node 0 is the top; no nodes when there are no boxes.
+/// Node 0 is the root; no nodes when there are no boxes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BinaryBvh {
     pub(super) nodes: Vec<BinaryNode>,
-    /// Positions in the input, as leaves refer to them. Shape (boxes,).
+    /// Positions in the input, referred to by leaves. Shape (boxes,).
     pub(super) order: Vec<u32>,
 }
 
@@ -29,7 +29,7 @@ pub(super) fn median_tree(boxes: &[Aabb]) -> BinaryBvh {
     tree
 }
 
-/// As [`median_tree`] with at most `leaf` boxes in a leaf, in the memory of an earlier tree.
+/// As [`median_tree`] with at most `leaf` boxes in a leaf, reusing an earlier tree's memory.
 pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
     tree.nodes.clear();
     tree.order.clear();
@@ -44,7 +44,7 @@ pub(super) fn rebuild(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh) {
     }
 }
 
-/// Makes node `k` over `order[start..end]`, and all below it.
+/// Builds node `k` over `order[start..end]`, and all below it.
 fn fill(boxes: &[Aabb], leaf: usize, tree: &mut BinaryBvh, k: usize, (start, end): (usize, usize)) {
     let order = &mut tree.order[start..end];
     let (mut all, mut centers) = (Aabb::EMPTY, Aabb::EMPTY);

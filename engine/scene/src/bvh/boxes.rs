@@ -1,4 +1,4 @@
-//! Which of many boxes are near a place.
+//! Search for boxes near a place.
 
 use super::binary::{BinaryBvh, rebuild};
 use crate::bounds::Aabb;
@@ -6,10 +6,10 @@ use glam::Vec3;
 
 /// Boxes in a leaf.
 const LEAF: usize = 4;
-/// Of how many boxes it is asked whether they count, for each that is wanted.
+/// Most calls of `counts` for each box to be found.
 const ASKED_FOR_ONE: usize = 32;
 
-/// A tree over boxes that stay where they are, to find those that touch another box without looking at all of them.
+/// A tree over fixed boxes, to find those that touch another box without testing all of them.
 ///
 /// Building takes n log n steps. Empty boxes touch nothing.
 ///
@@ -36,21 +36,20 @@ impl BoxTree {
         Self { tree, boxes }
     }
 
-    /// The box of a number.
+    /// Returns the box of a number.
     pub fn get(&self, index: usize) -> Option<&Aabb> {
         self.boxes.get(index)
     }
 
-    /// The numbers of all boxes that share a point with `reach`, rising.
+    /// Returns the numbers of all boxes that share a point with `reach`, rising.
     pub fn touching(&self, reach: &Aabb) -> Vec<usize> {
         self.nearest(reach, usize::MAX, |_| true)
     }
 
-    /// The numbers of at most `most` boxes that share a point with `reach` and that `counts` wants, rising.
+    /// Returns the numbers of at most `most` boxes that share a point with `reach` and for which `counts` is true, rising.
     ///
-    /// Of more than `most` it gives those about the middle of `reach`: of two branches of the tree the one whose middle is
-    /// nearer is searched first. It asks of no more than 32 times `most` boxes whether they count, however many lie in one
-    /// place.
+    /// Of more than `most` it returns those about the middle of `reach`: of two branches of the tree the one whose middle
+    /// is nearer is searched first. It calls `counts` for at most 32 times `most` boxes, however many lie in one place.
     pub fn nearest(
         &self,
         reach: &Aabb,
@@ -93,7 +92,7 @@ impl BoxTree {
     }
 }
 
-/// Square of the distance of a box's middle, m².
+/// Returns the squared distance of a box's middle, m².
 fn away2(bounds: &Aabb, point: Vec3) -> f32 {
     bounds.center().distance_squared(point)
 }

@@ -1,4 +1,4 @@
-//! Building the tree. Plain arrays go in and come out; obvhs is known here only.
+//! Construction of the tree. Plain arrays go in and come out; obvhs is used here only.
 
 use obvhs::Boundable;
 use obvhs::aabb::Aabb as ObvhsBox;
@@ -12,14 +12,14 @@ use crate::bounds::Aabb;
 use glam::Vec3;
 
 // Measured on the sample house of 102,076 triangles (one core): building takes 33 ms; search distances of 1 to 2 save 4 ms
-// and cost 3 to 8 % of the rays a second; 14, or more reinsertion, gains nothing. Leaves by a traversal cost of 1 or 2 triangles
-// need 20 to 60 % more memory for the same speed.
+// and cost 3 to 8 % of the rays a second; 14, or more reinsertion, gains nothing. Leaves with a traversal cost of 1 or 2
+// triangles need 20 to 60 % more memory for the same speed.
 const SEARCH: PlocSearchDistance = PlocSearchDistance::Low;
 const SEARCH_FROM_DEPTH: usize = 2;
 const REINSERTED: f32 = 0.02;
 const TRAVERSAL_COST: f32 = 3.0;
-/// Longest stretch of boxes along the Morton curve of which no two merge in the first round. Where all lie alike, as in a row or at
-/// one place, each round merges one pair, so that n boxes take n² steps and make a tree n deep.
+/// Longest stretch of boxes along the Morton curve of which no two merge in the first round. Where all are alike, as in a
+/// row or at one place, each round merges one pair, so that n boxes take n² steps and make a tree n deep.
 const MAX_UNMERGED: usize = 4096;
 
 /// A tree of good quality (bottom-up clustering, reinsertion, leaves by cost); leaves hold at most [`WIDTH`] boxes.
@@ -74,7 +74,7 @@ pub(super) fn tree(boxes: &[Aabb]) -> BinaryBvh {
     }
 }
 
-/// The longest stretch of boxes along the Morton curve of which no two are each other's nearest; 0 for fewer boxes than matter.
+/// Returns the longest stretch of boxes along the Morton curve of which no two are each other's nearest; 0 for few boxes.
 ///
 /// # Source
 /// Meister and Bittner, "Parallel Locally-Ordered Clustering" (2018), section 3, with a search distance of 1.
@@ -111,7 +111,7 @@ fn longest_unmerged(boxes: &[Aabb]) -> usize {
     longest
 }
 
-/// The place of a point of the unit cube on the Morton curve, 21 bits an axis.
+/// Returns the Morton code of a point of the unit cube, 21 bits an axis.
 fn morton(point: Vec3) -> u64 {
     let spread = |x: f32| {
         let x = u64::from((x * 2_097_151.0) as u32);
@@ -138,7 +138,7 @@ mod tests {
         Aabb::new(Vec3::new(x, 0.0, z), Vec3::new(x + 1.0, 1.0, z + 1.0))
     }
 
-    /// 20,000 boxes that lie alike, beside 2,000 others: the tree is about as deep as those of boxes that differ.
+    /// 20,000 boxes that are alike, beside 2,000 others: the tree is about as deep as one of boxes that differ.
     fn is_balanced(alike: impl Fn(usize) -> Aabb) {
         let mut boxes: Vec<Aabb> = (0..2_000)
             .map(|k| at((k * k) as f32 * 0.37, 50.0))
@@ -162,7 +162,7 @@ mod tests {
         is_balanced(|k| at(0.125 * k as f32, 0.0));
     }
 
-    /// Of boxes at random places a third merges in each round.
+    /// Of random boxes a third merges in each round.
     #[test]
     fn boxes_that_differ_are_clustered() {
         let mut stream = crate::random::RandomKey::root(3).stream();

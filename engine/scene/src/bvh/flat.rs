@@ -1,4 +1,4 @@
-//! Trees as rows of four numbers, for processors that walk them without this crate.
+//! Trees as rows of four numbers, for processors that traverse them without this crate.
 
 use glam::{Vec3, Vec4};
 
@@ -28,14 +28,14 @@ pub const INSTANCE_ROWS: usize = 5;
 /// The link to nothing.
 pub const NO_LINK: u32 = u32::MAX;
 
-/// A tree of which [`TriangleBvh::flatten`] has written the rows.
+/// The rows of a tree written by [`TriangleBvh::flatten`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatBvh {
-    /// The link to its top.
+    /// The link to its root.
     pub top: u32,
     /// Around all triangles, m.
     pub bounds: Aabb,
-    /// Most links that wait while the tree is walked.
+    /// Largest size of a traversal's stack.
     pub stack: usize,
 }
 
@@ -48,7 +48,7 @@ fn corner(point: Vec3, last: u32) -> PackedRow {
     [x, y, z, last]
 }
 
-/// A link in lists in which its tree starts at the given node and block.
+/// Returns a link in lists in which its tree starts at the given node and block.
 fn moved(link: NodeLink, first_node: usize, first_leaf: usize) -> u32 {
     if link == NodeLink::NONE {
         return NO_LINK;
@@ -72,7 +72,7 @@ fn write_nodes(tree: &WideBvh, first_node: usize, first_leaf: usize, rows: &mut 
     }
 }
 
-/// Most links that wait below a link.
+/// Returns the largest number of stacked links below a link.
 fn waiting(tree: &WideBvh, link: NodeLink) -> usize {
     let (true, node) = (link != NodeLink::NONE, link.parts()) else {
         return 0;
@@ -87,7 +87,7 @@ fn waiting(tree: &WideBvh, link: NodeLink) -> usize {
 }
 
 impl TriangleBvh {
-    /// Appends the tree's rows to those of others. Triangles that `mask` does not meet are left out.
+    /// Appends the tree's rows to those of others. Triangles that `mask` excludes are left out.
     pub fn flatten(
         &self,
         mask: RayMask,
@@ -118,14 +118,14 @@ impl TriangleBvh {
 }
 
 impl InstanceSet {
-    /// Appends the rows of the tree over the instances; returns the link to its top. Positions in links count from the first
-    /// of these rows, and from the first instance.
+    /// Appends the rows of the tree over the instances; returns the link to its root. Positions in links count from the
+    /// first of these rows, and from the first instance.
     pub fn flatten_tree(&self, nodes: &mut Vec<PackedRow>) -> u32 {
         write_nodes(&self.tree, 0, 0, nodes);
         moved(self.tree.top, 0, 0)
     }
 
-    /// The rows of an instance; one that `mask` does not meet is hidden.
+    /// Returns the rows of an instance; one that `mask` excludes is hidden.
     pub fn flat_instance(
         &self,
         instance: usize,
@@ -148,7 +148,7 @@ impl InstanceSet {
     }
 }
 
-/// A pose as two rows: its rotation as a quaternion, and its position.
+/// Returns a pose as two rows: its rotation as a quaternion, and its position.
 pub fn flat_pose(pose: &Pose) -> [PackedRow; 2] {
     [bits(Vec4::from(pose.rotation)), corner(pose.position, 0)]
 }
@@ -159,7 +159,7 @@ mod tests {
     use crate::bvh::TriangleTag;
     use crate::random::RandomKey;
 
-    /// Walking the rows from the top meets every triangle of the list once, inside the boxes on the way.
+    /// Traversal of the rows from the root visits every triangle of the list once, inside the boxes above it.
     #[test]
     fn rows_hold_every_triangle_within_its_boxes() {
         let mut stream = RandomKey::root(5).stream();

@@ -1,4 +1,4 @@
-//! Things that move: rigid copies of meshes, and a small tree over their boxes.
+//! Moving instances: rigid copies of meshes, and a small tree over their boxes.
 
 use std::sync::Arc;
 
@@ -11,14 +11,14 @@ use super::triangles::TriangleBvh;
 use super::wide::WideBvh;
 use crate::bounds::Aabb;
 
-/// A mesh somewhere in the world.
+/// A mesh at a pose in the world.
 #[derive(Clone, Debug)]
 pub struct Instance {
     /// Shared by all copies.
     pub mesh: Arc<TriangleBvh>,
     /// Its transform; may scale and mirror. One that is not finite or flattens hides the instance.
     pub world_from_mesh: Affine3A,
-    /// Reported by hits, and decides among coincident surfaces: the lower id wins.
+    /// Reported by hits, and the tie-break among coincident surfaces: the lower id wins.
     pub id: i32,
     /// The rays that see it.
     pub mask: RayMask,
@@ -33,16 +33,16 @@ pub(super) struct PreparedInstance {
     pub(super) mesh_from_world: MeshFromWorld,
     /// In world space; empty while hidden.
     pub(super) bounds: Aabb,
-    /// The node whose child it is, and which child.
+    /// Its parent node, and its place among the node's children.
     home: (u32, u32),
 }
 
-/// The inverse of a transform, such that little is lost far from the origin: the difference of positions comes first.
+/// The inverse of a transform, arranged to keep precision far from the origin: the difference of positions comes first.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct MeshFromWorld {
     rows: [[f32; 3]; 3],
     origin: [f32; 3],
-    /// No component of a unit vector becomes longer.
+    /// Bound on each component of a transformed unit vector.
     pub(super) longest: f32,
 }
 
@@ -66,7 +66,7 @@ impl MeshFromWorld {
         })
     }
 
-    /// Its rows, each with a coordinate of the origin behind.
+    /// Returns its rows, each followed by a coordinate of the origin.
     pub(super) fn numbers(&self) -> [Vec4; 3] {
         [0, 1, 2].map(|k| Vec3::from_array(self.rows[k]).extend(self.origin[k]))
     }
@@ -87,24 +87,24 @@ impl MeshFromWorld {
     }
 }
 
-/// All moving things of one world.
+/// All moving instances of one world.
 ///
 /// Once filled, changing poses allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub struct InstanceSet {
     pub(super) placed: Vec<PreparedInstance>,
     pub(super) tree: WideBvh,
-    /// For each node, the node whose child it is, and which child.
+    /// For each node, its parent node and its place among that node's children.
     parents: Vec<(u32, u32)>,
     boxes: Vec<Aabb>,
     binary: BinaryBvh,
 }
 
-/// The place of something that is no node's child.
+/// The parent of a node without one.
 const NOBODY: (u32, u32) = (u32::MAX, 0);
 
 impl InstanceSet {
-    /// The instances in the order in which hits number them.
+    /// A set of the instances in the order in which hits number them.
     pub fn new(instances: impl IntoIterator<Item = Instance>) -> Self {
         let mut set = Self::default();
         for Instance {
@@ -130,12 +130,12 @@ impl InstanceSet {
         set
     }
 
-    /// Returns how many there are.
+    /// Returns the number of instances.
     pub fn len(&self) -> usize {
         self.placed.len()
     }
 
-    /// Returns whether there are none.
+    /// Returns whether there are no instances.
     pub fn is_empty(&self) -> bool {
         self.placed.is_empty()
     }
@@ -152,14 +152,14 @@ impl InstanceSet {
             .map_or(Aabb::EMPTY, |placed| placed.bounds)
     }
 
-    /// Changes which rays see an instance, if there are that many; [`RayMask::NONE`] hides it.
+    /// Sets the mask of an instance, if there are that many; [`RayMask::NONE`] hides it.
     pub fn set_mask(&mut self, instance: u32, mask: RayMask) {
         if let Some(placed) = self.placed.get_mut(instance as usize) {
             placed.mask = mask;
         }
     }
 
-    /// Moves one instance, if there are that many. For a few: what moves far makes later rays slower until
+    /// Moves one instance, if there are that many. For a few: large displacements make later rays slower until
     /// [`Self::set_poses`].
     pub fn set_pose(&mut self, instance: u32, world_from_mesh: &Affine3A) {
         let Some(placed) = self.placed.get_mut(instance as usize) else {
@@ -176,7 +176,7 @@ impl InstanceSet {
         self.tree.bounds = bounds;
     }
 
-    /// Moves all instances, in order, and arranges them anew; those beyond the end of `poses` stay.
+    /// Moves all instances, in order, and rebuilds the tree; those beyond the end of `poses` stay.
     pub fn set_poses<'a>(&mut self, poses: impl IntoIterator<Item = &'a Affine3A>) {
         for (placed, pose) in self.placed.iter_mut().zip(poses) {
             placed.stand(pose);
@@ -209,13 +209,13 @@ impl InstanceSet {
 }
 
 impl PreparedInstance {
-    /// Returns whether its pose or its mesh is such that no ray can meet it.
+    /// Returns whether no ray can hit it because of its pose or its mesh.
     #[inline(always)]
     pub(super) fn is_hidden(&self) -> bool {
         self.mesh_from_world.longest == 0.0
     }
 
-    /// Takes a new pose.
+    /// Sets the pose.
     fn stand(&mut self, world_from_mesh: &Affine3A) {
         let bounds = self.mesh.bounds();
         let inverse = MeshFromWorld::new(world_from_mesh).filter(|_| !bounds.is_empty());

@@ -1,8 +1,8 @@
-//! Rays against triangles: one tree over everything that never moves, a small one over the instances of what does.
+//! Ray queries on triangles: one tree over all static geometry, a small one over the moving instances.
 //!
-//! [`TriangleBvh`] is built once for a mesh or for the static geometry of a house, [`InstanceSet`] holds the moving things
-//! of one world, and [`SceneBvh`] asks both. A ray finds the nearest surface; surfaces that coincide count as one, and the
-//! lower id wins, whatever the order of storage, the tree or the kernel.
+//! [`TriangleBvh`] is built once for a mesh or for the static geometry of a house, [`InstanceSet`] holds the moving
+//! instances of one world, and [`SceneBvh`] queries both. A ray finds the nearest surface; surfaces that coincide count as
+//! one, and the lower id wins, whatever the order of storage, the tree or the kernel.
 //!
 //! [`BoxTree`] finds boxes near a box.
 

@@ -13,7 +13,7 @@ pub(super) const WIDTH: usize = 4;
 pub(super) struct NodeLink(u32);
 
 impl NodeLink {
-    /// Nothing at all.
+    /// The null link.
     pub(super) const NONE: Self = Self(u32::MAX);
 
     const LEAF: u32 = 1 << 31;
@@ -23,12 +23,12 @@ impl NodeLink {
         Self(index as u32)
     }
 
-    /// The leaf at a position: a block of triangles, or whatever the tree is over.
+    /// The leaf at a position: a block of triangles, or an item of another kind.
     pub(super) fn leaf(index: usize) -> Self {
         Self(index as u32 | Self::LEAF)
     }
 
-    /// As a number: bit 31 marks leaves.
+    /// Returns it as a number: bit 31 marks leaves.
     pub(super) fn bits(self) -> u32 {
         self.0
     }
@@ -40,19 +40,19 @@ impl NodeLink {
     }
 }
 
-/// Four boxes and what lies in them; 128 bytes.
+/// Four boxes with their links; 128 bytes.
 #[repr(C, align(64))]
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// Lower corners, then upper corners, m. Shape (6, child).
     pub(super) planes: [Vec4; 6],
     pub(super) links: [NodeLink; WIDTH],
-    /// Which children there are, as bits.
+    /// Existing children, as bits.
     pub(super) present: u32,
 }
 
 impl Node {
-    /// Without children.
+    /// A node without children.
     pub(super) const EMPTY: Self = Self {
         planes: [Vec4::ZERO; 6],
         links: [NodeLink::NONE; WIDTH],
@@ -101,7 +101,7 @@ pub(super) struct TriangleBlock {
     pub(super) a: [Vec4; 3],
     pub(super) b: [Vec4; 3],
     pub(super) c: [Vec4; 3],
-    /// Unit length, by the right hand from the first corner over the second to the third. Shape (axis, triangle).
+    /// Unit length, by the right-hand rule from the first corner over the second to the third. Shape (axis, triangle).
     pub(super) normal: [Vec4; 3],
 }
 
@@ -124,7 +124,7 @@ impl TriangleBlock {
     }
 }
 
-/// Whose a triangle is.
+/// The identity of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TriangleInfo {
     pub(super) id: i32,
@@ -141,7 +141,7 @@ impl TriangleInfo {
     };
 }
 
-/// Most nodes on the way from the top of a tree to a leaf; builders keep to it.
+/// Most nodes on a path from the root of a tree to a leaf; builders keep to it.
 pub(super) const MAX_DEPTH: usize = 32;
 
 /// Entries of a traversal stack: at each level all children but the one that is followed.

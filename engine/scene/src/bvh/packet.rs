@@ -1,10 +1,10 @@
-//! Many rays from one point, and what they found.
+//! Ray packets and their hits.
 
 use glam::Vec3;
 
 use super::ray::Ray;
 
-/// Rays from one point, as those of a pinhole camera or to a lamp; fast when they go nearly the same way.
+/// Rays with a common origin, as those of a pinhole camera or to a lamp; fast when their directions are similar.
 ///
 /// `N`: a power of two, at most 64. 16 (4 by 4 pixels) is best without wide instructions, 32 (8 by 4) with.
 #[derive(Clone, Debug)]
@@ -12,16 +12,16 @@ use super::ray::Ray;
 pub struct RayPacket<const N: usize> {
     /// Unit length. Shape (axis, ray).
     pub direction: [[f32; N]; 3],
-    /// Nearest distances that count, m; at least 0.
+    /// Lower ends of the ranges, m; at least 0.
     pub near_m: [f32; N],
-    /// Furthest distances that count, m; below `near_m` for a ray that is not used.
+    /// Upper ends of the ranges, m; below `near_m` for an unused ray.
     pub far_m: [f32; N],
     /// Common origin, m.
     pub origin: Vec3,
 }
 
 impl<const N: usize> RayPacket<N> {
-    /// No ray in use; fill `direction`, `near_m` and `far_m`.
+    /// A packet without active rays; fill `direction`, `near_m` and `far_m`.
     pub fn new(origin: Vec3) -> Self {
         const {
             assert!(
@@ -61,7 +61,7 @@ impl<const N: usize> RayPacket<N> {
         }
     }
 
-    /// For each ray its furthest distance, or less than anything where it can meet nothing.
+    /// Returns the upper end of each ray's range; minus infinity for a ray that cannot hit anything.
     #[inline(always)]
     pub(super) fn usable_far(&self) -> [f32; N] {
         let mut far = [f32::NEG_INFINITY; N];
@@ -85,9 +85,9 @@ impl<const N: usize> RayPacket<N> {
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct PacketHits<const N: usize> {
-    /// Distance along the ray, m; infinite where it met nothing.
+    /// Distance along the ray, m; infinite without a hit.
     pub distance_m: [f32; N],
-    /// The id; 0 where it met nothing.
+    /// The id; 0 without a hit.
     pub id: [i32; N],
     /// The triangle's position in its list.
     pub triangle: [u32; N],
@@ -98,7 +98,7 @@ pub struct PacketHits<const N: usize> {
 }
 
 impl<const N: usize> PacketHits<N> {
-    /// Nothing met.
+    /// No hits.
     pub fn new() -> Self {
         Self {
             distance_m: [f32::INFINITY; N],
@@ -109,13 +109,13 @@ impl<const N: usize> PacketHits<N> {
         }
     }
 
-    /// Returns whether a ray met something.
+    /// Returns whether a ray hit something.
     #[inline]
     pub fn is_hit(&self, k: usize) -> bool {
         self.slot[k] != u32::MAX
     }
 
-    /// Returns which rays met the same triangle of the same thing as a ray, as bits.
+    /// Returns the rays that hit the same triangle of the same instance as ray `k`, as bits.
     #[inline]
     pub fn same(&self, k: usize) -> u64 {
         let (source, slot) = (self.source[k], self.slot[k]);
@@ -131,7 +131,7 @@ impl<const N: usize> PacketHits<N> {
         bits
     }
 
-    /// Returns which instance a ray met; nothing for static geometry.
+    /// Returns the instance that a ray hit; `None` for static geometry.
     #[inline]
     pub fn instance(&self, k: usize) -> Option<u32> {
         self.source[k].checked_sub(1)

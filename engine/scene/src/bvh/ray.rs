@@ -1,8 +1,8 @@
-//! Rays, what they may see, and what they found.
+//! Rays, ray masks and hits.
 
 use glam::Vec3;
 
-/// Which surfaces a ray meets: bits shared by the ray and the surface.
+/// The surfaces that a ray can hit: bits shared by the ray and the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayMask(pub u8);
 
@@ -15,12 +15,12 @@ impl RayMask {
     pub const AGENT: Self = Self(4);
     /// Cameras that see agents' bodies, too: together with [`Self::EYE`].
     pub const BODY: Self = Self(0x80);
-    /// Every ray but those for bodies.
+    /// Every ray except those for bodies.
     pub const ALL: Self = Self(0x7f);
     /// No ray.
     pub const NONE: Self = Self(0);
 
-    /// Returns whether a ray and a surface have a bit in common.
+    /// Returns whether a ray and a surface share a bit.
     #[inline]
     pub fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
@@ -35,17 +35,17 @@ impl RayMask {
 
 /// A ray, or a segment of one, in world space.
 ///
-/// A ray whose origin or direction is not finite, whose direction is zero, or whose range is empty or not a number
-/// meets nothing.
+/// A ray whose origin or direction is not finite, whose direction is zero, or whose range is empty or not a number hits
+/// nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// Origin, m.
     pub origin: Vec3,
     /// Direction; unit length.
     pub direction: Vec3,
-    /// Nearest distance that counts, m; at least 0. A ray that leaves a surface starts a little way off it.
+    /// Lower end of its range, m; at least 0. A ray that leaves a surface starts a little off it.
     pub near_m: f32,
-    /// Furthest distance that counts, m; may be infinite.
+    /// Upper end of its range, m; may be infinite.
     pub far_m: f32,
 }
 
@@ -60,7 +60,7 @@ impl Ray {
         }
     }
 
-    /// The part of this ray between two distances, m.
+    /// Returns the part of this ray between two distances, m.
     #[must_use]
     pub fn between(self, near_m: f32, far_m: f32) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Ray {
         }
     }
 
-    /// The straight way from `start` to `end`, less `margin_m` at either end.
+    /// The segment from `start` to `end`, less `margin_m` at either end.
     pub fn segment(start: Vec3, end: Vec3, margin_m: f32) -> Self {
         Self::new(start, end - start).between(margin_m, (end - start).length() - margin_m)
     }
@@ -80,7 +80,7 @@ impl Ray {
         self.origin + self.direction * distance_m
     }
 
-    /// Returns whether the ray can meet anything at all.
+    /// Returns whether the ray can hit anything at all.
     #[inline]
     pub(super) fn is_usable(&self) -> bool {
         self.origin.is_finite()
@@ -105,7 +105,7 @@ pub struct Hit {
     pub v: f32,
     /// The id given with the static triangle or with the instance.
     pub id: i32,
-    /// Which instance of the set; nothing for static geometry.
+    /// The instance of the set; `None` for static geometry.
     pub instance: Option<u32>,
     /// Position of the triangle in the list from which its tree was built.
     pub triangle: u32,

@@ -1,4 +1,4 @@
-//! Rays through everything: static geometry and what moves.
+//! Ray queries on static geometry and moving instances.
 
 use super::instances::InstanceSet;
 use super::kernels::closest_hit::{ClosestHit, HitIndex, TieBreak, reach};
@@ -12,11 +12,11 @@ use super::ray::{Hit, Ray, RayMask};
 use super::triangles::TriangleBvh;
 use crate::simd_dispatch::SimdLevel;
 
-/// A world as rays see it; a pair of references, free to make and copy.
+/// The geometry of a world for ray queries; a pair of references, cheap to make and copy.
 ///
-/// Answers depend on the set of surfaces alone, bit for bit: not on the order in which they are stored, nor on the kernel.
-/// Of surfaces that coincide (see [`Hit::id`]) the lowest id counts, then static geometry, then the lower instance, then the
-/// lower triangle.
+/// Results depend on the set of surfaces alone, bit for bit: not on the order in which they are stored, nor on the kernel.
+/// Of surfaces that coincide (see [`Hit::id`]) the lowest id counts, then static geometry, then the lower instance, then
+/// the lower triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct SceneBvh<'a> {
     /// The static triangles.
@@ -35,27 +35,27 @@ struct LocalRay<'a> {
 }
 
 impl SceneBvh<'_> {
-    /// The nearest surface on a ray that `mask` meets.
+    /// Returns the nearest surface on a ray whose mask meets `mask`.
     pub fn closest(&self, ray: &Ray, mask: RayMask) -> Option<Hit> {
         self.closest_filtered(ray, &HitFilter::new(mask, None))
     }
 
-    /// As [`Self::closest`], as if nothing had the id `hidden`.
+    /// As [`Self::closest`], ignoring the id `hidden`.
     pub fn closest_excluding(&self, ray: &Ray, mask: RayMask, hidden: i32) -> Option<Hit> {
         self.closest_filtered(ray, &HitFilter::new(mask, Some(hidden)))
     }
 
-    /// Returns whether a surface that `mask` meets lies on the ray.
+    /// Returns whether a surface whose mask meets `mask` lies on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
         self.occluded_filtered(ray, &HitFilter::new(mask, None))
     }
 
-    /// As [`Self::occluded`], as if nothing had the id `hidden`.
+    /// As [`Self::occluded`], ignoring the id `hidden`.
     pub fn occluded_excluding(&self, ray: &Ray, mask: RayMask, hidden: i32) -> bool {
         self.occluded_filtered(ray, &HitFilter::new(mask, Some(hidden)))
     }
 
-    /// Every surface on the ray that `mask` meets, by distance, then id, instance and triangle. `hits` is cleared first.
+    /// Finds every surface on the ray whose mask meets `mask`, by distance, then id, instance and triangle. `hits` is cleared first.
     pub fn all_hits(&self, ray: &Ray, mask: RayMask, hits: &mut Vec<Hit>) {
         hits.clear();
         if !ray.is_usable() {
@@ -71,9 +71,9 @@ impl SceneBvh<'_> {
         });
     }
 
-    /// The nearest surfaces on the rays of a packet; the same bits as [`Self::closest`] for each.
+    /// Finds the nearest surfaces on the rays of a packet; the same bits as [`Self::closest`] for each.
     ///
-    /// `hidden`: as if nothing had that id.
+    /// `hidden`: an id to ignore.
     pub fn closest_packet<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -84,7 +84,7 @@ impl SceneBvh<'_> {
         self.closest_packet_at_level(SimdLevel::best(), rays, &HitFilter::new(mask, hidden), hits);
     }
 
-    /// Returns which rays of a packet meet anything, as bits; the same as [`Self::occluded`] for each.
+    /// Returns the rays of a packet that hit anything, as bits; the same as [`Self::occluded`] for each.
     pub fn occluded_packet<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -99,7 +99,7 @@ impl SceneBvh<'_> {
         })
     }
 
-    /// Everything about one ray of a packet; the same as [`Self::closest`] gives.
+    /// Returns the full hit of one ray of a packet; the same as [`Self::closest`] gives.
     pub fn packet_hit<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -163,7 +163,7 @@ impl SceneBvh<'_> {
         ray.is_usable() && self.offer(ray, filter, &mut AnyHitVisitor)
     }
 
-    /// The second run of a ray whose first was not sure.
+    /// The second pass of a ray whose first was ambiguous.
     #[cold]
     fn settle(&self, ray: &Ray, filter: &HitFilter, first: &ClosestHit) -> ClosestHit {
         let mut nearest = first.second_pass(ray.far_m);
@@ -178,7 +178,7 @@ impl SceneBvh<'_> {
         self.offer(ray, filter, &mut ClosestHitVisitor { nearest, claim });
     }
 
-    /// Hands hits to `hits`; whether one was enough.
+    /// Passes hits to `hits`; returns whether it needs no more.
     fn offer(&self, ray: &Ray, filter: &HitFilter, hits: &mut impl HitVisitor) -> bool {
         SimdLevel::best().run(SceneRayQuery {
             scene: self,
@@ -210,7 +210,7 @@ impl SceneBvh<'_> {
         }
     }
 
-    /// Returns what decides for a hit among coincident ones.
+    /// Returns the tie-break of a hit among coincident ones.
     pub(super) fn claim(&self, origin: [f32; 3], direction: [f32; 3], place: HitIndex) -> TieBreak {
         let LocalRay {
             bvh,

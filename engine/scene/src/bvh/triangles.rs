@@ -1,4 +1,4 @@
-//! A mesh, or all static geometry of a house, as a tree of triangles.
+//! The tree of triangles of a mesh, or of all static geometry of a house.
 
 use glam::{DVec3, Vec3};
 
@@ -9,20 +9,20 @@ use super::ray::RayMask;
 use super::wide::WideBvh;
 use crate::bounds::Aabb;
 
-/// Coordinates beyond this are no house's, m; such triangles are left out.
+/// Largest coordinate, m; triangles beyond are left out.
 const FURTHEST_M: f32 = 1e12;
 
 /// The attributes of a triangle besides its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TriangleTag {
-    /// Reported by hits, and decides among coincident surfaces: the lower id wins.
+    /// Reported by hits, and the tie-break among coincident surfaces: the lower id wins.
     pub id: i32,
     /// The rays that see the triangle.
     pub mask: RayMask,
 }
 
 impl TriangleTag {
-    /// Seen by every ray.
+    /// A tag seen by every ray.
     pub fn new(id: i32) -> Self {
         Self {
             id,
@@ -45,9 +45,9 @@ pub struct TriangleBvh {
 impl TriangleBvh {
     /// Builds the tree of a mesh; every triangle has id 0 and is seen by every ray.
     ///
-    /// `positions`: m. `triangles`: indices into `positions`, shape (triangle, 3). Triangles without area, with indices
-    /// out of range or with coordinates that are not finite or exceed 10^12 m are left out (see [`Self::left_out`]);
-    /// those that stay keep their numbers.
+    /// `positions`: m. `triangles`: indices into `positions`, shape (triangle, 3). Triangles without area, with indices out
+    /// of range or with coordinates that are not finite or exceed 10^12 m are left out (see [`Self::left_out`]); the others
+    /// keep their numbers.
     ///
     /// # Determinism
     /// Equal input, equal tree.
@@ -55,7 +55,7 @@ impl TriangleBvh {
         Self::build_tagged(positions, triangles, |_| TriangleTag::new(0))
     }
 
-    /// As [`Self::build`]; `tag` gives what the triangle at a position of the list carries.
+    /// As [`Self::build`]; `tag` gives the attributes of the triangle at a position of the list.
     pub fn build_tagged(
         positions: &[Vec3],
         triangles: &[[u32; 3]],
@@ -80,7 +80,7 @@ impl TriangleBvh {
         bvh
     }
 
-    /// Lays the triangles out in the order of a tree's leaves; returns whether the tree is flat enough.
+    /// Stores the triangles in the order of a tree's leaves; returns whether the tree is flat enough.
     fn fill(&mut self, list: &BuildTriangles, binary: &BinaryBvh) -> bool {
         self.blocks.clear();
         self.surfaces.clear();
@@ -121,7 +121,7 @@ impl TriangleBvh {
         self.count == 0
     }
 
-    /// Triangles of the input that the tree does not hold.
+    /// Returns the number of input triangles that were left out.
     pub fn left_out(&self) -> usize {
         self.left_out
     }
@@ -134,7 +134,7 @@ impl TriangleBvh {
     }
 }
 
-/// Triangles that are fit for a tree.
+/// Triangles that are valid for a tree.
 #[derive(Default)]
 struct BuildTriangles {
     corners: Vec<[Vec3; 3]>,
@@ -167,7 +167,7 @@ impl BuildTriangles {
     }
 }
 
-/// The unit normal, or nothing for corners that make no triangle. In double precision, so that slivers have good planes, too.
+/// Returns the unit normal, or `None` for a degenerate triangle. In double precision, so that slivers have good planes, too.
 fn normal(a: Vec3, b: Vec3, c: Vec3) -> Option<Vec3> {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     let normal: DVec3 = (b - a).cross(c - a);

@@ -1,10 +1,10 @@
-//! From two children a node to four.
+//! Conversion of binary trees to trees with four children a node.
 
 use super::binary::BinaryBvh;
 use super::node::{MAX_DEPTH, Node, NodeLink, WIDTH};
 use crate::bounds::Aabb;
 
-/// A tree as the kernels walk it.
+/// A tree in the kernels' layout.
 #[derive(Clone, Debug)]
 pub(super) struct WideBvh {
     pub(super) nodes: Vec<Node>,
@@ -23,8 +23,8 @@ impl Default for WideBvh {
 }
 
 impl WideBvh {
-    /// Replaces the tree; its memory is used again. `leaf` turns the boxes of a leaf, as a range of the binary tree's order,
-    /// into a link. Returns whether the tree is flat enough for the kernels; one that is not is incomplete.
+    /// Replaces the tree, reusing its memory. `leaf` turns the boxes of a leaf, as a range of the binary tree's order, into
+    /// a link. Returns whether the tree is flat enough for the kernels; one that is not is incomplete.
     pub(super) fn fill(
         &mut self,
         tree: &BinaryBvh,
@@ -41,7 +41,7 @@ impl WideBvh {
         top.is_some()
     }
 
-    /// The link to node `k` of the binary tree, or nothing when it leads too deep.
+    /// Returns the link to node `k` of the binary tree, or `None` when it leads too deep.
     fn below(
         &mut self,
         tree: &BinaryBvh,

@@ -3,16 +3,16 @@
 use super::{ColumnsError, FLOAT, FloatLayout, push_varint, read_varint, take};
 use std::collections::HashMap;
 
-/// Columns with fewer floats than this are not looked at for rows that come back.
+/// Columns with fewer floats than this are not searched for repeated rows.
 const FEW: usize = 64;
-/// Floats that come back this often on the mean are left whole, and so are rows told by how far back they were.
+/// Repetitions below this mean number are not worth back references.
 const SELDOM: usize = 2;
 /// Largest deviation of the square of a unit row's length from 1.
 const UNIT: f32 = 1e-5;
-/// By how many steps of a float the last part of a unit row may differ from what the others say.
+/// Largest deviation of the last component of a unit row from the one computed from the others, in steps of a float.
 const STEPS: i32 = 15;
 
-/// Floats in the layout that packs best, as a rule.
+/// Writes floats in the layout that usually packs best.
 pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     for width in FloatLayout::WIDTHS {
         if floats.len() >= FEW && floats.len().is_multiple_of(width) {
@@ -35,7 +35,7 @@ pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     FloatLayout::ByteShuffled
 }
 
-/// Returns what [`write`] wrote: so many floats.
+/// Reads `count` floats that [`write`] wrote.
 pub(super) fn read(
     layout: FloatLayout,
     count: usize,
@@ -67,14 +67,14 @@ fn read_by_byte(bytes: &[u8]) -> Vec<u32> {
         .collect()
 }
 
-/// Rows of floats of which many come back: the turn of a thing that touches ten others, the direction of a floor.
+/// Rows of floats of which many repeat: the rotation of an object that touches ten others, the direction of a floor.
 struct RowDictionary {
-    /// Of each row: 0 for one that is new, else how many new ones ago it came first.
+    /// Of each row: 0 for a new one, else the distance back to its first occurrence in new rows.
     back: Vec<u64>,
-    /// The new ones, one after the other.
+    /// The new rows, one after the other.
     new: Vec<u32>,
-    /// Of each new one, if most are of unit length: what tells its largest part, or 0; of that, only the others are kept in
-    /// `new`.
+    /// Of each new row, if most are of unit length: the code of its largest component, or 0; of that row, only the other
+    /// components are kept in `new`.
     units: Option<Vec<u8>>,
 }
 
@@ -182,8 +182,8 @@ fn read_rows(
     Ok(floats)
 }
 
-/// Returns which part of a row is the largest (2 bits), its sign, and by how many steps it is more than the others say, in one byte; 0
-/// for what is not of unit length.
+/// Returns the index of the largest component of a row (2 bits), its sign, and its deviation in steps from the value
+/// computed from the others, in one byte; 0 for a row that is not of unit length.
 fn unit_code(row: &[u32]) -> u8 {
     let size = |k: usize| f32::from_bits(row[k]).abs();
     let largest = (1..row.len()).fold(0, |best, k| if size(k) > size(best) { k } else { best });
@@ -207,7 +207,7 @@ fn unit_code(row: &[u32]) -> u8 {
     code as u8
 }
 
-/// The row that [`unit_code`] told of.
+/// Returns the row of a [`unit_code`].
 fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, ColumnsError> {
     let place = "the largest part of a row";
     let refused = ColumnsError::OutOfRange {
@@ -235,7 +235,7 @@ fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, Colum
         .into_iter())
 }
 
-/// Returns how large the last part of a unit row is by its others.
+/// Returns the last component of a unit row computed from its others.
 fn last_part(others: impl Iterator<Item = u32>) -> Option<f32> {
     let squares = others
         .map(f32::from_bits)

@@ -1,11 +1,11 @@
-//! Plain data as bytes that pack well: what stands under one name stands side by side.
+//! Plain data as bytes that compress well: values of one field are stored side by side.
 //!
-//! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every type
-//! has a column of its own, in which floats lie as they pack best (`FloatLayout`). Of 500 things that fell in a heap the packed
-//! bytes are a third of those in rows, of a house whose things lie strewn about seven eighths.
+//! A thousand contacts, written one after the other, mix places, forces and numbers of faces. Here every field of every
+//! type has a column of its own, with a layout of its floats chosen to pack best (`FloatLayout`). For 500 objects that fell
+//! in a heap the packed bytes are a third of those in rows, for a house whose objects lie strewn about seven eighths.
 //!
-//! Readers must know the type, as with `postcard`: nothing is named in the bytes. Columns stand in the order in which the type
-//! comes to them.
+//! Readers must know the type, as with `postcard`: the bytes hold no names. Columns are in the order in which the type
+//! first reaches them.
 
 mod layout;
 mod read;
@@ -22,16 +22,16 @@ const FLOAT: usize = size_of::<f32>();
 /// The layout of a column's floats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FloatLayout {
-    /// The first bytes of all, then the second ones: signs and exponents, which are much alike, lie apart from the last digits.
+    /// First bytes of all, then second bytes: signs and exponents, which are similar, apart from the low digits.
     ByteShuffled,
-    /// One after the other: what comes back, here or in another column, is found as a whole.
+    /// One float after the other: repetitions, here or in another column, are found whole.
     Plain,
-    /// Rows of so many, those that come back told by how far back they were; of unit rows the largest part told by the others.
+    /// Rows of `width` floats, repeated ones as back references; of unit rows the largest component is computed from the others.
     Rows { width: usize, unit: bool },
 }
 
 impl FloatLayout {
-    /// Of vectors and quaternions.
+    /// Widths of vectors and quaternions.
     const WIDTHS: [usize; 2] = [3, 4];
 
     fn byte(self) -> u8 {
@@ -56,17 +56,17 @@ impl FloatLayout {
     }
 }
 
-/// Why data cannot be written or read as columns.
+/// The reason why data cannot be written or read as columns.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ColumnsError {
     /// A column ends too early.
     #[error("a column ends too early")]
     UnexpectedEnd,
-    /// Something is left over.
+    /// Bytes are left over.
     #[error("{0} bytes are left over")]
     TrailingData(usize),
-    /// A number that is too large for its place.
+    /// A number that is too large for its type.
     #[error("{found} is too large for {place}")]
     OutOfRange {
         /// The number.
@@ -74,7 +74,7 @@ pub enum ColumnsError {
         /// The expected item.
         place: &'static str,
     },
-    /// Data that does not say beforehand how long it is, or is read by asking what it is.
+    /// Data of unknown length, or whose type is asked for while reading.
     #[error("{0} cannot be held in columns")]
     Unsupported(&'static str),
     /// An error of the type itself.
@@ -94,11 +94,11 @@ impl serde::de::Error for ColumnsError {
     }
 }
 
-/// Which column holds the field of a type: numbered as they are met. A column for each place where the type stands would hold less
-/// of a kind and packs worse (heap of a hundred things: 6 %).
+/// The column of each field of a type, numbered as they are met. A column for each place where the type occurs would hold
+/// fewer values of a kind and pack worse (heap of a hundred objects: 6 %).
 struct ColumnIndex {
     columns: HashMap<(&'static str, &'static str), usize>,
-    /// Those met last, by where their names lie in memory: a place is right or looked up above.
+    /// The last ones met, by the addresses of their names: an entry that does not match is looked up above.
     recent: Vec<Option<(NamePointers, usize)>>,
 }
 
@@ -116,7 +116,7 @@ impl ColumnIndex {
         }
     }
 
-    /// Column 0 is that of what is in no field.
+    /// Column 0 holds values outside fields.
     fn column(&mut self, owner: &'static str, field: &'static str) -> usize {
         let place = [owner, field].map(|name| (name.as_ptr().addr(), name.len()));
         let [(one, _), (two, _)] = place;
@@ -133,7 +133,7 @@ impl ColumnIndex {
     }
 }
 
-/// Seven bits a byte, the lowest first.
+/// Writes seven bits a byte, the lowest first.
 fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     while number >= 0x80 {
         bytes.push(number as u8 | 0x80);
@@ -142,7 +142,7 @@ fn push_varint(bytes: &mut Vec<u8>, mut number: u64) {
     bytes.push(number as u8);
 }
 
-/// Returns what [`push_varint`] put.
+/// Reads a number written by [`push_varint`].
 fn read_varint(bytes: &mut &[u8]) -> Result<u64, ColumnsError> {
     let mut number = 0;
     for shift in (0..64).step_by(7) {
@@ -264,7 +264,7 @@ mod tests {
             prop_assert_eq!(from_bytes::<All>(&bytes).unwrap(), data);
         }
 
-        /// An error or other data, but no panic and no memory beyond what the bytes can hold.
+        /// Damage gives an error or other data, but no panic and no memory beyond what the bytes can hold.
         #[test]
         fn damage_is_survived(data in data(), at in any::<prop::sample::Index>(), change in 1..=255_u8, cut in any::<prop::sample::Index>()) {
             let mut bytes = to_bytes(&data).unwrap();
@@ -292,7 +292,7 @@ mod tests {
         );
     }
 
-    /// Ten thousand things whose places are noise of one size: rows pack to 3.5 bytes a float, exponents apart to 3.1.
+    /// Ten thousand objects whose positions are noise of one size: rows pack to 3.5 bytes a float, separate exponents to 3.1.
     #[test]
     fn columns_pack_better_than_rows() {
         let mut stream = crate::random::RandomKey::root(3).stream();

@@ -1,18 +1,18 @@
-//! Columns to data.
+//! Conversion of columns to data.
 
 use super::{ColumnIndex, ColumnsError, FLOAT, FloatLayout, byte, layout, read_varint, take};
 use serde::Deserialize;
 use serde::de::value::U32Deserializer;
 use serde::de::{self, DeserializeSeed, Deserializer, IntoDeserializer, Visitor};
 
-/// Returns what [`to_bytes`](super::to_bytes) made of the same type.
+/// Returns the value that [`to_bytes`](super::to_bytes) wrote, of the same type.
 ///
 /// # Errors
-/// [`ColumnsError`] for bytes that hold something else.
+/// [`ColumnsError`] for bytes of anything else.
 pub fn from_bytes<'de, T: Deserialize<'de>>(bytes: &'de [u8]) -> Result<T, ColumnsError> {
     let mut head = bytes;
     let count = read_varint(&mut head)?;
-    // Each column says four numbers.
+    // Each column's header has four numbers.
     if count > (head.len() / 4) as u64 {
         return Err(ColumnsError::UnexpectedEnd);
     }
@@ -68,7 +68,7 @@ impl Column<'_> {
         Ok(f32::from_bits(*bits))
     }
 
-    /// Bytes that were not read.
+    /// Returns the number of unread bytes.
     fn left(&self) -> usize {
         (self.floats.len() - self.read) * FLOAT + self.rest.len()
     }
@@ -77,7 +77,7 @@ impl Column<'_> {
 struct ColumnarReader<'de> {
     names: ColumnIndex,
     columns: Vec<Column<'de>>,
-    /// The column of what comes next.
+    /// The current column.
     at: usize,
 }
 
@@ -302,7 +302,7 @@ impl<'de> Deserializer<'de> for &mut ColumnarReader<'de> {
     }
 }
 
-/// Values one after the other.
+/// Reads a sequence.
 struct SequenceReader<'a, 'de> {
     reader: &'a mut ColumnarReader<'de>,
     left: usize,
@@ -313,7 +313,7 @@ impl<'a, 'de> SequenceReader<'a, 'de> {
         Self { reader, left }
     }
 
-    /// No room is made beforehand for more than this: a length may be damaged.
+    /// No more capacity than this is reserved: a length may be damaged.
     fn expected(&self) -> usize {
         self.left.min(1 << 12)
     }
@@ -360,7 +360,7 @@ impl<'de> de::MapAccess<'de> for SequenceReader<'_, 'de> {
     }
 }
 
-/// Within a type whose fields have names.
+/// Reads a struct with named fields.
 struct StructReader<'a, 'de> {
     reader: &'a mut ColumnarReader<'de>,
     owner: &'static str,
@@ -389,7 +389,7 @@ impl<'de> de::SeqAccess<'de> for StructReader<'_, 'de> {
     }
 }
 
-/// Within a type of which there are several kinds.
+/// Reads an enum.
 struct EnumReader<'a, 'de> {
     reader: &'a mut ColumnarReader<'de>,
     variants: &'static [&'static str],

@@ -1,13 +1,13 @@
-//! Data to columns.
+//! Conversion of data to columns.
 
 use super::{ColumnIndex, ColumnsError, layout, push_varint};
 use serde::Serialize;
 use serde::ser::{self, Serializer};
 
-/// Data as columns.
+/// Returns data as columns.
 ///
 /// # Errors
-/// [`ColumnsError::Unsupported`] for sequences and maps that do not say their length.
+/// [`ColumnsError::Unsupported`] for sequences and maps of unknown length.
 pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError> {
     let mut writer = ColumnarWriter {
         names: ColumnIndex::new(),
@@ -23,20 +23,20 @@ pub fn to_bytes<T: Serialize + ?Sized>(data: &T) -> Result<Vec<u8>, ColumnsError
 struct Column {
     /// The bits of floats.
     floats: Vec<u32>,
-    /// All else.
+    /// All other bytes.
     rest: Vec<u8>,
 }
 
 struct ColumnarWriter {
     names: ColumnIndex,
     columns: Vec<Column>,
-    /// The column of what comes next.
+    /// The current column.
     at: usize,
 }
 
 impl ColumnarWriter {
-    /// The number of columns; of each the number of its floats, their layout, the length of their bytes and of the rest; then the
-    /// columns.
+    /// Returns the number of columns; for each the number of its floats, their layout, the length of their bytes and of the
+    /// rest; then the columns.
     fn bytes(self) -> Vec<u8> {
         let (mut head, mut body) = (Vec::new(), Vec::new());
         push_varint(&mut head, self.columns.len() as u64);
@@ -64,7 +64,7 @@ impl ColumnarWriter {
     }
 
     fn signed(&mut self, number: i64) -> Result<(), ColumnsError> {
-        // Small numbers of either sign become small ones.
+        // Zigzag encoding: small numbers of either sign become small ones.
         self.whole(((number << 1) ^ (number >> 63)) as u64)
     }
 
@@ -74,7 +74,7 @@ impl ColumnarWriter {
     }
 }
 
-/// Within a type whose fields have names.
+/// Writes a struct with named fields.
 struct StructWriter<'a> {
     writer: &'a mut ColumnarWriter,
     owner: &'static str,

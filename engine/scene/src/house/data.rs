@@ -44,11 +44,11 @@ pub struct HouseData {
     pub textures: IdVec<TextureId, Arc<Texture>>,
     /// Lamps' lights.
     pub lights: Vec<Light>,
-    /// Sources of sound.
+    /// Sound emitters.
     pub emitters: Vec<SoundEmitter>,
-    /// Places that hold things.
+    /// Receptacles.
     pub receptacles: Vec<Receptacle>,
-    /// Sun and sky; `None`: nothing is known of the open air.
+    /// Sun and sky; `None`: unknown.
     #[serde(default)]
     pub sky: Option<Sky>,
     /// Sound files that emitters name, shared between them.
@@ -69,7 +69,7 @@ pub struct AgentStart {
 }
 
 impl AgentStart {
-    /// The most of a house: as many as a world has agents.
+    /// The largest number in a house: as many as a world has agents.
     pub const MOST: usize = 64;
 }
 
@@ -102,7 +102,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// The most of a house, since where a thing stands is asked of every room. Houses of SUNCG and ProcTHOR have some dozens.
+    /// The largest number in a house, since a point is looked up in every room. Houses of SUNCG and ProcTHOR have some dozens.
     pub const MOST: usize = 500;
 }
 
@@ -154,9 +154,9 @@ pub struct Category {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mobility {
-    /// Never.
+    /// It never moves.
     Fixed,
-    /// It stands firm, but its joints move: doors, cabinets.
+    /// Its base is fixed, but its joints move: doors, cabinets.
     Articulated,
     /// It is a free body.
     Movable,
@@ -183,7 +183,7 @@ pub struct Object {
     pub pickable: bool,
     /// True if it starts switched on; `None` when it has no switch.
     pub switch: Option<bool>,
-    /// Its first part. The parts of an object stand together; the first is its root.
+    /// Its first part. The parts of an object are consecutive; the first is its root.
     pub first_part: PartId,
     /// The number of its parts, at least one.
     pub part_count: u32,
@@ -213,14 +213,14 @@ pub struct Part {
     pub part_from_mesh: Affine3A,
     /// The material of each slot of the mesh.
     pub materials: Vec<MaterialId>,
-    /// Convex pieces (or [`Collider::ExactMesh`] for a fixed part) in part space; empty: nothing touches it.
+    /// Convex pieces (or [`Collider::ExactMesh`] for a fixed part) in part space; empty: it collides with nothing.
     pub colliders: Vec<Collider>,
     /// Mass, kg; `None`: volume of the colliders times `density_kg_m3`.
     pub mass_kg: Option<f32>,
     /// Mean density of the colliders' volume, kg/m³ (a cupboard is mostly air).
     pub density_kg_m3: f32,
-    /// Centre of mass and inertia as measured or given, for a part with a `mass_kg`; `None`: those of the colliders, evenly
-    /// filled.
+    /// Centre of mass and inertia as measured or given, for a part with a `mass_kg`; `None`: those of the colliders at
+    /// uniform density.
     #[serde(default)]
     pub inertial: Option<Inertial>,
 }
@@ -235,8 +235,8 @@ pub struct Inertial {
 }
 
 impl Inertial {
-    /// Returns whether a body can have it: finite, moments above 0, none above the sum of the other two (by more than 1 in
-    /// 1000, which rounded files exceed).
+    /// Returns whether it is physically possible: finite, moments above 0, none above the sum of the other two (by more
+    /// than 1 in 1000, which rounded files exceed).
     pub fn is_valid(&self) -> bool {
         let m = self.moments;
         self.part_from_principal.is_valid()

@@ -8,7 +8,7 @@ use xxhash_rust::xxh3::Xxh3;
 /// The number of [`House::fingerprint`](super::House::fingerprint).
 pub(super) fn of(data: &HouseData) -> u64 {
     let mut hash = Xxh3::new();
-    // Meshes and sounds are hashed below, images and the sky not at all: they only look.
+    // Meshes and sounds are hashed below, images and the sky not at all: they only affect looks.
     let tables = HouseData {
         meshes: IdVec::default(),
         textures: IdVec::default(),

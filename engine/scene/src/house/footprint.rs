@@ -1,13 +1,13 @@
-//! Rectangles around the floors of rooms, so that a point is compared with few of them.
+//! Bounding rectangles of rooms' floors, so that a point is tested against few floors.
 
 use super::data::Room;
 use glam::Vec2;
 
-/// Rounding in [`Room::contains_xz`] may take in a point this far beyond a corner: m, and a share of the coordinates.
+/// Rounding tolerance by which [`Room::contains_xz`] may accept a point beyond a corner: m, and a share of the coordinates.
 const MARGIN_M: f32 = 1e-3;
 const MARGIN: f32 = 1e-6;
 
-/// A rectangle that holds every point of a room's footprint, and the footprint's area.
+/// The bounding rectangle of a room's footprint, and the footprint's area.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FootprintBounds {
     low: Vec2,

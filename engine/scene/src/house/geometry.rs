@@ -17,18 +17,18 @@ pub enum SurfaceOwner {
     Part(PartId),
 }
 
-/// One mesh that stands in the house: a structure piece or a part.
+/// A mesh placed in the house: a structure piece or a part.
 #[derive(Clone, Debug)]
 pub struct PlacedMesh {
     /// Its owner.
     pub owner: SurfaceOwner,
-    /// The sensors' id.
+    /// The entity id.
     pub entity: EntityId,
     /// Its mesh.
     pub mesh: MeshId,
     /// Its transform; for parts that move, that at the start.
     pub world_from_mesh: Affine3A,
-    /// `world_from_part` is rigid: this is the rest of the way, for parts that move.
+    /// The rest of the transform after the rigid `world_from_part`, for parts that move.
     pub part_from_mesh: Affine3A,
 }
 
@@ -52,7 +52,7 @@ pub struct Geometry {
     pub placed: Vec<PlacedMesh>,
     /// The parts that move, in order: instance `k` of a [`RayScene`](crate::rays::RayScene) is `movable[k]`.
     pub movable: Vec<PartId>,
-    /// The trees of the meshes that some moving part shows.
+    /// The trees of the meshes of moving parts.
     pub mesh_bvh: IdVec<MeshId, Option<Arc<TriangleBvh>>>,
     structure_count: usize,
 }
@@ -139,7 +139,7 @@ impl Geometry {
 /// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceHit {
-    /// The sensors' id.
+    /// The entity id.
     pub entity: EntityId,
     /// Its owner.
     pub owner: SurfaceOwner,
@@ -154,7 +154,7 @@ pub struct SurfaceHit {
     pub normal: Vec3,
 }
 
-/// The map of normals that belongs to a map of points: its inverse transpose.
+/// The map of normals for a map of points: its inverse transpose.
 pub(crate) fn normals_map(world_from_mesh: &Affine3A) -> Mat3A {
     world_from_mesh.matrix3.inverse().transpose()
 }

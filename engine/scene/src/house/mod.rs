@@ -1,4 +1,4 @@
-//! The house: everything that never changes while worlds run in it.
+//! The house: everything that never changes while worlds run.
 
 mod check;
 mod data;
@@ -25,7 +25,7 @@ use std::sync::OnceLock;
 
 /// A checked, immutable house. Share it as `Arc<House>`: a thousand worlds over one house cost one set of meshes.
 ///
-/// It reads like its [`HouseData`]. To change one, clone the data, edit, and make a new house: meshes and textures are
+/// It dereferences to its [`HouseData`]. To change one, clone the data, edit, and make a new house: meshes and textures are
 /// shared.
 #[derive(Debug)]
 pub struct House {
@@ -40,7 +40,7 @@ impl House {
     /// Checks every index, name and range once.
     ///
     /// # Errors
-    /// [`SceneError`] with the place, what was found and what is allowed.
+    /// [`SceneError`] with the path, the value found and the allowed ones.
     pub fn new(data: HouseData) -> Result<Self, SceneError> {
         check::check(&data)?;
         Ok(Self {
@@ -57,13 +57,13 @@ impl House {
         self.geometry.get_or_init(|| Geometry::bake(&self.data))
     }
 
-    /// A number that tells this house from any other: its tables (names, places, masses, collision pieces, joints) and the
-    /// triangles of its meshes, not its images or its sky. Counted at first use.
+    /// Returns a hash of this house: its tables (names, places, masses, collision pieces, joints) and the triangles of its
+    /// meshes, not its images or its sky. Computed at first use.
     pub fn fingerprint(&self) -> u64 {
         *self.fingerprint.get_or_init(|| fingerprint::of(&self.data))
     }
 
-    /// The marked spaces of an object, in order.
+    /// Returns the receptacles of an object, in order.
     pub fn receptacles_of(&self, object: ObjectId) -> impl Iterator<Item = &Receptacle> {
         let spaces = self.spaces.get_or_init(|| {
             let mut spaces = IdVec::filled(Vec::new(), self.data.objects.len());
@@ -81,7 +81,7 @@ impl House {
             .get_or_init(|| self.data.rooms.iter().map(FootprintBounds::of).collect())
     }
 
-    /// The plain data, for editing and writing.
+    /// Returns the plain data, for editing and writing.
     pub fn data(&self) -> &HouseData {
         &self.data
     }

@@ -1,4 +1,4 @@
-//! Questions about a house that need no state.
+//! Queries of a house that need no state.
 
 use super::House;
 use super::data::Room;
@@ -8,7 +8,7 @@ use crate::random::RandomKey;
 use glam::{Vec2, Vec3};
 
 impl Room {
-    /// The area of the footprint, m²; [`House::exclusive_area_m2`] leaves out what belongs to smaller rooms.
+    /// Returns the area of the footprint, m²; [`House::exclusive_area_m2`] leaves out the area of smaller rooms.
     pub fn area_m2(&self) -> f32 {
         self.footprint
             .iter()
@@ -16,7 +16,7 @@ impl Room {
             .sum()
     }
 
-    /// Returns whether the point (x, z) lies over the floor, border included. Triangles without area hold nothing.
+    /// Returns whether the point (x, z) lies over the floor, border included. Degenerate triangles contain nothing.
     pub fn contains_xz(&self, point: Vec2) -> bool {
         let flat = |[a, b, c]: &[Vec2; 3]| (b - a).perp_dot(c - a) == 0.0;
         let mut triangles = self.footprint.iter().filter(|triangle| !flat(triangle));
@@ -27,29 +27,29 @@ impl Room {
         })
     }
 
-    /// The most fitting word for it; `"room"` when nothing is known.
+    /// Returns its most fitting kind; `"room"` when none is known.
     pub fn kind(&self) -> &str {
         self.kinds.first().map_or("room", String::as_str)
     }
 }
 
 impl House {
-    /// The sensors' id of a structure piece.
+    /// Returns the entity id of a structure piece.
     pub fn entity_of_structure(&self, id: StructureId) -> EntityId {
         EntityId(1 + id.0 as i32)
     }
 
-    /// The sensors' id of an object.
+    /// Returns the entity id of an object.
     pub fn entity_of_object(&self, id: ObjectId) -> EntityId {
         EntityId((1 + self.structure.len() + id.index()) as i32)
     }
 
-    /// The sensors' id of an agent.
+    /// Returns the entity id of an agent.
     pub fn entity_of_agent(&self, id: AgentId) -> EntityId {
         EntityId((1 + self.structure.len() + self.objects.len() + id.index()) as i32)
     }
 
-    /// Returns what an id names; `None` for a negative one. Ids beyond the objects are agents.
+    /// Returns the thing that an id names; `None` for a negative one. Ids beyond the objects are agents.
     pub fn entity(&self, id: EntityId) -> Option<Entity> {
         let index = usize::try_from(id.0).ok()?;
         let (structure, objects) = (self.structure.len(), self.objects.len());
@@ -71,8 +71,8 @@ impl House {
             .map(|(id, _)| id)
     }
 
-    /// The room that holds `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above, if no other
-    /// storey's room holds it without that), the smallest one where rooms overlap.
+    /// Returns the room that contains `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above, if no
+    /// other storey's room contains it without that), the smallest one where rooms overlap.
     pub fn room_at(&self, point: Vec3) -> Option<RoomId> {
         let bounds = self.footprint_bounds();
         let point_xz = Vec2::new(point.x, point.z);
@@ -93,8 +93,8 @@ impl House {
             .map(|(id, _)| id)
     }
 
-    /// Returns whether a point lies in no room; in a house without rooms: whether it lies beyond all walls. Nothing is outside of a
-    /// house with neither.
+    /// Returns whether a point lies in no room; in a house without rooms: whether it lies beyond all walls. Nothing is
+    /// outside a house with neither.
     pub fn is_outside(&self, point: Vec3) -> bool {
         if !self.rooms.is_empty() {
             return self.room_at(point).is_none();
@@ -106,7 +106,7 @@ impl House {
         !self.structure.is_empty() && !bounds.contains(point)
     }
 
-    /// Points at half height over a room's floor, evenly spread by area: of `count`, those that lie in no smaller room.
+    /// Returns points at half height over a room's floor, evenly spread by area: of `count`, those that lie in no smaller room.
     ///
     /// # Determinism
     /// The same points for the same house and count.
@@ -139,8 +139,8 @@ impl House {
         points
     }
 
-    /// The area of a room's floor that lies in no smaller room, m²: what people take for the room's size. Where rooms overlap
-    /// it is estimated from 256 points.
+    /// Returns the area of a room's floor that lies in no smaller room, m²: the room's size as people see it. Where rooms
+    /// overlap it is estimated from 256 points.
     pub fn exclusive_area_m2(&self, id: RoomId) -> f32 {
         const POINTS: usize = 256;
         let share = self.points_in_room(id, POINTS).len() as f32 / POINTS as f32;
@@ -155,7 +155,7 @@ impl House {
             .map(|(id, _)| id)
     }
 
-    /// The number of triangles that a picture of the whole house shows: structure and every instance.
+    /// Returns the number of triangles in a picture of the whole house: structure and every instance.
     pub fn triangle_count(&self) -> usize {
         let structure = self
             .structure
@@ -177,7 +177,7 @@ mod tests {
     use crate::{House, RoomId, ShoeboxMaterials};
     use glam::{Vec2, Vec3};
 
-    /// A line has every point of itself on its border, and a point all of space on that of its three sides.
+    /// Every point of a segment is on its border, and all of space is on the border of a triangle that is a single point.
     #[test]
     fn triangles_without_area_hold_nothing() {
         let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
@@ -193,7 +193,7 @@ mod tests {
         assert_eq!(after, before);
     }
 
-    /// The rectangles around the floors leave out no room that a comparison with each of them finds.
+    /// The bounding rectangles of the floors leave out no room that a comparison with each of them finds.
     #[test]
     fn the_room_at_a_point_is_that_of_all_rooms_compared() {
         let one = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// A substance: what `assets/materials.toml` says about it. Units and ranges stand at the head of that file.
+/// A substance: an entry of `assets/materials.toml`. Units and ranges are given at the head of that file.
 #[derive(Clone, Debug, PartialEq)]
 #[expect(
     missing_docs,
@@ -95,7 +95,7 @@ struct PairRow {
 /// The library that ships with the engine.
 ///
 /// # Panics
-/// Never: the file is part of the build, and this crate's tests read it.
+/// Never: the file is part of the build, and tested.
 pub fn library() -> &'static Library {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
     LIBRARY.get_or_init(|| {
@@ -104,7 +104,7 @@ pub fn library() -> &'static Library {
     })
 }
 
-/// R of a limp leaf, dB.
+/// Sound reduction index R of a limp panel, dB.
 ///
 /// # Source
 /// Field-incidence mass law, L. L. Beranek, *Noise and Vibration Control* (1971): 20 log10(m f) - 47.
@@ -229,12 +229,12 @@ impl Library {
         self.get(name).unwrap_or_else(|| self.default_substance())
     }
 
-    /// Returns what a thing is made of when nothing is known.
+    /// Returns the substance of a thing whose material is unknown.
     pub fn default_substance(&self) -> &Substance {
         &self.substances[&self.default_name]
     }
 
-    /// The substance that a word of a foreign material's name means.
+    /// Returns the substance for a word in a foreign material's name.
     pub fn find_by_word(&self, word: &str) -> Option<&Substance> {
         self.by_word.get(word).map(|name| &self.substances[name])
     }

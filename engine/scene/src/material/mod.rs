@@ -1,4 +1,4 @@
-//! Materials: what surfaces and bodies are made of, for eyes, ears, hands and words.
+//! Materials: the optical, acoustic and mechanical properties of surfaces and bodies.
 
 mod bands;
 mod library;
@@ -10,18 +10,18 @@ use crate::error::SceneError;
 use crate::ids::TextureId;
 use serde::{Deserialize, Serialize};
 
-/// A material with everything the engines need.
+/// A material with the properties that all engines need.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
-    /// The name, unique in its house; what `material/<name>/...` addresses.
+    /// The name, unique in its house; used in addresses `material/<name>/...`.
     pub name: String,
-    /// The substance, as [`library`] names it.
+    /// The substance, by its name in [`library`].
     pub substance: String,
     /// Colour in linear light, each 0 to 1; multiplies the texture.
     pub base_color: [f32; 3],
     /// The image on the surface.
     pub texture: Option<TextureId>,
-    /// Light that the surface sends out itself, linear, each at least 0.
+    /// Emitted light, linear, each at least 0.
     pub emission: [f32; 3],
     /// The fraction of light that does not pass straight through, 0 to 1.
     pub opacity: f32,
@@ -29,7 +29,7 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness, 0 to 1, as in glTF 2.0.
     pub roughness: f32,
-    /// kg/m³ of the substance as it stands in the house.
+    /// Density of the substance in the house, kg/m³.
     pub density_kg_m3: f32,
     /// Coefficient of kinetic friction on itself; the pair's value comes from [`Library::pair`].
     pub friction: f32,
@@ -39,16 +39,16 @@ pub struct Material {
     pub absorption: Bands,
     /// Random-incidence scattering of sound energy, 0 to 1.
     pub scattering: Bands,
-    /// Sound reduction index R, dB: the energy that passes is 10^(-R/10). `f32::INFINITY` cannot pass JSON: 200 dB is
-    /// the ceiling and counts as exactly nothing.
+    /// Sound reduction index R, dB: the transmitted energy is 10^(-R/10). `f32::INFINITY` cannot pass JSON: 200 dB is the
+    /// ceiling and counts as opaque.
     pub transmission_loss_db: Bands,
 }
 
 impl Material {
-    /// The loss at and above which nothing passes, dB.
+    /// The loss at and above which nothing is transmitted, dB.
     pub const OPAQUE_TO_SOUND_DB: f32 = 200.0;
 
-    /// A material of a substance, with that substance's numbers and default colour.
+    /// A material of a substance, with its properties and default colour.
     pub fn of(name: impl Into<String>, substance: &Substance) -> Self {
         Self {
             name: name.into(),
@@ -88,7 +88,7 @@ impl Material {
     /// Checks every range.
     ///
     /// # Errors
-    /// [`SceneError::Range`] or [`SceneError::Bands`] names the field, what was found and what is allowed.
+    /// [`SceneError::Range`] or [`SceneError::Bands`] names the field, the value found and the allowed ones.
     pub fn check(&self, at: &str) -> Result<(), SceneError> {
         let range =
             |field: &'static str, value: f32, low: f32, high: f32, allowed: &'static str| {

@@ -1,4 +1,4 @@
-//! A triangle cut into columns.
+//! Clipping of triangles to columns.
 
 use glam::Vec3;
 
@@ -19,12 +19,12 @@ impl ClipPolygon {
         polygon
     }
 
-    /// The part between two planes across an axis.
+    /// Returns the part between two planes across an axis.
     pub(super) fn clipped(&self, axis: usize, low: f32, high: f32) -> Self {
         self.half(axis, low, true).half(axis, high, false)
     }
 
-    /// The part on one side of a plane across an axis.
+    /// Returns the part on one side of a plane across an axis.
     ///
     /// # Source
     /// I. E. Sutherland and G. W. Hodgman, Communications of the ACM 17, 32 (1974).
@@ -66,7 +66,7 @@ impl ClipPolygon {
         }
     }
 
-    /// The lowest and the highest corner's height; nothing when no corner is left.
+    /// Returns the lowest and the highest corner's height; `None` when no corner is left.
     pub(super) fn heights(&self) -> Option<[f32; 2]> {
         let heights = self.corners[..self.count].iter().map(|p| [p.y; 2]);
         heights.reduce(|[low, high], [y, _]| [low.min(y), high.max(y)])

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DoorPolicy {
-    /// As the state has them: a shut door is an obstacle, and so is the leaf of an open one.
+    /// As they are in the state: a closed door is an obstacle, and so is the leaf of an open one.
     #[default]
     AsTheyStand,
-    /// Fully open, the leaf where it then stands: where someone who opens doors can go.
+    /// Fully open, the leaf in its open position: the places that an agent that opens doors can reach.
     Open,
-    /// As [`DoorPolicy::Open`], but passing a door that does not stand open adds [`NavConfig::door_price_m`] to the way.
+    /// As [`DoorPolicy::Open`], but passing a door that is not open adds [`NavConfig::door_price_m`] to the path.
     Priced,
 }
 
@@ -23,9 +23,9 @@ pub enum DoorPolicy {
 pub struct NavConfig {
     /// Edge of a cell, m; 0.02 to 1, default 0.1.
     pub cell_m: f32,
-    /// Radius of the walker, m; 0 to 2, default 0.2.
+    /// Radius of the agent, m; 0 to 2, default 0.2.
     pub radius_m: f32,
-    /// Height of the walker, m; 0.1 to 3, default 1.5.
+    /// Height of the agent, m; 0.1 to 3, default 1.5.
     pub height_m: f32,
     /// The highest step it climbs, m; 0 to 1, default 0.2.
     pub step_m: f32,

@@ -1,4 +1,4 @@
-//! Shortest ways over the grid.
+//! Shortest paths over the grid.
 
 use super::grid::{NavCell, NavGrid};
 use std::cmp::Reverse;
@@ -6,18 +6,18 @@ use std::collections::BinaryHeap;
 
 /// Geodesic distance from every cell to the nearest goal, over straight pieces in 32 directions.
 ///
-/// Against the shortest way over the walkable cells: in the open at most 1.31 % longer (half the widest angle between
-/// directions is 9.2°), and up to a cell's edge more where it bends around obstacles. [`NavGrid::route`] pulls one way
-/// tight. Walkable cells keep up to two cells' edges more than the radius off obstacles. Up stairs the way is that over
-/// their edges, within 3 % in cells of 0.1 m.
+/// Against the shortest path over the walkable cells: in the open at most 1.31 % longer (half the widest angle between
+/// directions is 9.2°), and up to a cell's edge more where it bends around obstacles. [`NavGrid::route`] shortens one path.
+/// Walkable cells keep up to two cells' edges more than the radius off obstacles. On stairs the path is that over their
+/// edges, within 3 % in cells of 0.1 m.
 #[derive(Clone, Debug)]
 pub struct DistanceField {
-    /// m; infinite where no way leads. Shape (cell,).
+    /// m; infinite where no path exists. Shape (cell,).
     distance_m: Vec<f64>,
 }
 
 impl DistanceField {
-    /// The distance of a cell, m; `None` where no way leads.
+    /// Returns the distance of a cell, m; `None` where no path exists.
     pub fn at(&self, cell: NavCell) -> Option<f64> {
         self.distance_m
             .get(cell.0 as usize)
@@ -26,7 +26,7 @@ impl DistanceField {
     }
 }
 
-/// Columns away along x and z, for a quarter of the directions: the others follow by turning.
+/// Offsets in columns along x and z, for a quarter of the directions: the others follow by rotation.
 const QUARTER: [(isize, isize); 8] = [
     (1, 0),
     (3, 1),
@@ -37,12 +37,12 @@ const QUARTER: [(isize, isize); 8] = [
     (1, 2),
     (1, 3),
 ];
-/// Longer pieces in the same directions, which only matter where the ground is not level: the straight way over stairs is
+/// Longer pieces in the same directions, which only matter where the ground is not level: the straight path over stairs is
 /// shorter than their treads and risers.
 const UNEVEN: [(isize, isize); 4] = [(2, 0), (3, 0), (2, 2), (3, 3)];
 
 impl NavGrid {
-    /// The cells one straight piece away, with what the piece costs, m.
+    /// Returns the cells one straight piece away, with the cost of the piece, m.
     pub(super) fn neighbours(&self, cell: NavCell) -> impl Iterator<Item = (NavCell, f64)> + '_ {
         let quarter = QUARTER.into_iter().map(|piece| (piece, false));
         let pieces = quarter.chain(UNEVEN.into_iter().map(|piece| (piece, true)));
@@ -57,16 +57,16 @@ impl NavGrid {
         })
     }
 
-    /// Distances to the nearest of `goals` over the whole grid (Dijkstra 1959).
+    /// Computes distances to the nearest of `goals` over the whole grid (Dijkstra 1959).
     pub fn distance_field(&self, goals: &[NavCell]) -> DistanceField {
         self.search(goals, None)
     }
 
-    /// Distances to the nearest of `goals`; with a `start`, only as far as its own distance needs (Hart, Nilsson and
-    /// Raphael 1968), with the same bits.
+    /// Computes distances to the nearest of `goals`; with a `start`, only as far as its own distance needs (Hart, Nilsson
+    /// and Raphael 1968), with the same bits.
     fn search(&self, goals: &[NavCell], start: Option<NavCell>) -> DistanceField {
         let mut distance_m = vec![f64::INFINITY; self.len()];
-        // Less than the straight line by more than rounding, so that the way found is the same.
+        // Less than the straight line by more than rounding, so that the path found is the same.
         let height = |cell: NavCell| f64::from(self.layers.height[cell.0 as usize]);
         let ahead = |cell: NavCell| {
             let Some(aim) = start else { return 0.0 };
@@ -100,8 +100,8 @@ impl NavGrid {
         DistanceField { distance_m }
     }
 
-    /// The way down a distance field from `start` to its nearest goal, both included; `None` where no way leads. From cell
-    /// to cell the way is straight and free.
+    /// Returns the path down a distance field from `start` to its nearest goal, both included; `None` where no path exists.
+    /// From cell to cell it is straight and free.
     pub fn follow_gradient(&self, field: &DistanceField, start: NavCell) -> Option<Vec<NavCell>> {
         let mut here = start;
         let mut left = field.at(start)?;
@@ -121,7 +121,7 @@ impl NavGrid {
         Some(way)
     }
 
-    /// A shortest way between two walkable cells in pieces of 32 directions, both included.
+    /// Returns a shortest path between two walkable cells in pieces of 32 directions, both included.
     pub fn path(&self, start: NavCell, goal: NavCell) -> Option<Vec<NavCell>> {
         if self.island(start)? != self.island(goal)? {
             return None;

@@ -5,7 +5,7 @@ use super::obstacles::stands_open;
 use super::static_grid::{around, blocks};
 use crate::ids::JointId;
 
-/// A door in the way of walkers, as the grid has it.
+/// A door in the way of walking agents, as the grid has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NavDoor {
     /// Its joint.
@@ -14,14 +14,14 @@ pub struct NavDoor {
     pub openness: f32,
     /// True if it is open far enough to pass (0.8 and more).
     pub is_open: bool,
-    /// The walkable cells on which its leaf stands when it is shut; none while the leaf or something else blocks them.
+    /// The walkable cells under its closed leaf; none while the leaf or something else blocks them.
     pub cells: Vec<NavCell>,
-    /// The islands beside it, in order: two, if it parts them now; one, if there is a way between its sides.
+    /// The islands beside it, in order: two, if it separates them now; one, if there is a path between its sides.
     pub islands: Vec<u32>,
 }
 
 impl NavGrid {
-    /// The doors in the way of walkers, by joint.
+    /// Returns the doors in the way of walking agents, by joint.
     pub fn doors(&self) -> Vec<NavDoor> {
         (0..self.ground.passages.len())
             .map(|k| self.door(k))
@@ -31,7 +31,7 @@ impl NavGrid {
     fn door(&self, passage: usize) -> NavDoor {
         let openness = self.openness[passage];
         let mut islands: Vec<u32> = Vec::new();
-        // Where a walker stands in front of the shut leaf, and a cell or two more for what the grid rounds.
+        // Where an agent stands in front of the closed leaf, and a cell or two more for the grid's rounding.
         let reach = self.config.radius_m + 2.5 * self.config.cell_m;
         for (column, _) in &self.ground.passages[passage].shut {
             for (beside, _) in around(&self.ground.frame, *column as usize, reach) {
@@ -54,7 +54,7 @@ impl NavGrid {
         }
     }
 
-    /// Returns whether a walker on `cell` is as high as the door's leaf.
+    /// Returns whether an agent on `cell` is at the height of the door's leaf.
     fn is_beside(&self, passage: usize, cell: NavCell) -> bool {
         let y = self.layers.height[cell.0 as usize];
         let leaf = &self.ground.passages[passage].shut;
@@ -62,7 +62,7 @@ impl NavGrid {
             .any(|(_, span)| blocks(std::slice::from_ref(span), y, &self.config))
     }
 
-    /// The walkable cells under the shut leaf of a door.
+    /// Returns the walkable cells under the closed leaf of a door.
     fn doorway(&self, passage: usize) -> Vec<NavCell> {
         let mut cells = Vec::new();
         for (column, leaf) in &self.ground.passages[passage].shut {
@@ -79,7 +79,7 @@ impl NavGrid {
         cells
     }
 
-    /// The shut doors that straight pieces between `corners` pass, in order.
+    /// Returns the closed doors that straight pieces between `corners` pass, in order.
     pub(super) fn shut_doors_on(&self, corners: &[NavCell]) -> Vec<JointId> {
         let crosses = |ends: &[NavCell]| {
             let crossing = self.straight_between(ends[0], ends[1]);

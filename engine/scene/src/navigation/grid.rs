@@ -14,7 +14,7 @@ use crate::state::State;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// A place to stand: one surface of one column of the grid. Cells keep their numbers when things move elsewhere.
+/// A place to stand: one surface of one column of the grid. Cells keep their numbers when objects move elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct NavCell(pub u32);
 
@@ -28,7 +28,7 @@ pub struct NavGrid {
     /// Height spans of the columns that moving parts occupy; `None`: the static spans alone.
     mixed: Vec<Option<Box<[HeightSpan]>>>,
     pub(super) layers: Layers,
-    /// Shape (cell,); [`NOWHERE`] where nobody can stand.
+    /// Shape (cell,); [`NOWHERE`] where an agent cannot stand.
     island: Vec<u32>,
     /// Openness of each passage.
     pub(super) openness: Vec<f32>,
@@ -37,15 +37,15 @@ pub struct NavGrid {
 /// The changes made by [`NavGrid::update`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NavGridUpdate {
-    /// Parts that stand elsewhere than before.
+    /// Parts that moved.
     pub parts: usize,
-    /// Columns in which something stands now that did not, or stood and does not.
+    /// Columns whose occupation changed.
     pub columns: usize,
-    /// Columns whose room was looked at again: those within the walker's radius.
+    /// Columns whose clearance was checked again: those within the agent's radius.
     pub rechecked: usize,
 }
 
-/// A storey from above.
+/// The occupancy map of a storey, from above.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Occupancy {
     /// Cells along x.
@@ -56,12 +56,12 @@ pub struct Occupancy {
     pub corner: [f32; 2],
     /// Edge of a cell, m.
     pub cell_m: f32,
-    /// 1 where someone can stand, else 0; row by row along z. Shape (depth, width).
+    /// 1 where an agent can stand, else 0; row by row along z. Shape (depth, width).
     pub free: Vec<u8>,
 }
 
 impl NavGrid {
-    /// Looks at all triangles of the house where `state` has them. Agents are not obstacles; held things are not either.
+    /// Builds the grid from all triangles of the house in `state`. Agents and held objects are no obstacles.
     ///
     /// # Errors
     /// [`SceneError::Range`] for a setting out of range, a house too large for the cell size, or another house's state.
@@ -85,8 +85,8 @@ impl NavGrid {
         Ok(grid)
     }
 
-    /// Follows what has moved since the grid was built or last updated: only columns near parts that stand elsewhere are
-    /// looked at; islands are numbered anew. The result is, bit for bit, what building anew gives.
+    /// Updates the grid after motions since it was built or last updated: only columns near parts that moved are checked;
+    /// islands are numbered again. The result is that of a new grid, bit for bit.
     ///
     /// # Errors
     /// [`SceneError::Range`] for another house than the grid was built for.
@@ -124,7 +124,7 @@ impl NavGrid {
         }
     }
 
-    /// Moves obstacles and doors to where the state has them.
+    /// Moves obstacles and doors to their poses in `state`.
     fn follow(&mut self, house: &House, state: &State) -> super::obstacles::ObstacleChanges {
         for (k, open) in self.openness.iter_mut().enumerate() {
             *open = openness(house, state, &self.ground, k);
@@ -133,7 +133,7 @@ impl NavGrid {
             .follow(house, state, &self.ground, &self.config)
     }
 
-    /// The columns within `radius_m` of some of `columns`, in order.
+    /// Returns the columns within `radius_m` of some of `columns`, in order.
     fn grown(&self, columns: &[usize], radius_m: f32) -> Vec<usize> {
         let mut all: Vec<usize> = columns
             .iter()
@@ -145,7 +145,7 @@ impl NavGrid {
         all
     }
 
-    /// Brings surfaces (`filled`), their room (`near`), their links (`linked`) and all islands up to date.
+    /// Brings surfaces (`filled`), their clearance (`near`), their links (`linked`) and all islands up to date.
     fn settle(
         &mut self,
         house: &House,
@@ -199,7 +199,7 @@ impl NavGrid {
         let y = self.layers.height[cell];
         let floors = &self.ground.floors;
         let over = |floor: &HeightSpan| (y - floor.high).abs() <= self.config.step_m + 1e-4;
-        // A house whose file names no floors is walked on its lowest surfaces.
+        // In a house without floors the lowest surfaces are walkable.
         let on_floor = if floors.is_empty() {
             layer == 0
         } else {
@@ -210,7 +210,7 @@ impl NavGrid {
         FREE + ON_FLOOR * u8::from(on_floor) + INDOORS * u8::from(indoors)
     }
 
-    /// Marks what lies under the leaves of doors that are shut, where opening them has a price.
+    /// Marks the surfaces under the leaves of closed doors, where opening them has a price.
     fn mark_doorways(&mut self) {
         if self.config.doors != DoorPolicy::Priced {
             return;
@@ -245,12 +245,12 @@ impl NavGrid {
         self.island.is_empty()
     }
 
-    /// Returns whether someone can stand in the middle of a cell.
+    /// Returns whether an agent can stand in the middle of a cell.
     pub fn is_walkable(&self, cell: NavCell) -> bool {
         self.island(cell).is_some()
     }
 
-    /// The island that a walkable cell belongs to, 0 being the one with most cells on rooms' floors.
+    /// Returns the island of a walkable cell, 0 being the one with most cells on rooms' floors.
     pub fn island(&self, cell: NavCell) -> Option<u32> {
         let label = self.island.get(cell.0 as usize).copied();
         label.filter(|label| *label != NOWHERE)
@@ -263,7 +263,7 @@ impl NavGrid {
         cells.map(|(cell, _)| NavCell(cell as u32))
     }
 
-    /// All cells to which a way leads from `start`, itself included, in order; none if nobody can stand there.
+    /// Returns all cells reachable from `start`, itself included, in order; none if an agent cannot stand there.
     pub fn reachable(&self, start: NavCell) -> impl Iterator<Item = NavCell> + '_ {
         let label = self.island(start);
         let same = move |cell: &NavCell| label.is_some() && self.island(*cell) == label;
@@ -276,7 +276,7 @@ impl NavGrid {
         key.stream().choose(&cells).copied()
     }
 
-    /// A cell to which a way leads from `start`, uniform over all of them.
+    /// A cell reachable from `start`, uniform over all of them.
     pub fn sample_reachable(&self, key: RandomKey, start: NavCell) -> Option<NavCell> {
         let cells: Vec<NavCell> = self.reachable(start).collect();
         key.stream().choose(&cells).copied()
@@ -295,7 +295,7 @@ impl NavGrid {
         self.ground.level(self.layers.height[cell.0 as usize])
     }
 
-    /// The walkable cell nearest to `point`, at most `within_m` away (heights count).
+    /// Returns the walkable cell nearest to `point`, at most `within_m` away (heights count).
     pub fn nearest(&self, point: Vec3, within_m: f32) -> Option<NavCell> {
         let frame = &self.ground.frame;
         let along = |value: f32, origin: f32, count: usize| {
@@ -320,7 +320,7 @@ impl NavGrid {
         best.map(|(_, cell)| cell)
     }
 
-    /// A storey from above, in the frame that all storeys of the grid share; `None` for a storey that does not exist.
+    /// Returns the occupancy map of a storey, in the frame that all storeys of the grid share; `None` for a storey that does not exist.
     pub fn occupancy(&self, level: LevelId) -> Option<Occupancy> {
         if !self.ground.has_level(level) {
             return None;

@@ -1,4 +1,4 @@
-//! Columns of space above the cells of a grid, and what fills them.
+//! Columns of space above the cells of a grid, and their solid spans.
 
 use super::clip::ClipPolygon;
 use super::config::NavConfig;
@@ -7,9 +7,9 @@ use crate::interrupt::PollEvery;
 use crate::math;
 use glam::{Vec2, Vec3};
 
-/// Surfaces nearer than this on top of each other are one, m.
+/// Surfaces closer than this in height are one, m.
 const TOUCHING_M: f32 = 1e-3;
-/// Columns between looks at whether the grid is still wanted.
+/// Columns between checks for cancellation.
 const COLUMNS_PER_CHECK: usize = 1 << 12;
 
 /// A solid span of a column between two heights.
@@ -29,14 +29,14 @@ impl HeightSpan {
     };
 }
 
-/// Sorts spans and joins those that touch. The result depends on the set of them only, and joining what was joined before
+/// Sorts spans and joins those that touch. The result depends on the set of them only, and joining joined spans again
 /// changes nothing.
 pub(super) fn join(spans: &mut Vec<HeightSpan>) {
     let kept = join_first(spans);
     spans.truncate(kept);
 }
 
-/// As [`join`]; what is joined comes first, and so many are left.
+/// As [`join`]; the joined spans come first, and their number is returned.
 fn join_first(spans: &mut [HeightSpan]) -> usize {
     spans.sort_by(|a, b| a.low.total_cmp(&b.low).then(a.high.total_cmp(&b.high)));
     let mut kept = 0_usize;
@@ -73,7 +73,7 @@ pub(super) struct GridFrame {
 }
 
 impl GridFrame {
-    /// Columns over `bounds`, one cell wider on every side; none over an empty box.
+    /// A frame over `bounds`, one cell wider on every side; without columns over an empty box.
     pub(super) fn new(bounds: &Aabb, heights: [f32; 2], config: &NavConfig) -> Self {
         let size = bounds.size();
         let count = |length: f32| {
@@ -86,7 +86,7 @@ impl GridFrame {
             width: count(size.x),
             depth: count(size.z),
             heights,
-            // A slope of the very angle counts as flat.
+            // A slope of exactly that angle counts as flat.
             flat: math::cos(config.max_slope_rad) - 1e-4,
         }
     }
@@ -96,7 +96,7 @@ impl GridFrame {
         self.width * self.depth
     }
 
-    /// The columns that a range of coordinates along one axis touches; empty outside the grid.
+    /// Returns the columns that a range of coordinates along one axis touches; empty outside the grid.
     fn touched(&self, low: f32, high: f32, origin: f32, count: usize) -> std::ops::Range<usize> {
         let index = |value: f32| ((value - origin) / self.cell_m).floor();
         let first = index(low).max(0.0);
@@ -135,7 +135,7 @@ impl GridFrame {
             && inside(bounds.min.x, bounds.max.x, self.origin.x, self.width)
             && inside(bounds.min.z, bounds.max.z, self.origin.y, self.depth)
         {
-            // Most triangles of furniture.
+            // Fast path: most triangles of furniture lie in one column.
             found(
                 zs.start * self.width + xs.start,
                 span([bounds.min.y, bounds.max.y]),
@@ -166,7 +166,7 @@ pub(super) struct Heightfield {
 }
 
 impl Heightfield {
-    /// Joins what fills each of `count` columns; `raw`: columns and spans in any order.
+    /// Joins the spans of each of `count` columns; `raw`: columns and spans in any order.
     pub(super) fn new(count: usize, raw: &[(u32, HeightSpan)]) -> Self {
         let mut pace = PollEvery::new(COLUMNS_PER_CHECK);
         // Sorted by counting.
@@ -179,7 +179,7 @@ impl Heightfield {
             ends[column + 1] += ends[column];
         }
         let mut spans = vec![HeightSpan::NONE; raw.len()];
-        // Where the next one of each column goes: in the end, where the column ends.
+        // Next free place of each column: in the end, where the column ends.
         for (column, span) in raw {
             pace.turn();
             let next = &mut ends[*column as usize];
@@ -202,12 +202,12 @@ impl Heightfield {
         Self { first, spans }
     }
 
-    /// Returns what fills a column, from below.
+    /// Returns the spans of a column, from below.
     pub(super) fn at(&self, column: usize) -> &[HeightSpan] {
         &self.spans[self.first[column] as usize..self.first[column + 1] as usize]
     }
 
-    /// Returns whether nothing fills any column.
+    /// Returns whether all columns are empty.
     pub(super) fn is_empty(&self) -> bool {
         self.spans.is_empty()
     }

@@ -1,4 +1,4 @@
-//! The surfaces above each other in the columns, on which walkers stand, and how they hang together.
+//! Walkable surfaces above each other in the columns, and their connections.
 
 use super::config::NavConfig;
 use super::heightfield::{GridFrame, HeightSpan};
@@ -6,22 +6,22 @@ use super::static_grid::{around, standing};
 use crate::interrupt::{self, PollEvery};
 use glam::Vec3;
 
-/// Surfaces between looks at whether the islands are still wanted.
+/// Surfaces between checks for cancellation.
 const SURFACES_PER_CHECK: usize = 1 << 14;
 
 /// No cell.
 pub(super) const NOWHERE: u32 = u32::MAX;
 
-/// A surface with room for the walker around it.
+/// A surface with clearance for the agent.
 pub(super) const FREE: u8 = 1;
 /// A free surface on a floor of the house.
 pub(super) const ON_FLOOR: u8 = 2;
 /// A free surface in a room, at most half a metre above its floor.
 pub(super) const INDOORS: u8 = 4;
-/// A surface under the leaf of a door that is shut and can be opened at a price.
+/// A surface under the leaf of a closed door that can be opened at a price.
 pub(super) const DOORWAY: u8 = 8;
 
-/// The columns beside one: east (+x), west, south (+z), north. Opposite ways differ in the last bit.
+/// The columns beside one: east (+x), west, south (+z), north. Opposite directions differ in the last bit.
 pub(super) const EAST: usize = 0;
 pub(super) const WEST: usize = 1;
 pub(super) const SOUTH: usize = 2;
@@ -63,7 +63,7 @@ impl Layers {
         self.flags[cell] & FREE != 0
     }
 
-    /// Writes the heights at which the walker can stand upright in a column.
+    /// Writes the heights at which the agent can stand upright in a column.
     pub(super) fn stand(&mut self, column: usize, spans: &[HeightSpan], config: &NavConfig) {
         let mut heights = standing(spans, config);
         let mut layer = 0;
@@ -89,7 +89,7 @@ impl Layers {
         }
     }
 
-    /// Drops empty layers at the top, so that the numbers depend on what stands there and not on what stood there.
+    /// Drops empty layers at the top, so that the numbers depend on the present surfaces and not on earlier ones.
     pub(super) fn trim(&mut self) {
         while self.used.last() == Some(&0) {
             self.used.pop();
@@ -100,8 +100,8 @@ impl Layers {
         self.links.truncate(len);
     }
 
-    /// Returns whether the walker has room on a surface: within its radius nothing stands between a step and its height above it,
-    /// unless it gets up there step by step within that radius, as on stairs and slopes.
+    /// Returns whether the agent has clearance on a surface: within its radius nothing stands between a step and its height
+    /// above it, unless it gets up there step by step within that radius, as on stairs and slopes.
     pub(super) fn has_room<'a>(
         &self,
         cell: usize,
@@ -111,7 +111,7 @@ impl Layers {
     ) -> bool {
         let (column, y) = (cell % self.columns, self.height[cell]);
         let (low, high) = (y + config.step_m, y + config.height_m);
-        // The columns with something in the way, and on what one could stand above it.
+        // The columns with something in the way, and the surface above it.
         let mut above: Vec<usize> = Vec::new();
         for (beside, _) in around(frame, column, config.radius_m) {
             let in_the_way = |span: &&HeightSpan| span.high > low && span.low < high;
@@ -129,7 +129,7 @@ impl Layers {
         above.is_empty() || self.reaches_all(cell, frame, config, above)
     }
 
-    /// Returns whether one gets from `cell` to all of `goals` by steps within the radius.
+    /// Returns whether all of `goals` can be reached from `cell` by steps within the radius.
     fn reaches_all(
         &self,
         cell: usize,
@@ -166,7 +166,7 @@ impl Layers {
         false
     }
 
-    /// The allowed surface of a column that is nearest in height to `y`, no more than a step away; the lower of two.
+    /// Returns the allowed surface of a column that is nearest in height to `y`, no more than a step away; the lower of two.
     fn step_into(
         &self,
         column: usize,
@@ -206,8 +206,9 @@ impl Layers {
         }
     }
 
-    /// Numbers what hangs together, keeping only what hangs together with a floor of the house: no beds, no tops of walls.
-    /// First comes what has most surfaces in rooms, then what is largest. Shape (cell,); [`NOWHERE`] where nobody stands.
+    /// Numbers connected surfaces, keeping only those connected with a floor of the house: no beds, no tops of walls. First
+    /// comes the island with most surfaces in rooms, then the largest. Shape (cell,); [`NOWHERE`] where an agent cannot
+    /// stand.
     pub(super) fn islands(&self) -> Vec<u32> {
         let mut island = vec![NOWHERE; self.height.len()];
         let mut found: Vec<(usize, usize, bool)> = Vec::new();

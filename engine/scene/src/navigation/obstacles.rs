@@ -10,10 +10,10 @@ use crate::state::State;
 use glam::{Affine3A, Vec3};
 use std::collections::BTreeMap;
 
-/// A door counts as open from this openness on.
+/// Openness from which a door counts as open.
 const STANDS_OPEN: f32 = 0.8;
 
-/// Triangles between looks at whether the grid is still wanted.
+/// Triangles between checks for cancellation.
 const TRIANGLES_PER_CHECK: usize = 64;
 
 /// A part that moves.
@@ -22,15 +22,15 @@ pub(super) struct Obstacle {
     pub(super) part: PartId,
     /// Its transform; `None` while an agent holds it.
     world_from_part: Option<Affine3A>,
-    /// The columns that it fills, in order.
+    /// The columns that it occupies, in order.
     columns: Vec<(u32, HeightSpan)>,
 }
 
-/// All parts that move, and what they fill.
+/// All parts that move, and the columns that they occupy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Obstacles {
     parts: Vec<Obstacle>,
-    /// For each column with something that moves, its spans by position in `parts`.
+    /// For each column with a moving part, the spans by position in `parts`.
     filled: BTreeMap<u32, Vec<(u32, HeightSpan)>>,
 }
 
@@ -38,12 +38,12 @@ pub(super) struct Obstacles {
 pub(super) struct ObstacleChanges {
     /// Number of parts that moved.
     pub(super) parts: usize,
-    /// The columns they left or came to, in order, each once.
+    /// The columns that they left or entered, in order, each once.
     pub(super) columns: Vec<u32>,
 }
 
 impl Obstacles {
-    /// All parts that move, standing nowhere yet.
+    /// All parts that move, not placed yet.
     pub(super) fn new(house: &House) -> Self {
         let nowhere = |part: &PartId| Obstacle {
             part: *part,
@@ -56,12 +56,12 @@ impl Obstacles {
         }
     }
 
-    /// Returns how many parts there are.
+    /// Returns the number of parts.
     pub(super) fn len(&self) -> usize {
         self.parts.len()
     }
 
-    /// Moves every part to where `state` has it.
+    /// Moves every part to its pose in `state`.
     pub(super) fn follow(
         &mut self,
         house: &House,
@@ -105,25 +105,25 @@ impl Obstacles {
         moved
     }
 
-    /// The spans of the parts in a column.
+    /// Returns the spans of the parts in a column.
     pub(super) fn at(&self, column: u32) -> impl Iterator<Item = HeightSpan> + '_ {
         let spans = self.filled.get(&column).map_or(&[][..], Vec::as_slice);
         spans.iter().map(|(_, span)| *span)
     }
 }
 
-/// Returns how far a passage's door is open in `state`, 0 to 1.
+/// Returns the openness of a passage's door in `state`, 0 to 1.
 pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passage: usize) -> f32 {
     let id = ground.passages[passage].joint;
     house.joints[id].openness(state.joint_position[id])
 }
 
-/// Returns whether a door of this openness lets a walker pass.
+/// Returns whether a door of this openness lets an agent pass.
 pub(super) fn stands_open(openness: f32) -> bool {
     openness >= STANDS_OPEN
 }
 
-/// Returns where a part counts as standing; `None` while it is held.
+/// Returns the pose of a part for navigation; `None` while it is held.
 fn place_of(
     house: &House,
     state: &State,
@@ -149,7 +149,7 @@ fn place_of(
     Some(state.part_pose[part].to_affine())
 }
 
-/// The columns that a part crosses where it stands, in order, with disjoint spans.
+/// Returns the columns that a part crosses at a pose, in order, with disjoint spans.
 pub(super) fn raster(
     house: &House,
     frame: &GridFrame,

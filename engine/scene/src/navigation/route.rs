@@ -1,4 +1,4 @@
-//! Ways pulled tight.
+//! Shortened paths.
 
 use super::grid::{NavCell, NavGrid};
 use crate::ids::JointId;
@@ -11,25 +11,25 @@ const MOST_ROUNDS: usize = 32;
 /// Largest distance of a point from a cell to be on the grid, m.
 const NEAR_M: f32 = 0.5;
 
-/// A way through a house, pulled tight.
+/// A path through a house, shortened to straight pieces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Route {
-    /// Its corners on the ground, from the cell nearest to the start to the one nearest to the goal, m. Straight ways
+    /// Its corners on the ground, from the cell nearest to the start to the one nearest to the goal, m. Straight lines
     /// between them are free.
     pub points: Vec<Vec3>,
     /// Its length over the ground, m.
     pub length_m: f64,
-    /// The doors that do not stand open and must be opened on the way, in order; only under
+    /// The doors that are not open and must be opened on the way, in order; only under
     /// [`Doors::Priced`](super::DoorPolicy::Priced).
     pub shut_doors: Vec<JointId>,
 }
 
 impl NavGrid {
-    /// The shortest way between two points, between their nearest cells (at most 0.5 m away), pulled tight; `None` off the
-    /// grid or without a way.
+    /// Returns the shortest path between two points, between their nearest cells (at most 0.5 m away), shortened to
+    /// straight pieces; `None` off the grid or without a path.
     ///
-    /// Never shorter than the shortest way over the walkable cells; its corners lie on the middles of cells, and it passes
-    /// obstacles on the side that [`DistanceField`](super::DistanceField) finds shortest.
+    /// It is never shorter than the shortest path over the walkable cells; its corners lie on the middles of cells, and it
+    /// passes obstacles on the side that [`DistanceField`](super::DistanceField) finds shortest.
     pub fn route(&self, from: Vec3, to: Vec3) -> Option<Route> {
         let (start, goal) = (self.nearest(from, NEAR_M)?, self.nearest(to, NEAR_M)?);
         let corners = self.corners(&self.path(start, goal)?);
@@ -44,13 +44,13 @@ impl NavGrid {
         })
     }
 
-    /// Geodesic distance between two points, m: the length of [`NavGrid::route`].
+    /// Returns the geodesic distance between two points, m: the length of [`NavGrid::route`].
     pub fn geodesic_m(&self, from: Vec3, to: Vec3) -> Option<f64> {
         self.route(from, to).map(|route| route.length_m)
     }
 
-    /// The corners of a way pulled tight: the cheapest choice of its cells such that straight ways between them are free,
-    /// then each moved from cell to cell as long as that makes the way shorter.
+    /// Returns the corners of a shortened path: the cheapest choice of its cells such that straight lines between them are
+    /// free, then each moved from cell to cell as long as that shortens the path.
     pub fn corners(&self, path: &[NavCell]) -> Vec<NavCell> {
         let mut corners = self.choose(path);
         for _ in 0..MOST_ROUNDS {
@@ -62,19 +62,19 @@ impl NavGrid {
         corners
     }
 
-    /// The cheapest way from the first to the last cell of a path by straight pieces between its cells.
+    /// Returns the cheapest path from the first to the last cell by straight pieces between its cells.
     fn choose(&self, path: &[NavCell]) -> Vec<NavCell> {
         let Some(last) = path.len().checked_sub(1) else {
             return Vec::new();
         };
-        // What each cell of the path costs from the first one, and by which cell before it.
+        // The cost of each cell of the path from the first one, and the cell before it.
         let mut best = vec![(f64::INFINITY, 0_usize); path.len()];
         best[0].0 = 0.0;
         for k in 0..last {
             for next in k + 1..=last.min(k + LOOK_AHEAD) {
                 if let Some(crossing) = self.straight_between(path[k], path[next]) {
                     let cost = best[k].0 + self.cost_m(&crossing);
-                    // A hair's breadth does not make a corner.
+                    // A tiny gain does not make a corner.
                     if cost < best[next].0 - 1e-9 || best[next].0.is_infinite() {
                         best[next] = (cost, k);
                     }
@@ -87,7 +87,7 @@ impl NavGrid {
             here = if best[here].0.is_finite() {
                 best[here].1
             } else {
-                // Not a way of this grid: keep its cells as they are.
+                // Not a path of this grid: keep its cells as they are.
                 here - 1
             };
             chosen.push(path[here]);
@@ -96,7 +96,7 @@ impl NavGrid {
         chosen
     }
 
-    /// Moves each inner corner to the cell beside it that shortens the way most. Returns whether one moved.
+    /// Moves each inner corner to the cell beside it that shortens the path most. Returns whether one moved.
     fn tighten(&self, corners: &mut [NavCell]) -> bool {
         let mut moved = false;
         for k in 1..corners.len().saturating_sub(1) {

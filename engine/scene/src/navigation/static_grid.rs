@@ -13,7 +13,7 @@ use crate::space::Pose;
 use crate::state::State;
 use glam::{Affine3A, Vec3};
 
-/// The parts of a grid that no state changes; grids of one house and one walker share them.
+/// The parts of a grid that no state changes; grids of one house and one agent share them.
 #[derive(Debug)]
 pub(super) struct StaticGrid {
     pub(super) frame: GridFrame,
@@ -21,20 +21,19 @@ pub(super) struct StaticGrid {
     pub(super) fixed: Heightfield,
     /// The house's own floors and the ground outside, without furniture.
     pub(super) floors: Heightfield,
-    /// The height at which each storey ends, m, from the lowest; infinite for the last. Storeys with nothing on them are
-    /// left out.
+    /// The height at which each storey ends, m, from the lowest; infinite for the last. Empty storeys are left out.
     tops: Vec<(LevelId, f32)>,
-    /// The doors in the way of walkers, by joint.
+    /// The doors in the way of walking agents, by joint.
     pub(super) passages: Vec<DoorObstacle>,
     /// For each part, the position in `passages` of the door that moves it.
     pub(super) passage_of_part: IdVec<PartId, Option<u32>>,
 }
 
-/// A door in the way of walkers.
+/// A door in the way of walking agents.
 #[derive(Debug)]
 pub(super) struct DoorObstacle {
     pub(super) joint: JointId,
-    /// The columns that its leaf crosses when it is shut, in order.
+    /// The columns that its leaf crosses when closed, in order.
     pub(super) shut: Vec<(u32, HeightSpan)>,
 }
 
@@ -89,7 +88,7 @@ impl StaticGrid {
         self.tops.iter().any(|(id, _)| *id == level)
     }
 
-    /// Doors are joints of things that stand firm whose leaf, shut, covers ground that is walkable without it.
+    /// Finds doors: joints of fixed-base objects whose closed leaf covers ground that is walkable without it.
     fn find_passages(&mut self, house: &House, config: &NavConfig) {
         for (id, joint) in house.joints.iter_ids() {
             let stands = joint.parent.is_none_or(|parent| house.parts[parent].fixed);
@@ -119,30 +118,30 @@ impl StaticGrid {
         }
     }
 
-    /// Returns whether no fixed thing stands within the radius between a step and the walker's height above `y`.
+    /// Returns whether no fixed thing stands within the radius between a step and the agent's height above `y`.
     fn has_room(&self, column: usize, y: f32, config: &NavConfig) -> bool {
         around(&self.frame, column, config.radius_m)
             .all(|(beside, _)| !blocks(self.fixed.at(beside), y, config))
     }
 }
 
-/// Returns whether something stands between a step and the walker's height above `y`.
+/// Returns whether something stands between a step and the agent's height above `y`.
 pub(super) fn blocks(spans: &[HeightSpan], y: f32, config: &NavConfig) -> bool {
     let (low, high) = (y + config.step_m, y + config.height_m);
     spans.iter().any(|span| span.high > low && span.low < high)
 }
 
-/// The heights in a column on which the walker can stand upright, from below.
+/// Returns the heights in a column on which the agent can stand upright, from below.
 pub(super) fn standing(spans: &[HeightSpan], config: &NavConfig) -> impl Iterator<Item = f32> {
     spans.iter().enumerate().filter_map(|(k, span)| {
         let above = spans.get(k + 1).map_or(f32::INFINITY, |next| next.low);
-        // Something steep on a flat thing is a step too, as long as it is no higher than one.
+        // Something steep on a flat surface is a step too, if it is no higher than one.
         let fits = above - span.high >= config.height_m && span.flat >= span.high - config.step_m;
         fits.then_some(span.high)
     })
 }
 
-/// The columns some point of which lies nearer than `radius_m` to the middle of `column`, with their offsets.
+/// Returns the columns some point of which lies nearer than `radius_m` to the middle of `column`, with their offsets.
 pub(super) fn around(
     frame: &GridFrame,
     column: usize,
@@ -162,14 +161,14 @@ pub(super) fn around(
     })
 }
 
-/// Returns where the part that a joint hangs on stands at the start.
+/// Returns the initial pose of a joint's parent.
 fn start_of_parent(house: &House, joint: &Articulation) -> Pose {
     joint
         .parent
         .map_or(Pose::IDENTITY, |parent| house.parts[parent].world_from_part)
 }
 
-/// Returns where a door's leaf stands at a position of its joint.
+/// Returns the transform of a door's leaf at a position of its joint.
 pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Affine3A {
     let parent = joint
         .parent
@@ -177,7 +176,7 @@ pub(super) fn leaf_at(state: &State, joint: &Articulation, position: f32) -> Aff
     joint.world_from_child(&parent, position).to_affine()
 }
 
-/// The columns of all that never moves, and of floors alone.
+/// Returns the columns of all static geometry, and of floors alone.
 fn fixed_columns(house: &House, frame: &GridFrame) -> (Heightfield, Heightfield) {
     let (mut fixed, mut floors) = (Vec::new(), Vec::new());
     for placed in &house.geometry().placed {

@@ -1,10 +1,10 @@
-//! Straight ways over the grid, exactly.
+//! Exact straight lines over the grid.
 
 use super::config::DoorPolicy;
 use super::grid::{NavCell, NavGrid};
 use super::layers::{DOORWAY, EAST, NORTH, NOWHERE, SOUTH, WEST};
 
-/// A straight way between the middles of two cells.
+/// A straight line between the middles of two cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StraightPath {
     pub(super) to: NavCell,
@@ -16,15 +16,16 @@ pub(super) struct StraightPath {
     pub(super) length_m: f64,
 }
 
-/// The ground is followed in pieces of this length, m: over stairs one climbs the slope of their edges, not treads and
+/// Length of the pieces in which the ground is followed, m: over stairs one climbs the slope of their edges, not treads and
 /// risers.
 const STRIDE_M: f64 = 0.3;
-/// Or of so many columns, where that is longer, so that each piece of a distance field is one.
+/// The same in columns, where that is longer, so that each piece of a distance field is one.
 const STRIDE_COLUMNS: f64 = 3.7;
 
 impl NavGrid {
-    /// Walks straight from the middle of a cell to the middle of the column `dx` and `dz` columns away, over every cell that
-    /// the line touches; `None` where one is missing. A line through the corner of four cells needs both ways around it.
+    /// Walks straight from the middle of a cell to the middle of the column `dx` and `dz` columns away, over every cell
+    /// that the line touches; `None` where one is missing. A line through the corner of four cells needs both paths around
+    /// it.
     ///
     /// # Source
     /// The integer form of J. Amanatides and A. Woo, Eurographics 1987, 3: which border comes next is decided exactly.
@@ -39,7 +40,7 @@ impl NavGrid {
         let along_x = if dx > 0 { EAST } else { WEST };
         let along_z = if dz > 0 { SOUTH } else { NORTH };
         let (steps_x, steps_z) = (dx.abs(), dz.abs());
-        // By how much the next border across x comes before the next one across z, times both step counts, twice.
+        // Lead of the next border across x over the next one across z, times both step counts, twice.
         let mut ahead = steps_x - steps_z;
         let (mut left_x, mut left_z) = (steps_x, steps_z);
         let (mut here, mut door_crossings, mut level) = (from.0, 0, true);
@@ -81,7 +82,7 @@ impl NavGrid {
         })
     }
 
-    /// The straight way between two cells, if it is free.
+    /// Returns the straight line between two cells, if it is free.
     pub(super) fn straight_between(&self, from: NavCell, to: NavCell) -> Option<StraightPath> {
         if !self.is_walkable(from) || !self.is_walkable(to) {
             return None;
@@ -91,7 +92,7 @@ impl NavGrid {
             .filter(|crossing| crossing.to == to)
     }
 
-    /// Returns how many columns along x and z `to` is away from `from`.
+    /// Returns the offset of `to` from `from`, in columns along x and z.
     pub(super) fn offset(&self, from: NavCell, to: NavCell) -> (isize, isize) {
         let width = self.ground.frame.width;
         let place = |cell: NavCell| {
@@ -102,26 +103,26 @@ impl NavGrid {
         (i - x, j - z)
     }
 
-    /// The length of a straight line on the plan, m.
+    /// Returns the length of a straight line on the plan, m.
     pub(super) fn plan_m(&self, dx: isize, dz: isize) -> f64 {
         let squared = dx * dx + dz * dz;
         f64::from(self.config.cell_m) * (squared as f64).sqrt()
     }
 
-    /// Returns whether the straight way between the middles of two cells stays on walkable cells without a step too high: decided
-    /// exactly, for every cell that the line touches.
+    /// Returns whether the straight line between the middles of two cells stays on walkable cells without a step too high:
+    /// decided exactly, for every cell that the line touches.
     pub fn is_straight_free(&self, from: NavCell, to: NavCell) -> bool {
         self.straight_between(from, to).is_some()
     }
 
-    /// Returns what a straight way costs: its length over the ground, and half a door's price at each threshold, m.
+    /// Returns the cost of a straight line: its length over the ground, and half a door's price at each threshold, m.
     pub(super) fn cost_m(&self, crossing: &StraightPath) -> f64 {
         let price = 0.5 * f64::from(self.config.door_price_m);
         crossing.length_m + price * f64::from(crossing.door_crossings)
     }
 }
 
-/// The ground along a straight way, in strides.
+/// The ground along a straight line, in strides.
 struct ElevationProfile {
     plan_m: f64,
     strides: f64,
@@ -141,7 +142,7 @@ impl ElevationProfile {
         }
     }
 
-    /// The ground is `rise_m` above the start after a share of the way.
+    /// Extends the profile to a share of the path where the ground is `rise_m` above the start.
     fn reach(&mut self, share: f64, rise_m: f64) {
         let [begun, low] = self.last;
         if share * self.strides >= (begun * self.strides).floor() + 1.0 || share >= 1.0 {

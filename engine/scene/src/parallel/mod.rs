@@ -1,4 +1,4 @@
-//! Threads: how many, and the only way the engines use them.
+//! Thread pools: their size, and the parallel loops of all engines.
 //!
 //! A pool belongs to one process id, because threads do not survive `fork()`. Results never depend on the number of
 //! threads: work is cut into pieces of constant size, and pieces are joined in order.
@@ -18,7 +18,7 @@ impl Threads {
     /// One thread: the caller's.
     pub const ONE: Self = Self(1);
 
-    /// The most that are ever started.
+    /// The largest number of threads.
     pub const MOST: usize = 1024;
 
     /// Exactly `thread_count` threads, at least one and at most [`Threads::MOST`].
@@ -26,10 +26,10 @@ impl Threads {
         Self(count.clamp(1, Self::MOST))
     }
 
-    /// As [`Threads::resolve`], for numbers that people give: what makes no sense is refused.
+    /// As [`Threads::resolve`], for numbers from users: invalid ones are refused.
     ///
     /// # Errors
-    /// [`SceneError::Threads`] for none or too many, asked for or in the variable, and for a variable that is no number.
+    /// [`SceneError::Threads`] for zero or too many, requested or in the variable, and for a variable that is no number.
     pub fn requested(requested: Option<usize>) -> Result<Self, SceneError> {
         match requested {
             Some(count) if (1..=Self::MOST).contains(&count) => Ok(Self(count)),
@@ -40,8 +40,8 @@ impl Threads {
         }
     }
 
-    /// `requested` if given, else all [`available_cores`], but no more than the variable `DWELL_THREADS` allows. A variable
-    /// that makes no sense counts as none.
+    /// `requested` if given, else all [`available_cores`], but no more than the variable `DWELL_THREADS` allows. An invalid
+    /// variable is ignored.
     pub fn resolve(requested: Option<usize>) -> Self {
         Self::exactly(
             requested
@@ -54,12 +54,12 @@ impl Threads {
         self.0
     }
 
-    /// The pool, where there is more than one thread to work.
+    /// Returns the pool, for more than one thread.
     fn pool(self) -> Option<std::sync::Arc<rayon::ThreadPool>> {
         (self.0 > 1).then(|| pool::pool(self.0)).flatten()
     }
 
-    /// Calls `work` once for each item, with the item's position. Stops between items: see [`interrupt`].
+    /// Calls `work` once for each item, with the item's position. Can be cancelled between items: see [`interrupt`].
     pub fn for_each<T: Send>(self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         use rayon::prelude::*;
         if items.len() > 1
@@ -81,7 +81,7 @@ impl Threads {
         }
     }
 
-    /// Does both, at the same time where there are threads for it.
+    /// Runs both, at the same time where there are threads for it.
     pub fn both<A: Send, B: Send>(
         self,
         first: impl FnOnce() -> A + Send,
@@ -100,7 +100,7 @@ impl Threads {
         (first(), second())
     }
 
-    /// The results of `work(0)` to `work(thread_count - 1)`, in order. Stops between them: see [`interrupt`].
+    /// Returns the results of `work(0)` to `work(thread_count - 1)`, in order. Can be cancelled between them: see [`interrupt`].
     pub fn map<R: Send>(self, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
         use rayon::prelude::*;
         if count > 1

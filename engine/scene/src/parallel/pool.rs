@@ -1,11 +1,11 @@
-//! Pools of threads, and waiting for them.
+//! Thread pools, and waiting for them.
 
 use crate::interrupt;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
-/// The pool of `count` threads of this process, started when it is first asked for.
+/// Returns the pool of `count` threads of this process, started at first use.
 pub(super) fn pool(count: usize) -> Option<Arc<rayon::ThreadPool>> {
     static POOLS: Mutex<BTreeMap<(u32, usize), Arc<rayon::ThreadPool>>> =
         Mutex::new(BTreeMap::new());
@@ -34,7 +34,7 @@ pub(super) fn pool(count: usize) -> Option<Arc<rayon::ThreadPool>> {
     Some(pool)
 }
 
-/// Does `work` on the pool. A thread whose call can be stopped asks while it waits.
+/// Runs `work` on the pool. A thread whose call can be cancelled polls while it waits.
 pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) -> R {
     if !interrupt::asks() {
         return pool.install(work);
@@ -42,7 +42,7 @@ pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> 
     let (mut outcome, done) = (None, OneShotEvent::default());
     pool.in_place_scope(|scope| {
         scope.spawn(|_| {
-            // Goes on unwinding below, on the thread that waits.
+            // Unwinding is resumed below, on the waiting thread.
             outcome = Some(catch_unwind(AssertUnwindSafe(work)));
             done.raise();
         });
@@ -57,7 +57,7 @@ pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> 
     }
 }
 
-/// Raised once.
+/// An event that is set once.
 #[derive(Default)]
 struct OneShotEvent {
     raised: Mutex<bool>,
@@ -70,7 +70,7 @@ impl OneShotEvent {
         self.changed.notify_one();
     }
 
-    /// Waits for some time; whether it is raised.
+    /// Waits for some time; returns whether it is set.
     fn wait(&self) -> bool {
         let raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
         let waited = self

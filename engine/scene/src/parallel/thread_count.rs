@@ -4,11 +4,11 @@ use super::Threads;
 use crate::error::SceneError;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The variable that says how many threads there may be at most.
+/// The environment variable with the largest number of threads.
 const VARIABLE: &str = "DWELL_THREADS";
 
-/// Cores that the affinity mask and the cgroup's quota give this process, at least one; on Linux a quota of 2.5 cores
-/// counts as 2. Counted once in a process, and anew in one that was forked.
+/// Returns the cores that the affinity mask and the cgroup's quota give this process, at least one; on Linux a quota of 2.5
+/// cores counts as 2. Counted once in a process, and again in a forked one.
 pub fn available_cores() -> usize {
     // The process's number above, the count below: reading the quota takes longer than a small picture.
     static COUNTED: AtomicU64 = AtomicU64::new(0);
@@ -22,7 +22,7 @@ pub fn available_cores() -> usize {
     cores
 }
 
-/// Hardware threads of the machine, whoever may use them; `None` where nobody says.
+/// Returns the hardware threads of the machine, whoever may use them; `None` where unknown.
 pub fn machine_threads() -> Option<usize> {
     let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let count = text
@@ -32,10 +32,10 @@ pub fn machine_threads() -> Option<usize> {
     (count > 0).then_some(count)
 }
 
-/// Returns what `DWELL_THREADS` says; `None` where it is not set.
+/// Returns the value of `DWELL_THREADS`; `None` where it is not set.
 ///
 /// # Errors
-/// [`SceneError::Threads`] for what is no number, or out of range.
+/// [`SceneError::Threads`] for a value that is no number, or out of range.
 pub fn variable() -> Result<Option<usize>, SceneError> {
     let Some(text) = std::env::var_os(VARIABLE) else {
         return Ok(None);
@@ -48,7 +48,7 @@ pub fn variable() -> Result<Option<usize>, SceneError> {
         .ok_or_else(|| refuse(VARIABLE, format!("{:?}", text.to_string_lossy())))
 }
 
-/// The error of a number of threads that makes no sense.
+/// The error of an invalid number of threads.
 pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
     SceneError::Threads {
         at,
@@ -57,7 +57,7 @@ pub(super) fn refuse(at: &'static str, found: String) -> SceneError {
     }
 }
 
-/// Threads where nobody asks for a number: all cores, or fewer where the variable says so.
+/// The number of threads when none is requested: all cores, or fewer by the variable.
 pub(super) fn default_thread_count(variable: Option<usize>) -> usize {
     variable.map_or(available_cores(), |most| most.min(available_cores()))
 }

@@ -1,4 +1,4 @@
-//! Agents' bodies as cameras see them: capsules of three pieces, each a mesh of unit size that is stretched to the agent.
+//! Meshes of agents' bodies for cameras: capsules of three pieces, each a mesh of unit size that is stretched to the agent.
 
 use crate::bvh::{RayMask, TriangleBvh, TriangleTag};
 use crate::mesh::Mesh;
@@ -24,7 +24,7 @@ static SHAPES: LazyLock<AgentMeshes> = LazyLock::new(|| {
     let ball: Vec<(f32, f32)> = (0..=ROWS)
         .map(|k| {
             let (sine, cosine) = crate::math::sin_cos(PI * f32::from(k) / f32::from(ROWS));
-            // The sine of what an f32 holds of pi is below 0.
+            // The sine of pi as an f32 is below 0.
             (if k == ROWS { 0.0 } else { sine }, -cosine)
         })
         .collect();
@@ -87,7 +87,7 @@ pub fn body_trees() -> &'static [Arc<TriangleBvh>; BODY_PIECES] {
     &SHAPES.trees
 }
 
-/// Returns where an agent's pieces stand: a capsule of its radius from its feet to its height, as it is now.
+/// Returns the transforms of an agent's pieces: a capsule of its radius from its feet to its present height.
 pub(super) fn places(agent: &AgentState) -> [Affine3A; BODY_PIECES] {
     let radius = agent.body.radius_m;
     let middle = (agent.height_m() - 2.0 * radius).max(0.0);
@@ -110,7 +110,7 @@ mod tests {
     use crate::state::AgentBody;
     use crate::{AgentState, House, ShoeboxMaterials, State};
 
-    /// Sideways the body ends at its radius, above at its height; only eyes for bodies meet it.
+    /// The body ends sideways at its radius, above at its height; only rays with the body mask hit it.
     #[test]
     fn a_body_is_a_capsule_for_rays_that_look_for_bodies() {
         let house =

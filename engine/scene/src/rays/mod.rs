@@ -1,4 +1,4 @@
-//! Rays through a house as it stands in one world: the one way in which eyes, ears and hands find surfaces.
+//! Ray queries of a house in the state of one world: the one way in which cameras, sound and hands find surfaces.
 
 mod agent_meshes;
 
@@ -11,22 +11,22 @@ use crate::state::State;
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
 use std::sync::Arc;
 
-/// Rays in a fan: they start at one point, as those of a pinhole camera do.
+/// Rays in a fan: they share an origin, as those of a pinhole camera do.
 pub const FAN: usize = 16;
 
-/// The surfaces of a house where its parts stand in one world.
+/// The surfaces of a house in the state of one world.
 ///
-/// Static geometry is shared by all worlds over the house; a scene of its own costs a few hundred bytes a moving part.
+/// Static geometry is shared by all worlds over the house; a scene costs a few hundred bytes a moving part.
 #[derive(Clone, Debug)]
 pub struct RayScene {
     house: Arc<House>,
     moving: InstanceSet,
-    /// For each moving part, where it stands; then the pieces of agents' bodies. Shape (instance,).
+    /// Transforms of each moving part, then of the pieces of agents' bodies. Shape (instance,).
     world_from_mesh: Vec<Affine3A>,
 }
 
 impl RayScene {
-    /// The house as it stands at the start.
+    /// The house in its initial state.
     pub fn new(house: Arc<House>) -> Self {
         let geometry = house.geometry();
         let start: Vec<Affine3A> = geometry
@@ -41,8 +41,8 @@ impl RayScene {
         }
     }
 
-    /// Moves the parts and the agents' bodies to where `state` has them. Allocates nothing after the first call, unless
-    /// there are other agents than before.
+    /// Moves the parts and the agents' bodies to their poses in `state`. Allocates nothing after the first call, unless the
+    /// number of agents changed.
     pub fn update(&mut self, state: &State) {
         let parts = self.house.geometry().movable.len();
         if self.world_from_mesh.len() != parts + state.agents.len() * BODY_PIECES {
@@ -63,7 +63,7 @@ impl RayScene {
         self.moving.set_poses(&self.world_from_mesh);
     }
 
-    /// Makes room for other agents than there were.
+    /// Adapts to another number of agents.
     fn admit(&mut self, state: &State) {
         let house = &self.house;
         let instances = parts(house).chain(state.agents.ids().flat_map(|id| {
@@ -80,7 +80,7 @@ impl RayScene {
             .resize(self.moving.len(), Affine3A::IDENTITY);
     }
 
-    /// The trees that rays walk.
+    /// Returns the trees of the scene.
     pub fn bvh(&self) -> SceneBvh<'_> {
         SceneBvh {
             fixed: &self.house.geometry().static_bvh,
@@ -88,7 +88,7 @@ impl RayScene {
         }
     }
 
-    /// Returns where an instance's mesh stands, if there are that many.
+    /// Returns the transform of an instance's mesh, if there are that many.
     pub fn world_from_mesh(&self, instance: usize) -> Option<&Affine3A> {
         self.world_from_mesh.get(instance)
     }
@@ -98,24 +98,24 @@ impl RayScene {
         &self.house
     }
 
-    /// The nearest surface that `mask` meets on the ray. Surfaces that coincide within 0.1 mm count as one: the lower id.
+    /// Returns the nearest surface on the ray whose mask meets `mask`. Surfaces that coincide within 0.1 mm count as one: the lower id.
     pub fn closest(&self, ray: &Ray, mask: RayMask) -> Option<Hit> {
         self.bvh().closest(ray, mask)
     }
 
-    /// As [`Self::closest`], as if the thing called `hidden` were not there.
+    /// As [`Self::closest`], ignoring the entity `hidden`.
     pub fn closest_excluding(&self, ray: &Ray, mask: RayMask, hidden: EntityId) -> Option<Hit> {
         self.bvh().closest_excluding(ray, mask, hidden.0)
     }
 
-    /// Returns whether anything that `mask` meets stands on the ray.
+    /// Returns whether a surface whose mask meets `mask` lies on the ray.
     pub fn occluded(&self, ray: &Ray, mask: RayMask) -> bool {
         self.bvh().occluded(ray, mask)
     }
 
-    /// As [`Self::closest`] for rays that start at one point, faster when they go nearly the same way.
+    /// As [`Self::closest`] for rays with a common origin, faster when their directions are similar.
     ///
-    /// `directions`: unit length, one row for each of x, y, z. Shape (3, 16). A zero direction meets nothing.
+    /// `directions`: unit length, one row for each of x, y, z. Shape (3, 16). A zero direction hits nothing.
     pub fn closest_from_origin(
         &self,
         origin: Vec3,
@@ -136,7 +136,7 @@ impl RayScene {
         std::array::from_fn(|k| bvh.packet_hit(&rays, &hits, k))
     }
 
-    /// As [`Self::closest_excluding`] for all rays of a packet, much faster when they go nearly the same way.
+    /// As [`Self::closest_excluding`] for all rays of a packet, much faster when their directions are similar.
     ///
     /// `hidden`: [`EntityId::VOID`] hides nothing.
     pub fn closest_packet<const N: usize>(
@@ -149,7 +149,7 @@ impl RayScene {
         self.bvh().closest_packet(rays, mask, Some(hidden.0), hits);
     }
 
-    /// All about one ray of a packet, as [`Self::closest_excluding`] would give it.
+    /// Returns the full hit of one ray of a packet, as [`Self::closest_excluding`] would.
     pub fn packet_hit<const N: usize>(
         &self,
         rays: &RayPacket<N>,
@@ -159,11 +159,11 @@ impl RayScene {
         self.bvh().packet_hit(rays, hits, k)
     }
 
-    /// The part of a moving instance.
+    /// Returns the part of a moving instance.
     ///
     /// # Panics
-    /// For a piece of an agent's body, which only rays with [`RayMask::BODY`] meet; as do [`Self::surface`], [`Self::uv`] and
-    /// [`Self::shading_normal`].
+    /// For a piece of an agent's body, which only rays with [`RayMask::BODY`] hit; as do [`Self::surface`], [`Self::uv`]
+    /// and [`Self::shading_normal`].
     pub fn part_of_instance(&self, instance: u32) -> PartId {
         self.house.geometry().movable[instance as usize]
     }
@@ -184,7 +184,7 @@ impl RayScene {
         }
     }
 
-    /// Returns what the hit lies on.
+    /// Returns the surface of a hit.
     pub fn surface(&self, hit: &Hit) -> SurfaceHit {
         let (placed, triangle, world_from_mesh) = self.placed(hit);
         let mesh = &self.house.meshes[placed.mesh];
@@ -233,7 +233,7 @@ impl RayScene {
     }
 }
 
-/// The parts that move, where they stand at the start.
+/// Returns the parts that move, at their initial poses.
 fn parts(house: &House) -> impl Iterator<Item = Instance> + '_ {
     let geometry = house.geometry();
     geometry.movable.iter().map(|part| {
@@ -248,7 +248,7 @@ fn parts(house: &House) -> impl Iterator<Item = Instance> + '_ {
 }
 
 impl House {
-    /// The material of a slot of something placed in the house.
+    /// Returns the material of a slot of a placed mesh.
     pub fn slot_material(&self, owner: SurfaceOwner, slot: u16) -> MaterialId {
         match owner {
             SurfaceOwner::Structure(id) => self.structure[id].materials[usize::from(slot)],
@@ -256,7 +256,7 @@ impl House {
         }
     }
 
-    /// The moving instance of a part; `None` for a fixed one.
+    /// Returns the moving instance of a part; `None` for a fixed one.
     pub fn instance_of_part(&self, part: PartId) -> Option<u32> {
         self.geometry()
             .movable

@@ -5,17 +5,17 @@ use crate::math;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
-/// Steps of the sum over the sky that sets its brightness: of elevation and of azimuth.
+/// Steps of the sum over the sky that sets its luminance: of elevation and of azimuth.
 const STEPS: [u32; 2] = [24, 48];
-/// The least cosine from overhead: at the horizon the formula divides by it.
+/// The least cosine from the zenith: at the horizon the formula divides by it.
 const HORIZON: f32 = 0.02;
 
-/// A sky prepared for asking in many directions.
+/// A sky prepared for evaluation in many directions.
 #[derive(Clone, Copy, Debug)]
 pub struct SkyDome {
     to_sun: Vec3,
     spread: SkyModel,
-    /// cd/m² of what the formula calls 1.
+    /// cd/m² of the formula's unit.
     scale_cd_m2: f32,
 }
 
@@ -43,7 +43,7 @@ impl SkyDome {
                 }
             }
         };
-        // After sunset the sky stays brightest where the sun went down.
+        // After sunset the sky stays brightest above the sunset point.
         let level = Vec3::new(sky.to_sun.x, sky.to_sun.y.max(0.0), sky.to_sun.z);
         let mut dome = Self {
             to_sun: level.normalize_or(Vec3::Y),
@@ -55,7 +55,7 @@ impl SkyDome {
         dome
     }
 
-    /// Luminance in a direction of unit length, cd/m² in linear sRGB; 0 below level.
+    /// Returns the luminance in a direction of unit length, cd/m² in linear sRGB; 0 below the horizon.
     ///
     /// # Source
     /// Clear: A. J. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model for Daylight", SIGGRAPH 1999, equation 4
@@ -74,8 +74,8 @@ impl SkyDome {
         }
     }
 
-    /// The numbers of [`Self::luminance`], for processors that compute it without this crate: where the sun stands, and 1 for a
-    /// clear sky; chromaticity overhead and scale; then coefficients A to E for Y, x and y.
+    /// Returns the coefficients of [`Self::luminance`], for processors that compute it without this crate: position of the
+    /// sun, and 1 for a clear sky; zenith chromaticity and scale; then coefficients A to E for Y, x and y.
     pub fn numbers(&self) -> [[f32; 4]; 6] {
         let [x, y, z] = self.to_sun.to_array();
         let (clear, zenith, perez) = match &self.spread {
@@ -91,7 +91,7 @@ impl SkyDome {
         numbers
     }
 
-    /// Perez' function in a direction over that overhead, equation 3.
+    /// Perez' function in a direction over that at the zenith, equation 3.
     fn perez(&self, [a, b, c, d, e]: &[f32; 5], direction: Vec3) -> f32 {
         let part = |cosine: f32, to_sun: f32| {
             let angle = math::acos(to_sun);
@@ -101,7 +101,7 @@ impl SkyDome {
         part(direction.y, direction.dot(self.to_sun)) / part(1.0, self.to_sun.y)
     }
 
-    /// Illuminance on level ground, lx: the sum of luminance times sine of elevation.
+    /// Illuminance on a horizontal surface, lx: the sum of luminance times sine of elevation.
     fn level_lx(&self) -> f32 {
         let [rows, columns] = STEPS;
         let mut sum = 0.0;
@@ -148,7 +148,7 @@ fn coefficients(turbidity: f32) -> [[f32; 5]; 3] {
     rows.map(|row| row.map(|[slope, start]| slope * turbidity + start))
 }
 
-/// Chromaticity overhead with the sun so far from there, rad: Preetham et al. 1999, appendix A.2.
+/// Zenith chromaticity at a zenith angle of the sun, rad: Preetham et al. 1999, appendix A.2.
 fn zenith_chromaticity(turbidity: f32, from_zenith: f32) -> Vec2 {
     let x = [
         [0.001_66, -0.003_75, 0.002_09, 0.0],
@@ -169,7 +169,7 @@ fn zenith_chromaticity(turbidity: f32, from_zenith: f32) -> Vec2 {
     Vec2::new(of(x), of(y))
 }
 
-/// Linear sRGB of a chromaticity and luminance; colours beyond sRGB lose saturation, not luminance.
+/// Returns linear sRGB of a chromaticity and luminance; colours outside sRGB lose saturation, not luminance.
 ///
 /// # Source
 /// IEC 61966-2-1: the matrix from XYZ.
@@ -208,7 +208,7 @@ mod tests {
         rgb.dot(Vec3::new(0.2126, 0.7152, 0.0722))
     }
 
-    /// Level illuminance of the CIE's overcast sky is 7 pi / 9 times the luminance overhead.
+    /// Horizontal illuminance of the CIE's overcast sky is 7 pi / 9 times the zenith luminance.
     #[test]
     fn an_overcast_sky_sums_to_its_closed_form() {
         let sky = sky(12.0, Weather::Overcast);

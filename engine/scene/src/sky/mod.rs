@@ -1,4 +1,4 @@
-//! The open air: where the sun stands, and how much light it and the sky give.
+//! The sky: position of the sun, and daylight from sun and sky.
 
 mod dome;
 mod sun;
@@ -23,7 +23,7 @@ pub enum Weather {
         /// Turbidity of the air: 2 (very clear) to 10 (haze).
         turbidity: f32,
     },
-    /// Clouds all over: no sun, grey, three times as bright overhead as at the horizon.
+    /// Overcast: no sun, grey, three times as bright at the zenith as at the horizon.
     Overcast,
 }
 
@@ -32,22 +32,22 @@ impl Weather {
     pub const FINE: Self = Self::Clear { turbidity: 2.5 };
 }
 
-/// Light of sun and sky at one moment, the same all over a house.
+/// Daylight from sun and sky at one moment, the same for all of a house.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sky {
-    /// Level direction to the north in world space, unit length.
+    /// Horizontal direction to the north in world space, unit length.
     pub north: Vec3,
-    /// Direction to the middle of the sun in world space, unit length; below level at night.
+    /// Direction to the middle of the sun in world space, unit length; below the horizon at night.
     pub to_sun: Vec3,
-    /// Illuminance by the sun alone on a surface across its rays, lx, in linear sRGB; 0 at night and behind clouds.
+    /// Illuminance by the sun alone on a surface normal to its rays, lx, in linear sRGB; 0 at night and behind clouds.
     pub sun_lx: [f32; 3],
-    /// Illuminance by the sky alone on open level ground, lx.
+    /// Horizontal illuminance by the sky alone in the open, lx.
     pub diffuse_lx: f32,
     /// The distribution of light over the sky.
     pub weather: Weather,
 }
 
-/// A moment at a place: what a [`Sky`] follows from.
+/// The time and place that determine a [`Sky`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Daytime {
@@ -77,13 +77,13 @@ impl Default for Daytime {
 }
 
 impl Sky {
-    /// Sun and sky of a moment.
+    /// Returns sun and sky of a moment.
     ///
     /// # Errors
     /// [`SceneError::Range`] for a number out of the range that its field names.
     ///
     /// # Source
-    /// Place of the sun: see [`Daytime`]'s fields and J. W. Spencer, "Fourier series representation of the position of the
+    /// Position of the sun: see [`Daytime`]'s fields and J. W. Spencer, "Fourier series representation of the position of the
     /// sun", Search 2 (5), 172 (1971). Light of the sun: A. J. Preetham, P. Shirley, B. Smits, "A Practical Analytic Model
     /// for Daylight", SIGGRAPH 1999, appendix A.1, of the illuminance outside the air that the IES recommends. Light of the
     /// sky: IES Calculation Procedures Committee, "Recommended Practice for the Calculation of Daylight Availability",
@@ -119,7 +119,7 @@ impl Sky {
         })
     }
 
-    /// Illuminance by sun and sky on open level ground, lx, in linear sRGB without the sky's colour.
+    /// Returns the horizontal illuminance by sun and sky in the open, lx, in linear sRGB without the sky's colour.
     pub fn level_lx(&self) -> Vec3 {
         Vec3::splat(self.diffuse_lx) + Vec3::from_array(self.sun_lx) * self.to_sun.y.max(0.0)
     }
@@ -127,7 +127,7 @@ impl Sky {
     /// Checks all numbers.
     ///
     /// # Errors
-    /// [`SceneError::Range`] names the field, what was found, and what is allowed.
+    /// [`SceneError::Range`] names the field, the value found, and the allowed ones.
     pub(crate) fn check(&self) -> Result<(), SceneError> {
         let unit = |v: Vec3| (v.length() - 1.0).abs() < 1e-3;
         range(

@@ -4,11 +4,11 @@ use super::Weather;
 use crate::math;
 use std::f32::consts::{PI, TAU};
 
-/// Illuminance by the sun outside the air at its mean distance, lx (IES 1984).
+/// Solar illuminance outside the atmosphere at mean distance, lx (IES 1984).
 const OUTSIDE_AIR_LX: f32 = 127_500.0;
-/// Wavelengths that stand for red, green and blue, µm.
+/// Wavelengths that represent red, green and blue, µm.
 const WAVELENGTHS_UM: [f32; 3] = [0.61, 0.55, 0.465];
-/// The sun this far below level gives no light to the sky any more, degrees.
+/// Altitude of the sun below which it adds no light to the sky, degrees.
 const NIGHT_DEG: f32 = -18.0;
 
 /// Declination of the sun on a day of the year, 1 to 366.
@@ -26,12 +26,12 @@ pub(super) fn declination_rad(day: f32) -> f32 {
         + 0.001_48 * s3
 }
 
-/// Returns how far the sun has turned since noon.
+/// Returns the hour angle of the sun.
 pub(super) fn hour_angle_rad(hour_h: f32) -> f32 {
     (hour_h - 12.0) * (PI / 12.0)
 }
 
-/// Direction to the sun: east, up and north.
+/// Returns the direction to the sun: east, up and north.
 ///
 /// # Source
 /// Spherical astronomy: the equatorial direction turned by the latitude; e.g. J. A. Duffie and W. A. Beckman, *Solar
@@ -45,7 +45,7 @@ pub(super) fn east_up_north(declination: f32, latitude: f32, hour_angle: f32) ->
     [-cd * sh, sl * sd + cl * cd * ch, sd * cl - cd * sl * ch]
 }
 
-/// Illuminance by the sun across its rays at an altitude, lx, for red, green and blue.
+/// Illuminance by the sun normal to its rays at an altitude, lx, for red, green and blue.
 ///
 /// # Source
 /// Preetham, Shirley and Smits 1999, appendix A.1: relative air mass, Rayleigh scattering, Ångström's aerosols; distance
@@ -68,11 +68,11 @@ pub(super) fn direct_lx(altitude_rad: f32, day: f32, weather: Weather) -> [f32; 
     })
 }
 
-/// Illuminance by the sky on open level ground, lx.
+/// Horizontal illuminance by the sky in the open, lx.
 ///
 /// # Source
 /// IES 1984, equation of the horizontal illuminance by the sky, A + B sin^C (clear: 0.8, 15.5, 0.5; cloudy: 0.3, 21, 1).
-/// Below level as [`twilight`] falls.
+/// Below the horizon as [`twilight`] falls.
 pub(super) fn diffuse_lx(altitude_rad: f32, weather: Weather) -> f32 {
     let (a, b, c) = match weather {
         Weather::Clear { .. } => (800.0, 15_500.0, 0.5),
@@ -85,7 +85,7 @@ pub(super) fn diffuse_lx(altitude_rad: f32, weather: Weather) -> f32 {
     }
 }
 
-/// Decimal logarithm of the level illuminance in lx with the sun 0 to 18 degrees below level; lower down as at 18.
+/// Decimal logarithm of the horizontal illuminance in lx with the sun 0 to 18 degrees below the horizon; lower down as at 18.
 ///
 /// # Source
 /// P. M. Janiczek, J. A. De Young, "Computer programs for sun and moon illuminance", USNO Circular 171 (1987), table of

@@ -1,4 +1,4 @@
-//! Parameters have addresses: `object/12/mass_kg`, `material/carpet/absorption/1000`, `pair/oak~steel/friction`.
+//! Addresses of parameters: `object/12/mass_kg`, `material/carpet/absorption/1000`, `pair/oak~steel/friction`.
 
 use crate::error::SceneError;
 use crate::ids::{JointId, PartId};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// The most words of an address, and of a law's: what a law acts on may have slashes in its name.
+/// Most words of an address, and of a law's: a law's target may have slashes in its name.
 const MOST_WORDS: usize = 5;
 const MOST_WORDS_OF_A_LAW: usize = 32;
 
@@ -61,7 +61,7 @@ impl Address {
     }
 }
 
-/// A number in as few digits as say it: many bounds come from f32s.
+/// Formats a number with as few digits as possible: many bounds come from f32s.
 fn plain(number: f64) -> String {
     let short = number as f32;
     if f64::from(short) == number {

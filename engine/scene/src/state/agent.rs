@@ -1,4 +1,4 @@
-//! Agents as the engines see them.
+//! State of agents.
 
 use super::AgentBody;
 use crate::ids::ObjectId;
@@ -22,7 +22,7 @@ pub struct BaseState {
     pub kept_back: [f32; 3],
 }
 
-/// One agent's changing half.
+/// The state of one agent.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AgentState {
     /// Its body.
@@ -43,14 +43,14 @@ pub struct AgentState {
     pub holding: Option<ObjectId>,
     /// Present reduction of its body's height, m: more than 0 while it crouches.
     pub crouched_by_m: f32,
-    /// The rate of its turn to the left as its gyro reads it, rad/s: the mean over the last control step.
+    /// Yaw rate as its gyro reads it, rad/s, positive to the left: the mean over the last control step.
     pub gyro_rad_s: f32,
-    /// Its wheels, if it has some.
+    /// The state of its base, if it has one.
     pub base: BaseState,
 }
 
 impl AgentState {
-    /// An agent that stands at `position` and faces `yaw_rad`.
+    /// An agent at `position` with heading `yaw_rad`.
     pub fn new(body: AgentBody, position: Vec3, yaw_rad: f32) -> Self {
         Self {
             body,
@@ -67,17 +67,17 @@ impl AgentState {
         }
     }
 
-    /// Its height now, m.
+    /// Returns its present height, m.
     pub fn height_m(&self) -> f32 {
         self.body.height_m - self.crouched_by_m
     }
 
-    /// Height of eyes and ears above the feet now, m.
+    /// Returns the present height of eyes and ears above the feet, m.
     pub fn eye_height_m(&self) -> f32 {
         (self.body.eye_height_m - self.crouched_by_m).max(0.0)
     }
 
-    /// Returns where its eyes are and look: a camera at this pose sees what it sees.
+    /// Returns the pose of its eyes: a camera at this pose has its view.
     pub fn world_from_eye(&self) -> Pose {
         Pose::new(
             self.eye_position(),
@@ -85,12 +85,12 @@ impl AgentState {
         )
     }
 
-    /// Its head as its ears have it: at the eyes' height, turned with the body, upright.
+    /// Returns the pose of its head for its ears: at the eyes' height, turned with the body, upright.
     pub fn world_from_head(&self) -> Pose {
         Pose::from_position_yaw(self.eye_position(), self.yaw_rad)
     }
 
-    /// Returns where its eyes are, m.
+    /// Returns the position of its eyes, m.
     pub fn eye_position(&self) -> Vec3 {
         self.position + Vec3::Y * self.eye_height_m()
     }

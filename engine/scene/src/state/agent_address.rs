@@ -18,7 +18,7 @@ impl State {
         })
     }
 
-    /// Returns how an agent gets about in this world: its body's numbers with overrides.
+    /// Returns an agent's locomotion in this world: its body's numbers with overrides.
     ///
     /// # Panics
     /// For an agent that does not exist.
@@ -30,12 +30,12 @@ impl State {
         nominal.with(|field| self.lookup(format!("agent/{}/base/{field}", agent.index())))
     }
 
-    /// The overridden horizontal field of view of the cameras at an agent's eyes, degrees; `None`: each has its own.
+    /// Returns the overridden horizontal field of view of the cameras at an agent's eyes, degrees; `None`: each has its own.
     pub fn overridden_fov_deg(&self, agent: AgentId) -> Option<f32> {
         self.lookup(format!("agent/{}/camera/fov_deg", agent.index()))
     }
 
-    /// The horizontal field of view of a camera at an agent's eyes that states none of its own, degrees.
+    /// Returns the horizontal field of view of a camera at an agent's eyes that states none of its own, degrees.
     ///
     /// # Panics
     /// For an agent that does not exist.
@@ -44,7 +44,7 @@ impl State {
         self.overridden_fov_deg(agent).unwrap_or(own)
     }
 
-    /// Returns what stands at `agent/N/WORDS`.
+    /// Returns the parameter at `agent/N/WORDS`.
     pub(super) fn agent_parameter(
         &self,
         address: &Address,

@@ -1,5 +1,5 @@
-//! The body of an agent: fixed while nobody changes it, and every number of it can be set at run time under
-//! `agent/N/body/FIELD`. It stands in the agent's state and nowhere else.
+//! The body of an agent. It is constant unless changed; every number of it can be set at run time under
+//! `agent/N/body/FIELD`. It is stored in the agent's state only.
 
 use super::numeric_field::{NumericField, number, parameters, set};
 use super::{Locomotion, Parameter};
@@ -17,30 +17,30 @@ pub struct AgentBody {
     pub height_m: f32,
     /// Height of eyes and ears above the feet, m; at most the height.
     pub eye_height_m: f32,
-    /// The highest step it climbs, m; 0 to 1.
+    /// The highest step that it climbs, m; 0 to 1.
     pub step_height_m: f32,
-    /// The steepest slope it walks up, rad; 0 to 1.4.
+    /// The steepest slope that it walks up, rad; 0 to 1.4.
     pub max_slope_rad: f32,
-    /// The heaviest thing it lifts, kg; 0 to 500. What weighs more falls from its hand with the next step.
+    /// The heaviest object that it lifts, kg; 0 to 500. A heavier one falls from its hand in the next step.
     pub lift_kg: f32,
     /// Reach of its hand from its eye, m; 0.1 to 5.
     pub reach_m: f32,
-    /// The force with which it pushes what is in its way and what its hand pushes and pulls, N; 0 to 10,000.
+    /// The force with which it pushes obstacles and with which its hand pushes and pulls, N; 0 to 10,000.
     pub push_force_n: f32,
     /// The strongest pull of its hand on a door or drawer, N·m or N; 0 to 10,000.
     pub hand_effort: f32,
-    /// The largest edge of what it carries, m; 0.05 to 5.
+    /// The largest edge of an object that it carries, m; 0.05 to 5.
     pub max_carry_size_m: f32,
     /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
-    /// In a world it is what `agent/N/camera/fov_deg` reads until that is set.
+    /// In a world it is the value of `agent/N/camera/fov_deg` until that is set.
     pub camera_fov_deg: f32,
     /// Its locomotion; default: it walks.
     pub locomotion: Locomotion,
 }
 
 impl Default for AgentBody {
-    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m, pushes with 100 N, pulls
-    /// at doors with 40 N·m, carries what is up to 1 m long.
+    /// A small adult: 0.2 m radius, 1.5 m tall, eyes at 1.25 m, climbs 0.2 m, lifts 10 kg, reaches 1.5 m, pushes with 100
+    /// N, pulls doors with 40 N·m, carries objects of up to 1 m.
     fn default() -> Self {
         Self {
             radius_m: 0.2,
@@ -80,7 +80,7 @@ impl AgentBody {
     /// The range of the field of view of cameras at an agent's eyes, degrees.
     pub(super) const FOV_DEG: [f64; 2] = [1.0, 170.0];
 
-    /// Its numbers by name, with units and the ranges that they have beside each other: it is at least twice as high as its
+    /// Returns its numbers by name, with units and their ranges given the others: it is at least twice as high as its
     /// radius, and its eyes are not above it. The fields of the address `agent/N/body/FIELD`.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         let mut all = parameters(BODY, self);
@@ -98,7 +98,7 @@ impl AgentBody {
         all
     }
 
-    /// Sets the number called `field`, whatever it is; [`AgentBody::check`] says what is allowed.
+    /// Sets the number called `field` without a check; [`AgentBody::check`] gives the allowed range.
     pub(super) fn set(&mut self, field: &str, value: f32) {
         set(BODY, self, |name| (name == field).then_some(value));
     }
@@ -118,7 +118,7 @@ impl AgentBody {
         };
         let refused = |(_, parameter): &(_, Parameter)| !parameter.admits(parameter.value);
         let all = self.parameters();
-        // A number out of its own range makes those of the others senseless, so it is named first.
+        // A number out of its own range invalidates those of the others, so it is named first.
         let own = parameters(BODY, self).iter().position(refused);
         if let Some(k) = own.or_else(|| all.iter().position(refused)) {
             let (field, parameter) = all[k];

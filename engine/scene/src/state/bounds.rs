@@ -6,7 +6,7 @@ use crate::house::House;
 use crate::ids::{ObjectId, PartId};
 
 impl House {
-    /// The box around a part where it stands in `state`, m.
+    /// Returns the box around a part in `state`, m.
     pub fn part_bounds(&self, state: &State, id: PartId) -> Aabb {
         let part = &self.parts[id];
         let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
@@ -18,14 +18,14 @@ impl House {
         )
     }
 
-    /// The box around an object where it stands in `state`, m.
+    /// Returns the box around an object in `state`, m.
     pub fn object_bounds(&self, state: &State, id: ObjectId) -> Aabb {
         self.objects[id].parts().fold(Aabb::EMPTY, |bounds, part| {
             bounds.union(&self.part_bounds(state, part))
         })
     }
 
-    /// The boxes around all objects where they stand in `state`, m. Shape (object,).
+    /// Returns the boxes around all objects in `state`, m. Shape (object,).
     pub fn object_boxes(&self, state: &State) -> Vec<Aabb> {
         let ids = self.objects.ids();
         ids.map(|id| self.object_bounds(state, id)).collect()

@@ -1,6 +1,6 @@
-//! One spelling for each parameter.
+//! Canonical spelling of parameter addresses.
 //!
-//! An object has an id and a name, a pair two orders, a number many spellings. What is overridden stands under one of them
+//! An object has an id and a name, a pair two orders, a number many spellings. An override is stored under one of them
 //! alone, so that nothing is overridden twice.
 
 use super::State;
@@ -10,8 +10,8 @@ use crate::error::SceneError;
 use crate::house::House;
 
 impl State {
-    /// The one spelling of `address`: objects by id, joints and parts by number, pairs in alphabetical order, numbers as they are printed. An address
-    /// that names nothing stays as it is.
+    /// Returns the canonical spelling of `address`: objects by id, joints and parts by number, pairs in alphabetical order,
+    /// numbers as they are printed. An address that names nothing stays as it is.
     ///
     /// # Errors
     /// [`SceneError::Address`] for an object that does not exist.

@@ -8,13 +8,13 @@ use crate::ids::JointId;
 use crate::space::Pose;
 use glam::Vec3;
 
-/// The shortest axis that says a direction.
+/// The shortest axis with a defined direction.
 const SHORTEST_AXIS: f32 = 1e-3;
 
 /// The parameters in force at a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointParameters {
-    /// Turning or sliding.
+    /// Hinge or slide.
     pub kind: JointKind,
     /// The axis in joint space, unit length.
     pub axis: Vec3,
@@ -28,8 +28,8 @@ pub struct JointParameters {
     pub armature: f32,
     /// The motor.
     pub servo: Option<Servo>,
-    /// The share of what hangs on the joint whose weight the motor's controller carries besides; 1 in a house whose motor
-    /// has [`Servo::feed_forward`].
+    /// The share of the weight on the joint that the motor's controller compensates; 1 in a house whose motor has
+    /// [`Servo::feed_forward`].
     pub feed_forward: f32,
     /// Its coupling to another joint, if it is a mimic joint.
     pub mimic: Option<Mimic>,
@@ -40,18 +40,18 @@ pub struct JointParameters {
 impl JointParameters {
     /// `position` within the limits.
     pub fn clamp(&self, position: f32) -> f32 {
-        // Limits are only set in order.
+        // Limits are always in order.
         self.limits
             .map_or(position, |[low, high]| position.max(low).min(high))
     }
 
-    /// The movement of the joint at `position` (rad or m).
+    /// Returns the displacement of the joint at `position` (rad or m).
     pub fn motion(&self, position: f32) -> Pose {
         motion_along(self.kind, self.axis, position)
     }
 }
 
-/// A field with its unit and range. `None` in the house means that the joint has no such thing.
+/// A field with its unit and range. `None` in the house means that the joint does not have it.
 pub(super) struct JointField {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
@@ -174,7 +174,7 @@ pub(super) const FIELDS: [JointField; 18] = [
     },
 ];
 
-/// The share of the weight that a motor of the house carries.
+/// The share of the weight that a motor of the house compensates.
 fn carried(servo: &Servo) -> f32 {
     f32::from(u8::from(servo.feed_forward))
 }
@@ -190,7 +190,7 @@ impl State {
         }
     }
 
-    /// Returns what is in force at a joint.
+    /// Returns the parameters in force at a joint.
     pub fn joint_values(&self, house: &House, id: JointId) -> JointParameters {
         let joint = &house.joints[id];
         let mut values = JointParameters {
@@ -261,7 +261,7 @@ impl State {
         values
     }
 
-    /// Returns where a joint's child stands when the parent stands at `world_from_parent` and the joint at `position`.
+    /// Returns the pose of a joint's child with the parent at `world_from_parent` and the joint at `position`.
     pub fn world_from_child(
         &self,
         house: &House,
@@ -276,7 +276,7 @@ impl State {
             * house.joints[id].child_from_joint.inverse()
     }
 
-    /// Refuses an axis of a joint without a direction. The three numbers of an axis may have any length but 0: only their
+    /// Refuses a joint axis without a direction. The three numbers of an axis may have any length but 0: only their
     /// direction counts, so that each of them can be set alone.
     pub(super) fn check_axis(&self, house: &House, canonical: &Address) -> Result<(), SceneError> {
         let ["joint", id, "axis_x" | "axis_y" | "axis_z"] = canonical.words()[..] else {

@@ -1,9 +1,10 @@
-//! Laws under addresses: `law/ID/PARAM`, `law/ID@TARGET/PARAM`, `law/N/PARAM`.
+//! Addresses of laws: `law/ID/PARAM`, `law/ID@TARGET/PARAM`, `law/N/PARAM`.
 //!
 //! `ID` alone is the law without a target, `ID@TARGET` the one on that target; neither need be installed: the first number
-//! that differs from its default installs it behind the others, and a law whose numbers are all default acts no more. `N`
-//! counts [`State::laws`] from 0, for laws that are installed twice on one target. A target has one spelling, in which it is kept ([`LawSpec::canonical_target`]): no law acts
-//! twice on a thing that has two names. Values stand in [`State::laws`] and nowhere else, so that they are in snapshot and hash.
+//! that differs from its default installs it behind the others, and a law whose numbers are all default has no effect. `N`
+//! counts [`State::laws`] from 0, for laws that are installed twice on one target. A target is stored in its canonical
+//! spelling ([`LawSpec::canonical_target`]), so that no law acts twice on a thing with two names. Values are stored in
+//! [`State::laws`] only, so that they are in snapshot and hash.
 
 use super::{Address, Parameter, State};
 use crate::error::SceneError;
@@ -16,12 +17,12 @@ struct LawParameterRef<'a> {
     info: &'a LawInfo,
     param: &'a ParamInfo,
     target: Option<String>,
-    /// Its place in [`State::laws`]; `None` for a law that is not installed.
+    /// Its index in [`State::laws`]; `None` for a law that is not installed.
     place: Option<usize>,
 }
 
 impl Address {
-    /// Returns whether it names a law's parameter: then [`State::law_parameter`] reads it.
+    /// Returns whether it is the address of a law's parameter, which [`State::law_parameter`] reads.
     pub fn is_law(&self) -> bool {
         self.as_str().starts_with("law/")
     }
@@ -112,11 +113,11 @@ impl State {
         })
     }
 
-    /// Returns what stands at the address of a law's parameter; its default where the law is not installed. `known`: the laws of
-    /// all engines.
+    /// Returns the parameter of a law at an address; its default where the law is not installed. `known`: the laws of all
+    /// engines.
     ///
     /// # Errors
-    /// [`SceneError::Address`] says which word is wrong and what is allowed there.
+    /// [`SceneError::Address`] names the wrong word and the allowed ones.
     pub fn law_parameter(
         &self,
         house: &House,
@@ -135,8 +136,8 @@ impl State {
         })
     }
 
-    /// Sets a law's parameter. A default is not kept as a number, and laws at the end of the list whose numbers are all
-    /// default are taken off it, so that what was set and set back is as it was before.
+    /// Sets a law's parameter. A default is not stored, and laws at the end of the list whose numbers are all default are
+    /// removed, so that setting a value and setting it back leaves no trace.
     ///
     /// # Errors
     /// [`SceneError::Address`] for an address that names nothing or a value out of bounds, [`SceneError::Range`] for a law
@@ -154,7 +155,7 @@ impl State {
     /// Sets parameters of laws together: all of them, or none.
     ///
     /// # Errors
-    /// As [`State::set_law_parameter`], and for a parameter that is there twice, in whatever spelling. Nothing has changed then.
+    /// As [`State::set_law_parameter`], and for a parameter that is given twice, in whatever spelling. Nothing has changed then.
     pub fn set_law_parameters(
         &mut self,
         house: &House,
@@ -188,7 +189,7 @@ impl State {
         for (address, value) in values {
             self.put_law(house, known, address, *value)?;
         }
-        // Only now: the numbers of laws count those that were there before.
+        // Only now: numbers of laws refer to the list before the call.
         let idle = |spec: &LawSpec| {
             let info = known.iter().find(|info| info.id == spec.id);
             info.is_some_and(|info| spec.is_default(info))
@@ -227,8 +228,8 @@ impl State {
         Ok(())
     }
 
-    /// The addresses of all parameters of laws: of those that are installed, in order, then of the others without target. A law
-    /// whose target has no place in an address (too many words, an empty one) is listed by its number.
+    /// Returns the addresses of all parameters of laws: of those that are installed, in order, then of the others without
+    /// target. A law whose target does not fit in an address (too many words, an empty one) is listed by its number.
     ///
     /// # Panics
     /// Never: laws' ids and their parameters' names are words.
@@ -318,7 +319,7 @@ mod tests {
         there.unwrap().value
     }
 
-    /// The third law goes and another one comes in the same call: the second one's number still means the second one.
+    /// The third law is removed and another one added in the same call: the second one's number still refers to the second one.
     #[test]
     fn numbers_of_laws_count_those_that_were_there_before() {
         let mut state = empty();

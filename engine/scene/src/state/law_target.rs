@@ -1,7 +1,7 @@
-//! One spelling for what a law acts on.
+//! Canonical spelling of a law's target.
 //!
-//! A joint has a number, a name, and a name beside its object's; the part of a thing moves with all the others that no
-//! joint holds; two substances that touch have two orders. A law on one of them must not act twice because it was asked for in two
+//! A joint has a number, a name, and a name qualified by its object's; a part moves with all others that no joint
+//! separates; a pair of substances has two orders. A law on one of them must not act twice because it was given in two
 //! spellings.
 
 use crate::error::SceneError;
@@ -10,9 +10,9 @@ use crate::ids::{Id, JointId, PartId};
 use crate::law::{LawInfo, LawSpec};
 
 impl LawSpec {
-    /// The one spelling of a target of a law. A joint is `OBJECT/JOINT`, or its number where those names are not its own; a name
-    /// that several joints have stays, as it means all of them. An object's part is the object where all of it moves as one,
-    /// else the first part that moves with it. An agent is its number. What names nothing stays as it is.
+    /// Returns the canonical spelling of a law's target. A joint is `OBJECT/JOINT`, or its number where those names are
+    /// ambiguous; a name of several joints stays, as it means all of them. An object's part is the object where all of it
+    /// moves as one, else the first part that moves with it. An agent is its number. A name of nothing stays as it is.
     pub fn canonical_target(house: &House, info: &LawInfo, target: &str) -> String {
         let found = match info.acts_on {
             "joint" => joint(house, target),
@@ -23,7 +23,7 @@ impl LawSpec {
         found.unwrap_or_else(|| target.to_owned())
     }
 
-    /// Returns whether two targets of a law name the same: in two spellings, or as a pair of substances in two orders.
+    /// Returns whether two targets of a law are the same: in two spellings, or as a pair of substances in two orders.
     pub fn is_same_target(house: &House, info: &LawInfo, a: &str, b: &str) -> bool {
         let [a, b] = [a, b].map(|target| Self::canonical_target(house, info, target));
         let turned = || {
@@ -33,9 +33,9 @@ impl LawSpec {
         a == b || (info.acts_on == "contact" && turned() == Some(true))
     }
 
-    /// Refuses two laws of one kind on one target in two spellings: whoever wrote them meant two things, or one thing once. A name
-    /// that several joints have means each of them, and is refused beside another name of one of them. Two in one spelling are
-    /// two laws one after the other, such as two lags. `known`: the laws to look at; others are left out.
+    /// Refuses two laws of one kind on one target in two spellings, which are ambiguous. A name of several joints means
+    /// each of them, and is refused beside another name of one of them. Two in one spelling are two laws one after the
+    /// other, such as two lags. `known`: the laws to check; others are left out.
     ///
     /// # Errors
     /// [`SceneError::Range`] names the law and the two spellings.
@@ -83,7 +83,7 @@ fn own_name(house: &House, id: JointId) -> String {
     format!("{}/{}", house.objects[joint.object].name, joint.name)
 }
 
-/// The joints that a target names: by their name, beside their object's, or by number.
+/// Returns the joints that a target names: by name, qualified by their object's, or by number.
 fn joints_named(house: &House, target: &str) -> impl Iterator<Item = JointId> {
     let named = move |id: JointId, name: &str| {
         target == name || target == own_name(house, id) || target == id.index().to_string()

@@ -1,4 +1,4 @@
-//! All addresses there are in a house.
+//! Listing of all addresses in a house.
 
 use super::joint::FIELDS;
 use super::part::INERTIAL_FIELDS;
@@ -8,8 +8,9 @@ use crate::ids::Id;
 use std::collections::BTreeSet;
 
 impl State {
-    /// The address of every parameter of this world but those of laws: gravity, masses, joints, agents, materials at their
-    /// own band centres, and pairs of substances that the house is made of. Each in its one spelling, in a fixed order.
+    /// Returns the address of every parameter of this world but those of laws: gravity, masses, joints, agents, materials
+    /// at their own band centres, and pairs of substances that the house contains. Each in its canonical spelling, in a
+    /// fixed order.
     pub fn addresses(&self, house: &House) -> Vec<Address> {
         let mut texts = ["world/gravity_m_s2", "world/hand_effort"]
             .map(str::to_owned)
@@ -64,7 +65,7 @@ impl State {
             }
         }
         let mut addresses: Vec<Address> = Vec::with_capacity(texts.len());
-        // A material whose name holds a slash or nothing at all has no address.
+        // A material whose name is empty or has a slash has no address.
         for address in texts.iter().filter_map(|text| text.parse::<Address>().ok()) {
             if self.parameter(house, &address).is_ok() {
                 addresses.push(address);
@@ -78,7 +79,7 @@ impl State {
 mod tests {
     use crate::{AgentBody, AgentState, House, ShoeboxMaterials, State};
 
-    /// Every address that is listed can be read and set to what stands there, and is spelled as it is stored.
+    /// Every listed address can be read and set to its value, and is spelled as it is stored.
     #[test]
     fn listed_addresses_are_read_and_set() {
         let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();

@@ -29,9 +29,9 @@ impl Default for Locomotion {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct LeggedLocomotion {
-    /// The fastest it runs, m/s; 0 to 100, default 100: as fast as it is told.
+    /// Its highest speed, m/s; 0 to 100, default 100: as fast as commanded.
     pub max_speed_m_s: f32,
-    /// The fastest it moves while it crouches, m/s; 0 to 100, default 1.
+    /// Its highest speed while it crouches, m/s; 0 to 100, default 1.
     pub max_crouched_speed_m_s: f32,
     /// Its height when it crouches, m; 0.1 to 3, default 0.9. A body that is not higher does not crouch; none gets lower
     /// than twice its radius.
@@ -48,7 +48,7 @@ impl Default for LeggedLocomotion {
     }
 }
 
-/// A base on two driven wheels side by side, in whose middle it turns.
+/// A base on two driven wheels side by side; it turns about their middle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct DifferentialDrive {
@@ -58,7 +58,7 @@ pub struct DifferentialDrive {
     pub left_wheel_radius_m: f32,
     /// m; 0.001 to 1, default 0.05.
     pub right_wheel_radius_m: f32,
-    /// The fastest a wheel turns, rad/s; 0 to 1,000, default 20 (1 m/s).
+    /// Highest speed of a wheel, rad/s; 0 to 1,000, default 20 (1 m/s).
     pub max_wheel_speed_rad_s: f32,
     /// Largest acceleration of a wheel, rad/s²; 0.01 to 1,000,000, default 40 (2 m/s²).
     pub max_wheel_acceleration_rad_s2: f32,
@@ -80,15 +80,15 @@ impl Default for DifferentialDrive {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct HolonomicBase {
-    /// The fastest it goes forward or backward, m/s; 0 to 100, default 1.
+    /// Highest speed forward or backward, m/s; 0 to 100, default 1.
     pub max_forward_m_s: f32,
-    /// The fastest it goes sideways, m/s; 0 to 100, default 1.
+    /// Highest speed sideways, m/s; 0 to 100, default 1.
     pub max_sideways_m_s: f32,
-    /// The fastest it turns, rad/s; 0 to 100, default 2.
+    /// Highest yaw rate, rad/s; 0 to 100, default 2.
     pub max_yaw_rate_rad_s: f32,
-    /// The largest change of its velocity, m/s²; 0.01 to 10,000, default 2.
+    /// Largest acceleration, m/s²; 0.01 to 10,000, default 2.
     pub max_acceleration_m_s2: f32,
-    /// The largest change of its rate of turn, rad/s²; 0.01 to 10,000, default 4.
+    /// Largest yaw acceleration, rad/s²; 0.01 to 10,000, default 4.
     pub max_yaw_acceleration_rad_s2: f32,
 }
 
@@ -127,7 +127,7 @@ const HOLONOMIC: &[NumericField<HolonomicBase>] = &[
 ];
 
 impl Locomotion {
-    /// Its numbers by name, with units and ranges: the fields of the address `agent/N/base/FIELD`.
+    /// Returns its numbers by name, with units and ranges: the fields of the address `agent/N/base/FIELD`.
     pub fn parameters(&self) -> Vec<(&'static str, Parameter)> {
         match self {
             Self::Walking(gait) => parameters(GAIT, gait),
@@ -136,7 +136,7 @@ impl Locomotion {
         }
     }
 
-    /// The same with other numbers where `value_of` a field's name gives one.
+    /// Returns a copy with the numbers for which `value_of` gives a value replaced.
     #[must_use]
     pub fn with(mut self, value_of: impl Fn(&str) -> Option<f32>) -> Self {
         match &mut self {
@@ -147,7 +147,7 @@ impl Locomotion {
         self
     }
 
-    /// Returns what a person calls it.
+    /// Returns its name in words.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Walking(_) => "walking",

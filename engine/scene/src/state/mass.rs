@@ -1,11 +1,11 @@
-//! Masses under overrides: an object's own goes before its parts', a part's own before its materials' densities.
+//! Masses with overrides: an object's own precedes its parts', a part's own precedes its materials' densities.
 
 use super::State;
 use crate::house::House;
 use crate::ids::{Id, ObjectId, PartId};
 
 impl State {
-    /// The overridden mass of an object, kg; `None` when only the house's parts speak.
+    /// Returns the overridden mass of an object, kg; `None` without an override of the object itself.
     pub fn object_mass_kg(&self, house: &House, object: ObjectId) -> Option<f32> {
         self.lookup(format!(
             "object/{}/mass_kg",
@@ -13,7 +13,7 @@ impl State {
         ))
     }
 
-    /// Returns what the parts of an object weigh together, kg; parts that state no mass are left out.
+    /// Returns the sum of an object's part masses, kg; parts that state no mass are left out.
     pub fn mass_of_parts_kg(&self, house: &House, object: ObjectId) -> f32 {
         let parts = house.objects[object].parts();
         let masses = parts.filter_map(|id| {
@@ -24,11 +24,11 @@ impl State {
         masses.sum::<f32>() + 0.0
     }
 
-    /// Returns what a part's mass is multiplied with: 1 without overrides.
+    /// Returns the factor on a part's mass: 1 without overrides.
     ///
     /// A part whose mass is overridden has that mass. Else its mass follows the densities of its materials
-    /// (`material/NAME/density_kg_m3`), of which each has the share that its surface has: a house does not say how much of a
-    /// part's volume is of which material.
+    /// (`material/NAME/density_kg_m3`), weighted by their shares of its surface: a house does not give the volume of each
+    /// material.
     pub fn part_mass_factor(&self, house: &House, part: PartId) -> f32 {
         let own = self.lookup(format!("part/{}/mass_kg", part.index()));
         match (own, house.parts[part].mass_kg) {

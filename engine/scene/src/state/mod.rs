@@ -37,10 +37,10 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Openness of a joint from which on it switches its object on: a tap drips no longer, it runs.
+/// Openness from which a joint switches its object on: a tap runs instead of dripping.
 const SWITCHES_AT: f32 = 0.1;
 
-/// The changing half of a world. Physics writes it, the world owns it, every engine reads it; it holds no mesh.
+/// The state of a world. Physics writes it, the world owns it, every engine reads it; it holds no mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Simulated time since the start, s.
@@ -89,7 +89,7 @@ pub struct Velocity {
 }
 
 impl State {
-    /// The state in which `house` starts: everything where the file puts it, at rest, no agents.
+    /// The initial state of `house`: everything at its pose in the file, at rest, no agents.
     pub fn new(house: &House) -> Self {
         let (parts, joints, objects) = (house.parts.len(), house.joints.len(), house.objects.len());
         Self {
@@ -117,7 +117,7 @@ impl State {
         }
     }
 
-    /// Returns how far an object is open: the largest openness of its joints that open; `None` when it has none.
+    /// Returns the openness of an object: the largest of its joints that open; `None` when it has none.
     pub fn openness(&self, house: &House, object: ObjectId) -> Option<f32> {
         house
             .joints_of(object)
@@ -126,7 +126,7 @@ impl State {
             .reduce(f32::max)
     }
 
-    /// Switches objects whose joints are their switches: on where such a joint is open, off where all are closed.
+    /// Updates objects whose joints are their switches: on where such a joint is open, off where all are closed.
     pub fn follow_switches(&mut self, house: &House) {
         let switches = || house.joints.iter_ids().filter(|(_, joint)| joint.switches);
         for (_, joint) in switches() {
@@ -137,7 +137,7 @@ impl State {
         }
     }
 
-    /// Returns whether an object is switched on and has a switch, or has none and cannot be off.
+    /// Returns whether an object is on: switched on, or without a switch.
     pub fn is_on(&self, house: &House, object: ObjectId) -> bool {
         house.objects[object].switch.is_none() || self.switched_on[object]
     }

@@ -1,11 +1,11 @@
-//! Finds what the words of an address name.
+//! Resolution of names in addresses.
 
 use super::Address;
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::{Entity, EntityId, JointId, MaterialId, ObjectId, PartId};
 
-/// Objects are addressed by the id that sensors give them, or by name.
+/// Finds an object by its entity id or by name.
 pub(super) fn find_object(
     house: &House,
     address: &Address,
@@ -68,7 +68,7 @@ pub(super) fn find_joint(
     })
 }
 
-/// A joint by the names of its object and its own.
+/// Finds a joint by the names of its object and its own.
 pub(super) fn find_joint_of(
     house: &House,
     address: &Address,
@@ -88,7 +88,7 @@ pub(super) fn find_joint_of(
         })
 }
 
-/// A part by its number.
+/// Finds a part by its number.
 pub(super) fn find_part(
     house: &House,
     address: &Address,
@@ -105,7 +105,7 @@ pub(super) fn find_part(
         })
 }
 
-/// A part by the names of its object and its own.
+/// Finds a part by the names of its object and its own.
 pub(super) fn find_part_of(
     house: &House,
     address: &Address,

@@ -1,8 +1,8 @@
-//! Numbers of plain structs by name, with units and ranges: what addresses of agents name.
+//! Numbers of plain structs by name, with units and ranges: the fields of agents' addresses.
 
 use super::Parameter;
 
-/// One number of a `T`: name, unit, range, and where it stands.
+/// A number of a `T`: name, unit, range, and its accessor.
 pub(super) struct NumericField<T> {
     pub(super) name: &'static str,
     pub(super) unit: &'static str,
@@ -24,7 +24,7 @@ macro_rules! number {
 }
 pub(super) use number;
 
-/// All numbers of `of` by name.
+/// Returns all numbers of `of` by name.
 pub(super) fn parameters<T>(numbers: &[NumericField<T>], of: &T) -> Vec<(&'static str, Parameter)> {
     let parameter = |number: &NumericField<T>| Parameter {
         value: f64::from((number.get)(of)),

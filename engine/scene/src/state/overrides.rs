@@ -1,4 +1,4 @@
-//! Values in force: the house's, or what overrides them.
+//! Values in force: the house's, or their overrides.
 
 use super::canonical::pair_address;
 use super::{Address, AgentBody, State};
@@ -24,7 +24,7 @@ impl State {
         }
     }
 
-    /// Friction and restitution between two substances, with overrides.
+    /// Returns friction and restitution between two substances, with overrides.
     pub fn pair_contact(&self, a: &str, b: &str) -> PairContact {
         let base = library().pair(a, b);
         let field = |name: &str| self.lookup(pair_address(a, b, name));
@@ -34,7 +34,7 @@ impl State {
         }
     }
 
-    /// The substance a part is mostly made of: that of its first material.
+    /// Returns the substance of most of a part: that of its first material.
     pub fn part_substance<'a>(&self, house: &'a House, part: PartId) -> &'a str {
         house.parts[part]
             .materials
@@ -42,38 +42,38 @@ impl State {
             .map_or("", |material| house.materials[*material].substance.as_str())
     }
 
-    /// Acceleration of free fall, m/s².
+    /// Returns the acceleration of gravity, m/s².
     pub fn gravity_m_s2(&self) -> f32 {
         self.lookup("world/gravity_m_s2".to_owned())
             .unwrap_or(STANDARD_GRAVITY_M_S2)
     }
 
-    /// The strongest pull with which a joint without a motor is moved by commands that no agent gives, N·m or N.
+    /// Returns the strongest pull on a joint without a motor by commands that come from no agent, N·m or N.
     pub fn hand_effort(&self) -> f32 {
         self.lookup("world/hand_effort".to_owned())
             .unwrap_or(AgentBody::HAND_EFFORT)
     }
 
-    /// Absorption of a material with overrides.
+    /// Returns the absorption of a material, with overrides.
     pub fn absorption(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
         self.bands(&material.name, "absorption", &material.absorption)
     }
 
-    /// Scattering of a material with overrides.
+    /// Returns the scattering of a material, with overrides.
     pub fn scattering(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
         self.bands(&material.name, "scattering", &material.scattering)
     }
 
-    /// Loss of sound that passes through a material, dB, with overrides.
+    /// Returns the transmission loss of a material, dB, with overrides.
     pub fn transmission_loss_db(&self, house: &House, material: MaterialId) -> Bands {
         let material = &house.materials[material];
         let base = &material.transmission_loss_db;
         self.bands(&material.name, "transmission_loss_db", base)
     }
 
-    /// The bands of one material field, each band replaced or a band added where an override stands.
+    /// Returns the bands of one material field, with bands replaced or added by overrides.
     fn bands(&self, material: &str, field: &str, base: &Bands) -> Bands {
         let prefix = format!("material/{material}/{field}/");
         let mut bands = base.clone();

@@ -1,8 +1,8 @@
 //! The parameter at an address, and setting it.
 //!
-//! An override in [`State::overrides`](super::State) goes before the house's value, per world, without rebuilding the
-//! house. Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and kin. An agent's body belongs to no house: its
-//! numbers are set where they stand.
+//! An override in [`State::overrides`](super::State) precedes the house's value, per world, without rebuilding the house.
+//! Engines read through [`State::object_mass_kg`](super::State::object_mass_kg) and the like. An agent's body is not part
+//! of the house: its numbers are set in the state.
 
 use super::joint::FIELDS;
 use super::names::{find_joint, find_material, find_object, find_part};
@@ -21,24 +21,24 @@ pub struct Parameter {
     pub value: f64,
     /// SI unit, `"1"` for none.
     pub unit: &'static str,
-    /// The lowest value that is allowed.
+    /// The lowest value allowed.
     pub low: f64,
-    /// The highest value that is allowed.
+    /// The highest value allowed.
     pub high: f64,
 }
 
 impl Parameter {
-    /// Returns whether a value is within the bounds, as far as an f32 tells: bounds and values may come from f32s.
+    /// Returns whether a value is within the bounds at the precision of f32: bounds and values may come from f32s.
     pub(super) fn admits(&self, value: f64) -> bool {
         (self.low as f32..=self.high as f32).contains(&(value as f32))
     }
 }
 
 impl State {
-    /// Returns what stands at `address`.
+    /// Returns the parameter at `address`.
     ///
     /// # Errors
-    /// [`SceneError::Address`] says which word is wrong and what is allowed there.
+    /// [`SceneError::Address`] names the wrong word and the allowed ones.
     pub fn parameter(&self, house: &House, address: &Address) -> Result<Parameter, SceneError> {
         let make = |value: f32, unit, low, high| {
             Ok(Parameter {
@@ -144,12 +144,13 @@ impl State {
         self.set_parameters(house, &[(address.clone(), value)])
     }
 
-    /// Sets parameters together: all of them, or none. A number that stands there anyway is not kept. Ranges that depend on each other (a joint's two limits, a part's three
-    /// moments, an agent's height and radius) are checked when all are set, so that their order does not matter.
+    /// Sets parameters together: all of them, or none. A value that equals the default is not stored. Ranges that depend on
+    /// each other (a joint's two limits, a part's three moments, an agent's height and radius) are checked when all are
+    /// set, so that their order does not matter.
     ///
     /// # Errors
-    /// [`SceneError::Address`] for an address that names nothing or that is there twice, in whatever spelling, and for a value
-    /// outside its range beside the others. Nothing has changed then.
+    /// [`SceneError::Address`] for an address that names nothing or that is given twice, in whatever spelling, and for a
+    /// value outside its range given the others. Nothing has changed then.
     pub fn set_parameters(
         &mut self,
         house: &House,
@@ -189,8 +190,8 @@ impl State {
         self.forget_defaults(house, &known)
     }
 
-    /// Keeps no override that says what stands there without it, so that a number that is set and set back leaves no trace. Only
-    /// when all are set: what stands there may follow from the others. A band of a material is kept, since bands without a value
+    /// Removes overrides equal to the value without them, so that setting a value and setting it back leaves no trace. Only
+    /// when all are set: that value may follow from the others. A band of a material is kept, since bands without a value
     /// of their own lie between their neighbours: one that is pinned stays when a neighbour changes.
     fn forget_defaults(
         &mut self,
@@ -219,7 +220,7 @@ impl State {
         self.overrides.insert(canonical, value);
     }
 
-    /// An agent that crouches stays as low as it is when its body changes, as far as its radius lets it.
+    /// Keeps the height of a crouching agent when its body changes, as far as its radius allows.
     fn keep_crouching(&mut self, before: &IdVec<AgentId, super::AgentState>) {
         for (now, before) in self.agents.iter_mut().zip(before) {
             if now.crouched_by_m > 0.0 && now.body != before.body {

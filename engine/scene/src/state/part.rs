@@ -5,7 +5,7 @@ use crate::error::SceneError;
 use crate::house::{House, Inertial};
 use crate::ids::{Id, PartId};
 
-/// The fields of a part's inertia: the centre of mass on the part, and the principal moments about it.
+/// The inertial fields of a part: the centre of mass on the part, and the principal moments about it.
 pub(super) const INERTIAL_FIELDS: [&str; 6] = [
     "center_x_m",
     "center_y_m",
@@ -21,7 +21,7 @@ const FURTHEST_M: f64 = 100.0;
 const MOMENTS_KG_M2: [f64; 2] = [1e-12, 1e6];
 
 impl State {
-    /// Returns where a part's mass sits in this world; `None` for a part that does not state it.
+    /// Returns a part's inertial parameters in this world; `None` for a part that does not state them.
     pub fn part_inertial(&self, house: &House, part: PartId) -> Option<Inertial> {
         let mut inertial = house.parts[part].inertial?;
         if self.overrides.is_empty() {
@@ -38,7 +38,7 @@ impl State {
         Some(inertial)
     }
 
-    /// Returns what stands at `part/N/FIELD` for a field of the inertia.
+    /// Returns the parameter at `part/N/FIELD` for an inertial field.
     pub(super) fn inertial_parameter(
         &self,
         house: &House,
@@ -66,7 +66,7 @@ impl State {
                 high: FURTHEST_M,
             });
         }
-        // No moment of a body is above the sum of the other two.
+        // No moment of inertia is above the sum of the other two.
         let own = place - 3;
         let others = [(own + 1) % 3, (own + 2) % 3].map(|k| f64::from(inertial.moments[k]));
         let [least, most] = MOMENTS_KG_M2;

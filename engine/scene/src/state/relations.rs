@@ -10,42 +10,42 @@ use crate::space::Pose;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The share of a thing's box that must lie in the container's.
+/// The share of an object's box that must lie in the container's.
 const INSIDE_SHARE: f32 = 0.8;
 /// Largest height by which an object may stick out of a container's box, m.
 const BRIM_M: f32 = 0.02;
 /// Largest distance of an object's middle from a marked space, m.
 const SPACE_MARGIN_M: f32 = 0.01;
-/// Of the rays from a thing's middle to the four sides and down, how many must meet what is around it.
+/// Number of the rays from an object's middle to the four sides and down that must hit its container.
 const WALLS: usize = 4;
 
-/// Which of two things that touch carries the other.
+/// The support relation of two things in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SupportRelation {
-    /// Neither: they stand side by side.
+    /// Neither supports the other.
     #[default]
     Beside,
-    /// `a` rests on `b`: somewhere `b` holds it up, with a normal at most 60 degrees from upright.
+    /// `a` rests on `b`: some contact normal is at most 60 degrees from upright.
     AOnB,
     /// `b` rests on `a`.
     BOnA,
 }
 
-/// Two things that touch.
+/// Two things in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
     /// The part whose number is lower.
     pub a: PartId,
     /// The other part; `None`: the structure of the house.
     pub b: Option<PartId>,
-    /// Which of them carries the other.
+    /// The support relation.
     pub rest: SupportRelation,
 }
 
 impl State {
-    /// Returns what carries an object: objects in order, `None` for the building. Empty while it is held, flies, or never moves
-    /// (physics finds no contacts between things that cannot move).
+    /// Returns the supports of an object: objects in order, `None` for the building. Empty while it is held, flies, or
+    /// never moves (physics finds no contacts between things that cannot move).
     pub fn rests_on(&self, house: &House, object: ObjectId) -> Vec<Option<ObjectId>> {
         if self.held_by[object].is_some() {
             return Vec::new();
@@ -59,8 +59,7 @@ impl State {
         carriers
     }
 
-    /// Returns what carries each object, as [`State::rests_on`] says of one: of all at once, each contact looked at once. Shape
-    /// (object,).
+    /// Returns the supports of each object, as [`State::rests_on`] of one, in one pass over the contacts. Shape (object,).
     pub fn carriers(&self, house: &House) -> Vec<Vec<Option<ObjectId>>> {
         let mut all = vec![Vec::new(); house.objects.len()];
         for (carried, by) in self.carried(house) {
@@ -75,7 +74,7 @@ impl State {
         all
     }
 
-    /// Of each contact in which one thing holds up another: what is carried, and by what.
+    /// Returns the supported object and its support of each contact in which one thing supports another.
     fn carried(&self, house: &House) -> impl Iterator<Item = (ObjectId, Option<ObjectId>)> {
         let owner = |part: PartId| house.parts[part].object;
         let pairs = self.contacts.iter().filter_map(move |contact| {
@@ -89,9 +88,9 @@ impl State {
         pairs.filter(|(carried, by)| *by != Some(*carried))
     }
 
-    /// The objects that an object lies in, in order. Nothing that is held lies in anything.
+    /// Returns the objects that contain an object, in order. A held object is in nothing.
     ///
-    /// `boxes`: the boxes around all objects where they stand, shape (object,), as [`House::object_boxes`] gives them.
+    /// `boxes`: the boxes around all objects, shape (object,), as [`House::object_boxes`] gives them.
     pub fn lies_in(&self, house: &House, object: ObjectId, boxes: &[Aabb]) -> Vec<ObjectId> {
         if self.held_by[object].is_some() {
             return Vec::new();
@@ -104,7 +103,7 @@ impl State {
             .filter(|container| *container != object)
             .filter(|container| {
                 let outer = boxes[container.index()];
-                // Of what four fifths lie inside, the middle does.
+                // An object of which four fifths lie inside has its middle inside.
                 outer.grown(2.0 * BRIM_M).contains(middle)
                     && house.encloses(self, *container, &outer, &inner)
             })
@@ -115,27 +114,26 @@ impl State {
 impl House {
     /// Returns whether the box `inner` (m, world space) lies in an object whose box is `outer`.
     ///
-    /// Four fifths of it lie in the object's box (grown by 2 cm), it is the smaller of the two, and either its middle
-    /// lies in a space of the object that is marked as holding things inside, or the object is around it: of the five
-    /// rays from the middle to the four sides (along the object's own axes) and down, at least four meet the object. So a
-    /// bowl, a drawer, a sink and a shelf's compartment (open in front) contain things; a table does not contain what
-    /// lies under it.
+    /// Four fifths of it lie in the object's box (grown by 2 cm), it is the smaller of the two, and either its middle lies
+    /// in a receptacle of the object that holds things inside, or the object is around it: of the five rays from the middle
+    /// to the four sides (along the object's own axes) and down, at least four hit the object. So a bowl, a drawer, a sink
+    /// and a shelf's compartment (open in front) contain things; a table does not contain things under it.
     pub fn encloses(&self, state: &State, container: ObjectId, outer: &Aabb, inner: &Aabb) -> bool {
         let pose = |part: PartId| state.part_pose[part];
         let spaces = || self.receptacles_of(container);
         encloses(self.data(), &pose, spaces, (container, outer), inner)
     }
 
-    /// Returns whether [`Self::encloses`] can hold between the boxes: four fifths of `inner` lie in `outer`, the larger one, grown by
-    /// 2 cm.
+    /// Returns whether [`Self::encloses`] can hold between the boxes: four fifths of `inner` lie in `outer`, the larger
+    /// one, grown by 2 cm.
     pub fn fits_in(outer: &Aabb, inner: &Aabb) -> bool {
-        // The smaller volume is the content; this keeps the relation one way.
+        // The smaller volume is the content; this makes the relation asymmetric.
         inner.volume() < outer.volume() && share_inside(inner, &outer.grown(BRIM_M)) >= INSIDE_SHARE
     }
 }
 
 impl HouseData {
-    /// As [`House::encloses`], with every part where the house puts it.
+    /// As [`House::encloses`], with every part at its initial pose.
     pub fn encloses_at_start(&self, container: ObjectId, outer: &Aabb, inner: &Aabb) -> bool {
         let pose = |part: PartId| self.parts[part].world_from_part;
         let spaces = || {
@@ -205,7 +203,7 @@ fn share_inside(inner: &Aabb, outer: &Aabb) -> f32 {
         .element_product()
 }
 
-/// Returns whether the ray from `origin` along `direction` meets the triangle from either side, at a positive distance.
+/// Returns whether the ray from `origin` along `direction` hits the triangle from either side, at a positive distance.
 ///
 /// # Source
 /// T. Möller, B. Trumbore, J. Graphics Tools 2, 21 (1997).

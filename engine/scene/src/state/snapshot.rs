@@ -1,4 +1,4 @@
-//! A state as bytes, and its hash.
+//! Serialization and hash of a state.
 
 use super::State;
 use crate::error::SceneError;
@@ -15,7 +15,7 @@ impl State {
             .expect("a state is plain data that postcard can always write to memory")
     }
 
-    /// A number that changes with any bit of the state, derived fields and stored order included.
+    /// Returns a hash that changes with any bit of the state, derived fields and stored order included.
     ///
     /// # Determinism
     /// Equal states give equal numbers on every machine (XXH3 over the snapshot's body).
@@ -23,7 +23,7 @@ impl State {
         xxh3_64(&self.body_bytes())
     }
 
-    /// The state as bytes: header, version, fingerprint of the house, check sum, body.
+    /// Returns the state as bytes: header, version, fingerprint of the house, checksum, body.
     pub fn to_bytes(&self, house: &House) -> Vec<u8> {
         let body = self.body_bytes();
         let mut bytes = Vec::with_capacity(HEADER + body.len());
@@ -35,7 +35,7 @@ impl State {
         bytes
     }
 
-    /// Reads what [`State::to_bytes`] wrote.
+    /// Reads bytes written by [`State::to_bytes`].
     ///
     /// # Errors
     /// [`SceneError::Snapshot`] for foreign or corrupted bytes, another version, or another house.

@@ -85,7 +85,7 @@ fn install(
     }))])
 }
 
-/// The play operator.
+/// Applies the play operator.
 fn play(input: f32, half_width: f32, output: f32) -> f32 {
     output.min(input + half_width).max(input - half_width)
 }
@@ -98,7 +98,7 @@ impl BacklashState {
         }
     }
 
-    /// Lets the motor run ahead of the joint with `velocity` for a step. Returns whether it lies against a flank then.
+    /// Lets the motor run ahead of the joint with `velocity` for a step. Returns whether it is then in contact with a flank.
     fn cross(&mut self, motor: &MotorStep, velocity: f32, half_width: f32) -> bool {
         self.gap += (velocity - motor.velocity) * motor.dt_s;
         let meets = self.gap.abs() >= half_width;
@@ -106,7 +106,7 @@ impl BacklashState {
         meets
     }
 
-    /// One step under an effort. Returns whether it reaches the joint.
+    /// Makes one step under an effort. Returns whether it reaches the joint.
     fn press(&mut self, motor: &MotorStep, effort: f32, half_width: f32, inertia: f32) -> bool {
         let presses = effort != 0.0 && effort.signum() * self.gap >= half_width;
         if presses || inertia == 0.0 {
@@ -197,7 +197,7 @@ mod tests {
         }
     }
 
-    /// For how long a motor gives nothing to a joint that stands, s.
+    /// Returns the time for which a motor gives no effort to a joint at rest, s.
     fn silent_s(law: &mut Backlash, command: JointCommand) -> f32 {
         let motor = MotorStep {
             joint: JointId(0),
@@ -228,7 +228,7 @@ mod tests {
         }
     }
 
-    /// sqrt(2 s J / u) over the way s, in no time without inertia.
+    /// sqrt(2 s J / u) over the distance s, in no time without inertia.
     #[test]
     fn a_motor_told_an_effort_crosses_the_play_as_it_falls() {
         let (b, inertia) = (0.1, 0.02);

@@ -1,4 +1,4 @@
-//! Compliance: gears and shafts that give between motor and joint.
+//! Compliance: gears and shafts that yield between motor and joint.
 
 use super::TargetMotors;
 use crate::error::PhysicsError;

@@ -1,4 +1,4 @@
-//! Deadband: a motor that does not answer to little.
+//! Deadband: a motor that does not respond to small commands.
 
 use super::TargetMotors;
 use crate::error::PhysicsError;

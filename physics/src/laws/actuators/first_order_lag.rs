@@ -1,4 +1,4 @@
-//! First-order lag: a motor takes up what it is told little by little.
+//! First-order lag: a motor follows its command gradually.
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
@@ -53,7 +53,7 @@ fn install(
     }))])
 }
 
-/// The output at the end of a step and its mean over it, with the input `u` held.
+/// Returns the output at the end of a step and its mean over it, with the input `u` held.
 fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
     let left = math::exp(-steps);
     let end = u + (y - u) * left;

@@ -83,7 +83,7 @@ fn install(
 }
 
 impl Hysteresis {
-    /// The effort once the joint has come to `position`.
+    /// Returns the effort once the joint has come to `position`.
     fn effort(&self, spring: &HysteresisSpring, position: f32) -> f32 {
         let sprung = spring.effort - self.stiffness * (position - spring.position);
         sprung.clamp(-self.max_effort, self.max_effort)
@@ -142,8 +142,8 @@ impl LawMemory for Hysteresis {
 mod tests {
     use super::*;
 
-    /// Closed form: from the middle the effort rises with the way to its bound, stays there, and on the way back falls over
-    /// twice the yield before it stays at the other bound; the loop's area is 4 F (A - F / k).
+    /// Closed form: from the middle the effort rises with the displacement to its bound, stays there, and on the way back
+    /// falls over twice the yield before it stays at the other bound; the loop's area is 4 F (A - F / k).
     #[test]
     fn a_slow_cycle_draws_the_parallelogram_of_the_model() {
         let joint = JointId(2);

@@ -91,7 +91,7 @@ struct Friction {
 }
 
 impl Friction {
-    /// The largest effort with which it resists besides the viscous one, N·m or N.
+    /// Returns the largest effort of friction besides the viscous one, N·m or N.
     fn bound(&self, load: &JointLoad) -> f32 {
         let (motor, external) = (load.motor_effort, load.external_effort);
         let transmitted = (motor - external).abs();
@@ -267,7 +267,7 @@ mod tests {
             let found = friction.bound(&load(0.0, 2.0, -1.5));
             assert!((found - expected).abs() < 1e-6, "{found} {expected}");
         }
-        // Fast, what sticks is gone: M2 keeps its Coulomb term, M4 its load, M5 and M6 the moving direction terms.
+        // At high speed stiction vanishes: M2 keeps its Coulomb term, M4 its load, M5 and M6 the moving direction terms.
         let fast = load(50.0, 2.0, -1.5);
         let [m1, m2, m3, m4, m5, _] = mx106().map(|friction| friction.bound(&fast));
         assert!((m1 - 0.103_520_27).abs() < 1e-7 && m2 < 1e-5);

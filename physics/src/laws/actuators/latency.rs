@@ -1,4 +1,4 @@
-//! Latency: what a motor is told reaches it late.
+//! Latency: commands reach a motor late.
 
 use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
@@ -54,7 +54,7 @@ fn install(
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     let mut motors = TargetMotors::of(spec, info, model)?.each(CommandDelayLine::default);
-    // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
+    // The present commands of motors fill the past: no motor is switched off because a delay grew.
     for (joint, past) in &mut motors {
         past.0.push_back(commanded(state, *joint));
     }
@@ -65,7 +65,7 @@ fn install(
 }
 
 impl CommandDelayLine {
-    /// Remembers this step's command and gives the one that arrives: before the first that is known the same was sent.
+    /// Stores this step's command and returns the one that arrives: before the first known one the same was sent.
     fn shift(&mut self, command: JointCommand, delay_steps: f32) -> JointCommand {
         let whole = delay_steps as usize;
         let part = delay_steps - whole as f32;
@@ -156,7 +156,7 @@ mod tests {
             arrived.collect::<Vec<f32>>()
         };
         assert_eq!(run(2.0, 6), [0.0, 0.0, 1.0, 2.0, 3.0, 4.0]);
-        // Known are what is told now and the three before it.
+        // Known are the present command and the three before it.
         assert_eq!(run(5.0, 6), [3.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
         assert_eq!(run(1.0, 3), [12.0, 13.0, 14.0]);
     }

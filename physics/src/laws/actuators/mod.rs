@@ -1,8 +1,8 @@
 //! Laws of motors and joints. A target is a joint's name, `OBJECT/JOINT`, or the joint's number; without one they act on
 //! every motor, friction on every joint.
 //!
-//! Once a physics step each law changes the command that its motor follows, in the order of installation; then what the
-//! motor can give; and, when efforts are computed, how the joint resists.
+//! Once a physics step each law changes the command that its motor follows, in the order of installation; then the motor's
+//! actuation; and, when efforts are computed, the joint's resistance.
 
 pub(super) mod backlash;
 pub(super) mod compliance;
@@ -21,7 +21,7 @@ use crate::model::PhysicsModel;
 use dwell_scene::{Articulation, Id, JointCommand, JointId, LawInfo, LawSpec};
 use std::collections::BTreeMap;
 
-/// The joints that a spec acts on, of those that `may` be acted on.
+/// Returns the joints that a spec acts on, of those for which `may` holds.
 fn joints(
     spec: &LawSpec,
     info: &LawInfo,
@@ -67,7 +67,7 @@ impl TargetMotors {
         self.0.binary_search(&joint).is_ok()
     }
 
-    /// A memory for each.
+    /// Makes a state for each.
     fn each<T>(&self, make: impl Fn() -> T) -> BTreeMap<JointId, T> {
         self.0.iter().map(|joint| (*joint, make())).collect()
     }
@@ -98,8 +98,8 @@ impl FilteredCommands {
         ))
     }
 
-    /// Moves a motor's output by `step` and tells the motor its mean. `step` gets the output and what is told, and gives the
-    /// output at the end of the step and its mean over it. An output begins where the joint stands.
+    /// Advances a motor's output by `step` and gives the motor its mean as command. `step` gets the output and the command,
+    /// and returns the output at the end of the step and its mean over it. An output begins at the joint's position.
     fn follow(
         &mut self,
         motor: &MotorStep,
@@ -132,7 +132,7 @@ impl FilteredCommands {
     }
 }
 
-/// The number of a command; `None` when the motor is off.
+/// Returns the value of a command; `None` when the motor is off.
 fn number(command: JointCommand) -> Option<f32> {
     match command {
         JointCommand::Off => None,
@@ -140,7 +140,7 @@ fn number(command: JointCommand) -> Option<f32> {
     }
 }
 
-/// A command of the same kind with another number.
+/// Returns a command of the same kind with another value.
 fn with(command: JointCommand, number: f32) -> JointCommand {
     match command {
         JointCommand::Off => JointCommand::Off,
@@ -154,7 +154,7 @@ fn same_kind(a: JointCommand, b: JointCommand) -> bool {
     std::mem::discriminant(&a) == std::mem::discriminant(&b)
 }
 
-/// A command as two numbers of a memory.
+/// Returns a command as two numbers of a law's state.
 fn pack(command: JointCommand) -> [f32; 2] {
     let kind = match command {
         JointCommand::Off => 0.0,
@@ -165,7 +165,7 @@ fn pack(command: JointCommand) -> [f32; 2] {
     [kind, number(command).unwrap_or(0.0)]
 }
 
-/// Returns what [`pack`] packed.
+/// Returns the command that [`pack`] packed.
 fn unpack(kind: f32, value: f32) -> JointCommand {
     match kind as u32 {
         1 => JointCommand::Position(value),

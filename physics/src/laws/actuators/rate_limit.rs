@@ -1,4 +1,4 @@
-//! Rate limit: what a motor follows changes no faster than it can.
+//! Rate limit: the command that a motor follows changes no faster than a limit.
 
 use super::FilteredCommands;
 use crate::error::PhysicsError;
@@ -52,7 +52,7 @@ fn install(
     }))])
 }
 
-/// The output at the end of a step in which it can change by `most`, and its mean over the step.
+/// Returns the output at the end of a step in which it can change by `most`, and its mean over the step.
 fn approach(y: f32, u: f32, most: f32) -> (f32, f32) {
     let change = u - y;
     if change.abs() >= most {

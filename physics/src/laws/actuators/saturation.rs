@@ -1,4 +1,4 @@
-//! Saturation: a motor that is weaker than it says.
+//! Saturation: a motor that is weaker than specified.
 
 use super::TargetMotors;
 use crate::error::PhysicsError;

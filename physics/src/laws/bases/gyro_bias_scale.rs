@@ -1,4 +1,4 @@
-//! A gyro that reads something at rest, and too much or too little in a turn.
+//! Gyro bias and scale error.
 
 use super::{RequiredBase, TargetAgents};
 use crate::bases::BaseLaw;

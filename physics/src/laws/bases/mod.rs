@@ -1,5 +1,5 @@
 //! Laws of wheeled bases and of agents' gyros. Their target is an agent's number, counted from 0; without one they act on
-//! every agent that has what they need, those that come later too; agents on legs have none of it.
+//! every agent with the required base, those that are added later too; agents on legs have none of it.
 
 pub(super) mod gyro_bias_scale;
 pub(super) mod unequal_wheels;
@@ -33,8 +33,8 @@ impl RequiredBase {
     }
 }
 
-/// The agents that a spec acts on; `None`: all that have what it needs, whenever they come. Agents without it are never
-/// asked about: only driven wheels roll, and only bases have a gyro.
+/// The agents that a spec acts on; `None`: all with the required base, whenever they are added. Agents without it are never
+/// queried: only driven wheels roll, and only bases have a gyro.
 #[derive(Clone, Debug)]
 struct TargetAgents(Option<AgentId>);
 

@@ -1,4 +1,4 @@
-//! Wheels of unequal size, and a wheel base that is not as measured.
+//! Wheels of unequal size, and a wrong wheel base.
 
 use super::{RequiredBase, TargetAgents};
 use crate::bases::BaseLaw;

@@ -1,4 +1,4 @@
-//! Wheels that slip while they push.
+//! Slip of driven wheels.
 
 use super::{RequiredBase, TargetAgents};
 use crate::bases::BaseLaw;

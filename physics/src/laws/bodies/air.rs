@@ -10,7 +10,7 @@ use dwell_scene::law::ParamInfo;
 use dwell_scene::{LawInfo, LawSpec};
 use glam::DVec3;
 
-/// The cross-section; 0 takes the mean one of the body.
+/// The cross-section; 0 uses the body's mean one.
 pub(super) const AREA: ParamInfo = ParamInfo {
     name: "area_m2",
     unit: "m2",
@@ -30,13 +30,13 @@ pub(super) const AIR_DENSITY: ParamInfo = ParamInfo {
     plausible: [1.0, 1.4],
 };
 
-/// Returns what [`in_air`] found for a body, kg/m; `None` for one that is not acted on.
+/// Returns the value that [`in_air`] found for a body, kg/m; `None` for one that is not affected.
 pub(super) fn gain_of(bodies: &[(u32, f32)], body: u32) -> Option<f64> {
     let place = bodies.binary_search_by_key(&body, |(index, _)| *index);
     place.ok().map(|place| bodies[place].1.into())
 }
 
-/// The force of `gain |u| u` against the velocity `u` of a body that a joint moves, N.
+/// Returns the force of `gain |u| u` against the velocity `u` of a jointed body, N.
 pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
     if link.mass_kg <= 0.0 {
         return DVec3::ZERO;
@@ -45,7 +45,7 @@ pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
     -link.mass_kg * decay * against
 }
 
-/// The moving bodies that a spec acts on, each with what `gain` makes of the air's density (kg/m3) and its cross-section (m2).
+/// Returns the moving bodies that a spec acts on, each with `gain` of the air's density (kg/m³) and its cross-section (m²).
 pub(super) fn in_air(
     spec: &LawSpec,
     info: &LawInfo,

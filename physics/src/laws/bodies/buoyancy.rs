@@ -1,4 +1,4 @@
-//! A body displaces the fluid around it.
+//! Buoyancy: a body displaces the fluid around it.
 
 use super::size::volume_m3;
 use crate::error::PhysicsError;

@@ -1,4 +1,4 @@
-//! A centre of mass that is not where the shape says.
+//! Offset of a body's centre of mass.
 
 use crate::error::PhysicsError;
 use crate::inertia::{BodyInertia, MassLaw};
@@ -59,7 +59,7 @@ fn install(
     let plans = moving_bodies(spec, info, model)?;
     let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name)));
     for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
-        // A thin thing whose centre of mass is a metre aside turns about that: contacts lose it, and it falls through floors.
+        // A thin object whose centre of mass is a metre away rotates about that: contacts lose it, and it falls through floors.
         let size = plan.bounds(&RapierPose::IDENTITY).size();
         if !offset.abs().cmple(size * FARTHEST).all() {
             let name = &model.house.objects[plan.object].name;

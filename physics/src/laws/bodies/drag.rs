@@ -66,7 +66,7 @@ impl BodyLaw for Drag {
             let Some(rigid) = stage.free(*body) else {
                 continue;
             };
-            // The exact solution of m dv/dt = -k |v| v over the half step; it never turns the velocity round.
+            // The exact solution of m dv/dt = -k |v| v over the half step; it never reverses the velocity.
             let velocity = rigid.linvel();
             let slowed = velocity / (1.0 + gain / rigid.mass() * velocity.length() * half_dt_s);
             rigid.set_linvel(slowed, false);

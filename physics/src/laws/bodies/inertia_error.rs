@@ -1,4 +1,4 @@
-//! An inertia that is not what shape and density say.
+//! Error of a body's inertia tensor.
 
 use crate::error::PhysicsError;
 use crate::inertia::{BodyInertia, MassLaw};
@@ -85,7 +85,7 @@ fn install(
     };
     for (index, plan) in plans {
         let mut inertia = BodyInertia::of(&model.house, plan, state, &vec![1.0; plan.parts.len()]);
-        // A link without mass of its own has no inertia that could be wrong.
+        // A link without mass of its own has no inertia to change.
         if !inertia.is_positive() {
             continue;
         }

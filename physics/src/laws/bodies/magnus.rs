@@ -1,4 +1,4 @@
-//! Lift of a spinning body.
+//! Magnus effect: lift of a spinning body.
 
 use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
 use crate::error::PhysicsError;
@@ -69,7 +69,7 @@ impl BodyLaw for Magnus {
             let Some(rigid) = stage.free(*body) else {
                 continue;
             };
-            // dv/dt = (gain / m) w x v turns the velocity about the spin and leaves its length.
+            // dv/dt = (gain / m) w x v turns the velocity about the spin and keeps its length.
             let turn = rigid.angvel() * (gain / rigid.mass() * half_dt_s);
             let angle = turn.length();
             if angle > 0.0 {

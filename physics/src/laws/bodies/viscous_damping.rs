@@ -1,4 +1,4 @@
-//! Damping in proportion to speed.
+//! Viscous damping: in proportion to velocity.
 
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};

@@ -1,4 +1,4 @@
-//! Moving air.
+//! Wind.
 
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
@@ -105,7 +105,7 @@ fn install(
 }
 
 impl Wind {
-    /// The air's velocity at a time since the world was made, m/s.
+    /// Returns the air's velocity at a time since the world was made, m/s.
     fn air(&self, time_s: f64) -> Vec3 {
         let period = f64::from(self.period_s);
         let pauses = period > 0.0

@@ -9,7 +9,7 @@ use dwell_scene::{LawInfo, LawSpec, State, math};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Slip below which a thing counts as held, m/s: the direction is then that in which friction holds it.
+/// Slip below which a body counts as sticking, m/s: the direction is then that of the friction force.
 const HELD_M_S: f32 = 1e-3;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -91,7 +91,7 @@ impl ContactLaw for AnisotropicFriction {
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let slip = touch.slip();
-        // What is held slides, if at all, against the friction that holds it.
+        // A sticking body would slide against its friction force.
         let direction = if slip.length() > HELD_M_S {
             slip
         } else {
@@ -100,7 +100,7 @@ impl ContactLaw for AnisotropicFriction {
         let axis = touch.surface.rotation * self.axis;
         let flat = |v: Vec3| (v - touch.normal * v.dot(touch.normal)).normalize_or_zero();
         let cos = flat(direction).dot(flat(axis));
-        // Without a direction the mean holds.
+        // Without a direction the mean coefficient holds.
         if flat(direction) == Vec3::ZERO || flat(axis) == Vec3::ZERO {
             return;
         }

@@ -1,4 +1,4 @@
-//! Contacts that give.
+//! Contact compliance.
 
 use crate::engine::ContactCompliance;
 use crate::error::PhysicsError;
@@ -54,7 +54,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     install,
 };
 
-/// A natural frequency below this one is none, Hz.
+/// Natural frequency below which there is no compliance, Hz.
 const LOWEST_HZ: f32 = 0.1;
 
 fn install(

@@ -86,7 +86,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
             });
         }
     }
-    // rapier's order of pairs is its own affair.
+    // rapier's order of pairs is unspecified.
     loads.sort_by(|a, b| {
         let key = |load: &ContactLoad| (load.entries, load.normal_force_n.to_bits());
         key(a).cmp(&key(b))
@@ -104,14 +104,14 @@ impl ContactLoad {
             })
     }
 
-    /// The spin of the first thing against the second, rad/s.
+    /// Returns the relative angular velocity of the first body against the second, rad/s.
     pub(super) fn spin(&self, stage: &LawContext<'_>) -> Vec3 {
         self.each(stage)
             .map(|(sign, rigid)| rigid.angvel() * sign)
             .sum()
     }
 
-    /// Returns how fast gravity turns the first about the contact against the second, were nothing to slip, rad/s2.
+    /// Returns the angular acceleration by gravity of the first about the contact against the second, without slip, rad/s².
     pub(super) fn gravity_turn(&self, stage: &LawContext<'_>) -> Vec3 {
         let gravity = stage.engine.gravity;
         self.each(stage)
@@ -125,7 +125,7 @@ impl ContactLoad {
             .sum()
     }
 
-    /// The inertia against turning about an axis, kg·m²: about the centres of mass, or rolling about the contact.
+    /// Returns the inertia about an axis, kg·m²: about the centres of mass, or rolling about the contact.
     pub(super) fn inertia(&self, stage: &LawContext<'_>, axis: Vec3, rolling: bool) -> f32 {
         let inverse: f32 = self
             .each(stage)
@@ -138,7 +138,7 @@ impl ContactLoad {
         if inverse > 0.0 { 1.0 / inverse } else { 0.0 }
     }
 
-    /// The distance of the nearer centre of mass that moves from the contact plane, m.
+    /// Returns the distance of the nearer moving centre of mass from the contact plane, m.
     pub(super) fn radius_m(&self, stage: &LawContext<'_>) -> f32 {
         self.each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
@@ -146,7 +146,7 @@ impl ContactLoad {
             .fold(f32::MAX, f32::min)
     }
 
-    /// Turns the first thing by an angular impulse and the second by its opposite, kg·m²/s.
+    /// Applies an angular impulse to the first body and its opposite to the second, kg·m²/s.
     pub(super) fn turn(&self, stage: &mut LawContext<'_>, impulse: Vec3) {
         for (sign, handle) in [(1.0, self.bodies.0), (-1.0, self.bodies.1)] {
             let Some(handle) = handle else { continue };
@@ -160,7 +160,7 @@ impl ContactLoad {
     }
 }
 
-/// One over a body's inertia about an axis through its centre of mass or, with an arm from there, through the contact.
+/// Returns the inverse of a body's inertia about an axis through its centre of mass or, with an arm from there, through the contact.
 fn inverse_inertia(rigid: &RigidBody, axis: Vec3, arm: Option<Vec3>) -> f32 {
     let properties = &rigid.mass_properties().local_mprops;
     let local = rigid.rotation().inverse() * axis;

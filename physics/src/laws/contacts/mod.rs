@@ -1,4 +1,4 @@
-//! Laws that act where things touch.
+//! Laws of contacts.
 
 pub(super) mod anisotropic_friction;
 pub(super) mod compliance;

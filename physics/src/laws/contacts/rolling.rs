@@ -59,7 +59,7 @@ fn install(
 impl BodyLaw for RollingResistance {
     fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
-            // The spin at the end of the step, if nothing resisted.
+            // The angular velocity at the end of the step without resistance.
             let spin = load.spin(stage) + load.gravity_turn(stage) * stage.dt_s;
             let rolling = spin - load.normal * spin.dot(load.normal);
             let speed = rolling.length();

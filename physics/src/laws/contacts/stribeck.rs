@@ -1,4 +1,4 @@
-//! Friction that is higher at rest than in motion.
+//! Stribeck friction: higher at rest than in motion.
 
 use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;

@@ -1,4 +1,4 @@
-//! Friction against spinning on the spot.
+//! Torsional friction.
 
 use super::load::loads;
 use crate::contact::ContactScope;

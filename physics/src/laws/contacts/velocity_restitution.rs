@@ -1,4 +1,4 @@
-//! Restitution that depends on how fast things hit.
+//! Restitution that depends on impact speed.
 
 use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
@@ -8,7 +8,7 @@ use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
 use dwell_scene::{LawInfo, LawSpec, State};
 use std::sync::Arc;
 
-/// From 1 on, what lies would bounce.
+/// From 1 on, resting bodies would bounce.
 const LIVELIEST: f32 = 0.99;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {

@@ -1,11 +1,11 @@
-//! Which of all hits counts: the nearest, and among coincident surfaces the one with the lowest id.
+//! Selection of the closest hit: the nearest, and among coincident surfaces the one with the lowest id.
 //!
 //! Rule. Let `t` be the smallest distance of any hit. A hit at `s` is coincident with it when its plane passes within
 //! the tolerance of the nearest hit, `(s - t) cos <= 10 um + 1e-6 s`, where `cos` is that of the angle between ray and
 //! normal, taken as at least 1 / [`GRAZING`]. Of the coincident hits the lowest (id, source, triangle) is the answer.
-//! The rule speaks of the set of hits, not of an order, so every tree and every kernel must agree. What follows applies
-//! it while hits come in any order with the memory of one hit, and knows when that was too little
-//! ([`ClosestHit::is_ambiguous`]); then a second run, which starts from the known `t`, settles it.
+//! The rule is stated for the set of hits, not for an order, so every tree and every kernel must agree. The code below
+//! applies it while hits come in any order with the memory of one hit, and detects when that was too little
+//! ([`ClosestHit::is_ambiguous`]); then a second pass, which starts from the known `t`, settles it.
 
 /// Absolute part of the distance within which surfaces coincide, m.
 const TOLERANCE_M: f32 = 1e-5;
@@ -13,7 +13,7 @@ const TOLERANCE_M: f32 = 1e-5;
 /// Relative part: computed distances differ in the last bits.
 const TOLERANCE_PER_M: f32 = 1e-6;
 
-/// Along the ray coincidence reaches at most this many times the tolerance.
+/// Largest ratio of the coincidence tolerance along the ray to that along the normal.
 const GRAZING: f32 = 32.0;
 
 /// The smallest distance of a nearest hit with which a hit is coincident. `cosine` is that between ray and normal, >= 0.
@@ -54,7 +54,7 @@ pub(in super::super) struct TieBreak {
     pub(in super::super) triangle: u32,
 }
 
-/// The answer so far for one ray.
+/// The closest hit so far of one ray.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct ClosestHit {
     /// The smallest distance so far; infinite before the first hit.
@@ -82,14 +82,14 @@ impl ClosestHit {
         }
     }
 
-    /// Starts again, knowing the smallest distance from a first run.
+    /// Starts again, with the smallest distance from a first pass.
     pub(in super::super) fn second_pass(&self, far: f32) -> Self {
         let mut again = Self::new(far);
         again.shorten(self.distance);
         again
     }
 
-    /// Returns whether [`Self::best`] must be found by a second run from [`Self::second_pass`], which is always sure.
+    /// Returns whether [`Self::best`] must be found by a second pass from [`Self::second_pass`], which is never ambiguous.
     #[inline(always)]
     pub(in super::super) fn is_ambiguous(&self) -> bool {
         self.ambiguous_at < f32::INFINITY && self.ambiguous_at <= horizon(self.distance)
@@ -106,7 +106,7 @@ impl ClosestHit {
         };
     }
 
-    /// Takes a hit within [`Self::limit`] into account; `claim` tells what decides for this one and earlier ones.
+    /// Takes a hit within [`Self::limit`] into account; `claim` gives the tie-break of this one and earlier ones.
     #[inline(always)]
     pub(in super::super) fn offer(
         &mut self,
@@ -166,10 +166,10 @@ mod tests {
     use crate::random::RandomKey;
     use proptest::prelude::*;
 
-    /// Distance and what decides.
+    /// Distance and tie-break.
     type Hit = (f32, TieBreak);
 
-    /// The rule as it is written above.
+    /// The rule as stated above.
     fn plainly(hits: &[Hit]) -> Option<usize> {
         let nearest = hits.iter().map(|hit| hit.0).fold(f32::INFINITY, f32::min);
         let coincident = (0..hits.len()).filter(|k| hits[*k].1.reach <= nearest);
@@ -178,7 +178,7 @@ mod tests {
 
     fn offer_all(nearest: &mut ClosestHit, hits: &[Hit], order: &[usize]) {
         for &k in order {
-            // Traversal passes over what lies beyond the limit.
+            // Traversal skips what lies beyond the limit.
             if hits[k].0 <= nearest.limit {
                 let place = |slot| HitIndex { source: 0, slot };
                 nearest.offer(hits[k].0, place(k as u32), |p| hits[p.slot as usize].1);

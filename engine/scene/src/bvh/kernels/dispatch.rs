@@ -7,7 +7,7 @@ use super::scene_packet::{closest, occluded};
 use super::tree_packet::PacketClosestHits;
 use crate::simd_dispatch::SimdKernel;
 
-/// Offers all hits that may matter to the answers.
+/// Offers all hits that may matter to the results.
 pub(in super::super) struct ClosestPacket<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,
@@ -24,7 +24,7 @@ impl<const N: usize> SimdKernel for ClosestPacket<'_, '_, N> {
     }
 }
 
-/// Which rays meet anything, as bits.
+/// The rays that hit anything, as bits.
 pub(in super::super) struct OccludedPacket<'a, 'b, const N: usize> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) rays: &'a RayPacket<N>,

@@ -27,7 +27,7 @@ fn three<T>(f: impl Fn(usize) -> T) -> [T; 3] {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HitFilter {
     mask: RayMask,
-    /// Nothing with this id; beyond the ids of anything when nothing is hidden.
+    /// An id to ignore; beyond all ids when nothing is hidden.
     hidden: i64,
 }
 
@@ -39,7 +39,7 @@ impl HitFilter {
         }
     }
 
-    /// For the triangles of an instance that was admitted: they carry no ids of their own.
+    /// The filter for the triangles of an instance that passed: they have no ids of their own.
     #[inline(always)]
     pub(super) fn within(&self) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl HitFilter {
     }
 }
 
-/// Of a node's children in `hits` returns the nearest and puts the others on the stack, further ones deeper.
+/// Returns the nearest of a node's children in `hits`, and pushes the others on the stack, further ones deeper.
 #[inline(always)]
 fn push_further(
     node: &Node,

@@ -1,4 +1,4 @@
-//! Many rays with one origin, prepared for a tree: boxes and planes are moved to the origin once for all rays.
+//! Rays with one origin, prepared for a tree: boxes and planes are moved to the origin once for all rays.
 
 use glam::Vec4;
 
@@ -15,32 +15,32 @@ pub(in super::super) struct PreparedPacket<const N: usize> {
     pub(in super::super) direction: [[f32; N]; 3],
     inverse: [[f32; N]; 3],
     pub(in super::super) near: [f32; N],
-    /// Hits beyond do not matter; below everything for a lane that is out of use.
+    /// Hits beyond do not matter; minus infinity for an inactive lane.
     pub(in super::super) limit: [f32; N],
     pub(in super::super) origin: [f32; 3],
     pub(super) wide: PaddedOrigin,
     margin: f32,
     /// See [`EdgePlanes::new`].
     pub(super) longest: f32,
-    /// Bounds of the range over all rays in use.
+    /// Bounds of the range over all active rays.
     nearest: f32,
     pub(in super::super) furthest: f32,
     /// Bounds of the direction. Shape (axis,).
     pub(super) lowest: [f32; 3],
     pub(super) highest: [f32; 3],
-    /// Bounds of the inverse direction; everything where it has both signs.
+    /// Bounds of the inverse direction; infinite where it has both signs.
     slow: [f32; 3],
     fast: [f32; 3],
-    /// Infinite where the inverse direction has both signs, else nothing.
+    /// Infinite where the inverse direction has both signs, else zero.
     leave_at_least: [f32; 3],
-    /// Which plane of a box the rays meet first along an axis, and which last.
+    /// The plane of a box that the rays meet first along an axis, and the one they meet last.
     first: [usize; 3],
     last: [usize; 3],
     mixed: bool,
 }
 
 impl<const N: usize> PreparedPacket<N> {
-    /// A lane is out of use where its range is empty.
+    /// A lane is inactive where its range is empty.
     #[inline(always)]
     pub(in super::super) fn new(
         all: &Aabb,
@@ -111,26 +111,26 @@ impl<const N: usize> PreparedPacket<N> {
         }
     }
 
-    /// For another tree in the same space.
+    /// Prepares for another tree in the same space.
     #[inline(always)]
     pub(in super::super) fn retarget(&mut self, all: &Aabb) {
         self.margin = margin(self.origin, all);
         self.wide = PaddedOrigin::new(self.origin, self.margin);
     }
 
-    /// Returns whether no ray is in use.
+    /// Returns whether no ray is active.
     #[inline(always)]
     pub(in super::super) fn is_done(&self) -> bool {
         self.furthest == f32::NEG_INFINITY
     }
 
-    /// To be called after a change of `limit`.
+    /// Updates the bounds after a change of `limit`.
     #[inline(always)]
     pub(in super::super) fn limits_changed(&mut self) {
         self.furthest = highest_of(self.limit);
     }
 
-    /// Returns where each ray is inside a box, within its own range.
+    /// Returns the interval of each ray inside a box, within its own range.
     #[inline(always)]
     pub(in super::super) fn range_in(&self, bounds: &Aabb) -> ([f32; N], [f32; N]) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
@@ -144,7 +144,7 @@ impl<const N: usize> PreparedPacket<N> {
         (start, end)
     }
 
-    /// Children whose boxes some ray enters before its limit, as bits, and a lower bound of where.
+    /// Returns the children whose boxes some ray enters before its limit, as bits, and a lower bound of the entry.
     #[inline(always)]
     pub(super) fn enters(&self, node: &Node) -> (u32, Vec4) {
         // All rays at once by the bounds of their directions; this loses nothing, as rounding is monotone.
@@ -177,8 +177,8 @@ impl<const N: usize> PreparedPacket<N> {
         (bits, enter)
     }
 
-    /// Returns whether some ray enters a box before its limit. `first`, `last`: its planes as seen from the origin, in the order in
-    /// which the rays meet them.
+    /// Returns whether some ray enters a box before its limit. `first`, `last`: its planes as seen from the origin, in the
+    /// order in which the rays meet them.
     #[inline(always)]
     fn any_enters(&self, first: &[f32; 3], last: &[f32; 3]) -> bool {
         let [ix, iy, iz] = &self.inverse;
@@ -204,7 +204,7 @@ impl<const N: usize> PreparedPacket<N> {
         any != 0
     }
 
-    /// The distances at which the rays hit one of four triangles, NaN where they do not within their range, or nothing.
+    /// Returns the distances at which the rays hit one of four triangles, NaN for those that do not within their range; `None` for no hit.
     #[inline(always)]
     pub(super) fn meet(&self, facets: &OriginTriangles, lane: usize) -> Option<[f32; N]> {
         if self.mixed {
@@ -227,8 +227,8 @@ impl<const N: usize> PreparedPacket<N> {
         }
     }
 
-    /// `cross`: where a ray enters and leaves a box, from the planes it meets first, those it meets last, and its inverse
-    /// direction.
+    /// Returns the distances at which a ray enters and leaves a box, from the planes it meets first, those it meets last,
+    /// and its inverse direction.
     #[inline(always)]
     fn intersect_ordered(
         &self,

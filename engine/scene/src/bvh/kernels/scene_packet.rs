@@ -1,4 +1,4 @@
-//! A packet of rays against everything: static geometry first, then what moves.
+//! Ray packets against a scene: static geometry first, then moving instances.
 
 use super::super::instances::{InstanceSet, PreparedInstance};
 use super::super::packet::RayPacket;
@@ -11,7 +11,7 @@ use super::tree_packet::{
     ClosestLeafVisitor, OccludedLeafVisitor, PacketClosestHits, PacketLeafVisitor, traverse,
 };
 
-/// Offers all hits of a packet that may matter to its answers.
+/// Offers all hits of a packet that may matter to its results.
 #[inline(always)]
 pub(super) fn closest<const N: usize>(
     scene: &SceneBvh<'_>,
@@ -53,7 +53,7 @@ pub(super) fn closest<const N: usize>(
     }
 }
 
-/// Returns which rays of a packet meet anything, as bits.
+/// Returns the rays of a packet that hit anything, as bits.
 #[inline(always)]
 pub(super) fn occluded<const N: usize>(
     scene: &SceneBvh<'_>,
@@ -93,7 +93,7 @@ pub(super) fn occluded<const N: usize>(
         .sum()
 }
 
-/// Rays of a packet in the space of an instance, where they lie in its box; nothing when none can meet it.
+/// Returns the rays of a packet in the space of an instance, within its box; `None` when none can hit it.
 #[inline(always)]
 fn enter<const N: usize>(
     placed: &PreparedInstance,

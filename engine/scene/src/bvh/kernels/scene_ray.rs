@@ -1,4 +1,4 @@
-//! One ray against everything: static geometry first, then what moves.
+//! Single rays against a scene: static geometry first, then moving instances.
 
 use super::super::instances::InstanceSet;
 use super::super::ray::Ray;
@@ -10,7 +10,7 @@ use super::tree_ray::{HitVisitor, PreparedRay, RayLeafVisitor, meet, traverse};
 use crate::bounds::Aabb;
 use crate::simd_dispatch::SimdKernel;
 
-/// Hands the hits of a ray to `hits`, in no particular order, until one is enough. What comes of it: whether one was.
+/// Passes the hits of a ray to `hits`, in no particular order, until it needs no more. The output: whether it stopped.
 pub(in super::super) struct SceneRayQuery<'a, 'b, H> {
     pub(in super::super) scene: &'a SceneBvh<'b>,
     pub(in super::super) ray: &'a Ray,
@@ -105,7 +105,7 @@ impl<C: Fn(HitIndex) -> TieBreak> HitVisitor for ClosestHitVisitor<'_, C> {
     }
 }
 
-/// Any hit is enough.
+/// Stops at the first hit.
 pub(in super::super) struct AnyHitVisitor;
 
 impl HitVisitor for AnyHitVisitor {

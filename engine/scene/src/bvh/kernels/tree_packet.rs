@@ -1,4 +1,4 @@
-//! Walking a tree with a packet of rays, and what is done at its leaves.
+//! Traversal of a tree by a packet of rays, and its leaf visitors.
 
 use super::super::node::{NodeLink, STACK};
 use super::super::triangles::TriangleBvh;
@@ -16,7 +16,7 @@ pub(in super::super) trait PacketLeafVisitor<const N: usize> {
     fn leaf(&mut self, fan: &mut PreparedPacket<N>, index: usize) -> bool;
 }
 
-/// Visits the leaves that some ray enters before its limit, nearer ones first, until told to stop.
+/// Visits the leaves that some ray enters before its limit, nearer ones first, until the visitor stops it.
 #[inline(always)]
 pub(in super::super) fn traverse<const N: usize>(
     tree: &WideBvh,
@@ -56,7 +56,7 @@ pub(in super::super) fn traverse<const N: usize>(
     }
 }
 
-/// The answers so far of the rays of a packet; see [`ClosestHit`].
+/// The closest hits so far of the rays of a packet; see [`ClosestHit`].
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(in super::super) struct PacketClosestHits<const N: usize> {
@@ -144,7 +144,7 @@ macro_rules! for_each_hit {
     };
 }
 
-/// Offers every hit with a tree's triangles to the answers of the rays.
+/// Offers every hit with a tree's triangles to the results of the rays.
 pub(in super::super) struct ClosestLeafVisitor<'a, const N: usize, C> {
     pub(in super::super) bvh: &'a TriangleBvh,
     pub(in super::super) source: u32,
@@ -165,7 +165,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> PacketLeafVisitor<N>
     }
 }
 
-/// Takes rays out of use that hit anything.
+/// Deactivates rays that hit anything.
 pub(in super::super) struct OccludedLeafVisitor<'a> {
     pub(in super::super) bvh: &'a TriangleBvh,
     pub(in super::super) filter: HitFilter,
@@ -206,7 +206,7 @@ impl<const N: usize, C: Fn(usize, HitIndex) -> TieBreak> ClosestLeafVisitor<'_, 
             new_distance[k] =
                 f32::from_bits((distances[k].to_bits() & chosen) | (before[k].to_bits() & !chosen));
             new_slot[k] = (slot & chosen) | (slots[k] & !chosen);
-            // NaN without a hit keeps the old limit; a doubtful hit is beyond it or lowers it below.
+            // NaN without a hit keeps the old limit; an ambiguous hit is beyond it or lowers it below.
             new_limit[k] = if horizon < before[k] {
                 least(horizon, limits[k])
             } else {

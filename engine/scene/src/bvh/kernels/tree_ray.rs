@@ -1,4 +1,4 @@
-//! One ray against one tree. What is done at leaves and with hits are traits, since closures cannot be made to compile inline.
+//! Single rays against one tree. Leaf and hit visitors are traits, since closures cannot be made to compile inline.
 
 use glam::Vec4;
 
@@ -57,7 +57,7 @@ impl PreparedRay {
         finite(&self.origin) && finite(&self.direction)
     }
 
-    /// Returns where the ray is inside a box, within its own range.
+    /// Returns the interval of the ray inside a box, within its own range.
     #[inline(always)]
     pub(super) fn range_in(&self, bounds: &Aabb) -> (f32, f32) {
         let (min, max) = self.wide.corners(bounds.min.as_ref(), bounds.max.as_ref());
@@ -65,7 +65,7 @@ impl PreparedRay {
         (most(enter, self.near), least(leave, self.far))
     }
 
-    /// Children whose boxes the ray enters up to `limit`, as bits, and where.
+    /// Returns the children whose boxes the ray enters up to `limit`, as bits, and the entry distances.
     #[inline(always)]
     fn enters(&self, node: &Node, limit: f32) -> (u32, Vec4) {
         let (enter, leave) = crossing4(
@@ -80,7 +80,7 @@ impl PreparedRay {
         )
     }
 
-    /// Returns where the ray meets a triangle of a block that it may pass inside, or NaN.
+    /// Returns the distance at which the ray hits a triangle of a block that it may pass inside, or NaN.
     #[inline(always)]
     fn distance(&self, triangles: &TriangleBlock, lane: usize) -> f32 {
         let [x, y, z] = self.direction;
@@ -95,11 +95,11 @@ impl PreparedRay {
 
 /// A visitor of a tree's leaves.
 pub(super) trait RayLeafVisitor {
-    /// Looks into a leaf; may lower the limit beyond which nothing matters. `true`: that is enough.
+    /// Visits a leaf; may lower the limit beyond which nothing matters. Returns whether to stop.
     fn leaf(&mut self, index: usize, limit: &mut f32) -> bool;
 }
 
-/// Visits the leaves that a ray enters before `limit`, nearer ones first, until one is enough.
+/// Visits the leaves that a ray enters before `limit`, nearer ones first, until the visitor stops it.
 #[inline(always)]
 pub(super) fn traverse(
     tree: &WideBvh,
@@ -142,14 +142,14 @@ pub(super) fn traverse(
 
 /// A visitor of hits.
 pub(in super::super) trait HitVisitor {
-    /// Takes one. `true`: that is enough.
+    /// Takes a hit. Returns whether to stop.
     fn found(&mut self, place: HitIndex, distance: f32) -> bool;
 
-    /// The distance beyond which none matters any more.
+    /// Returns the distance beyond which no hit matters.
     fn limit(&self) -> f32;
 }
 
-/// Hands the hits with the triangles of a tree to `hits`, until one is enough; `source` as in [`HitIndex`].
+/// Passes the hits with the triangles of a tree to `hits`, until it stops; `source` as in [`HitIndex`].
 #[inline(always)]
 pub(super) fn meet<H: HitVisitor>(
     bvh: &TriangleBvh,

@@ -1,4 +1,4 @@
-//! Rays against triangles, without cracks.
+//! Watertight ray-triangle intersection.
 //!
 //! Edge functions in Plücker form, each with a bound of its rounding: a ray passes inside when it may, so of the triangles
 //! around an edge or a corner at least one is hit. A triangle grows by some 1e-6 of its distance this way.
@@ -19,7 +19,7 @@ pub(in super::super) struct EdgePlanes {
     /// Per edge the normal of the plane through the edge and the origin; the edges opposite the second corner, the third,
     /// the first. Shape (edge, axis, triangle).
     normals: [[Vec4; 3]; 3],
-    /// By how much the edge functions may be off. Shape (edge, triangle).
+    /// Bounds on the rounding errors of the edge functions. Shape (edge, triangle).
     tolerances: [Vec4; 3],
 }
 
@@ -92,7 +92,7 @@ impl EdgePlanes {
         ]
     }
 
-    /// Triangles that a ray may pass inside, as bits, from either side.
+    /// Returns the triangles that a ray may pass inside, as bits, from either side.
     #[inline(always)]
     pub(in super::super) fn inside(&self, direction: [f32; 3]) -> u32 {
         let ([u, v, w], [tu, tv, tw]) = (self.sides(direction), self.tolerances);
@@ -101,7 +101,7 @@ impl EdgePlanes {
         (lowest.cmpge(Vec4::ZERO) | highest.cmple(Vec4::ZERO)).bitmask()
     }
 
-    /// Triangles that some ray may pass inside whose direction lies between `low` and `high`, as bits.
+    /// Returns the triangles that some ray whose direction lies between `low` and `high` may pass inside, as bits.
     #[inline(always)]
     pub(in super::super) fn inside_any(&self, low: [f32; 3], high: [f32; 3]) -> u32 {
         let bounds = |n: &[Vec4; 3]| {
@@ -124,7 +124,7 @@ impl EdgePlanes {
     }
 }
 
-/// Four triangles as rays with one origin need them, one number after the other.
+/// Four triangles prepared for rays with one origin, one number after the other.
 #[derive(Clone, Copy, Debug)]
 pub(in super::super) struct OriginTriangles {
     /// See [`EdgePlanes`]. Shape (edge, axis, triangle).
@@ -170,7 +170,7 @@ pub(in super::super) fn height_of(block: &TriangleBlock, lane: usize, origin: [f
     dot(block.normal_of(lane), x, y, z)
 }
 
-/// Returns whether edge functions say that the ray may pass inside, from either side.
+/// Returns whether the edge functions allow the ray to pass inside, from either side.
 #[inline(always)]
 pub(in super::super) fn inside([u, v, w]: [f32; 3], [tu, tv, tw]: [f32; 3]) -> bool {
     let lowest = least(least(u + tu, v + tv), w + tw);
@@ -196,12 +196,12 @@ pub(in super::super) fn weights([u, v, w]: [f32; 3]) -> (f32, f32) {
     }
 }
 
-/// Returns where a ray meets a triangle, or NaN. `distance`: of the plane, along the ray; `slope`: its direction along the normal;
-/// `margin`: of boxes.
+/// Returns the distance at which a ray hits a triangle, or NaN. `distance`: of the plane, along the ray; `slope`: its
+/// direction along the normal; `margin`: of boxes.
 ///
-/// Rounding may put the plane's distance outside the range in which the ray crosses the triangle's box, most so at
-/// grazing angles. There it counts as far as the plane is within the margin. So hits lie in the boxes of their triangles,
-/// always, and no box may be passed over wrongly.
+/// Rounding may put the plane's distance outside the range in which the ray crosses the triangle's box, most so at grazing
+/// angles. There it counts as far as the plane is within the margin. So hits always lie in the boxes of their triangles,
+/// and no box can be skipped wrongly.
 #[inline(always)]
 pub(in super::super) fn settled(
     distance: f32,
