@@ -22,7 +22,7 @@ pub enum CalibrationError {
         /// The system's error.
         source: std::io::Error,
     },
-    /// Text that is no JSON, CSV or WAV.
+    /// Text that is no valid JSON, CSV or WAV.
     #[error("{at}: {what}")]
     Syntax {
         /// File and line.
@@ -30,7 +30,7 @@ pub enum CalibrationError {
         /// The fault.
         what: String,
     },
-    /// A field with a value that is not allowed.
+    /// A field with a forbidden value.
     #[error("{at}: {field} is {found}; allowed is {allowed}")]
     Field {
         /// File and line.
@@ -52,7 +52,7 @@ pub enum CalibrationError {
         /// The required content.
         needed: String,
     },
-    /// More than this build takes in.
+    /// More data than this build reads.
     #[error("{at}: {what}: {found}, at most {limit} are read")]
     TooLarge {
         /// The file.
@@ -76,7 +76,7 @@ pub enum CalibrationError {
         /// The required number.
         needed: usize,
     },
-    /// A simulation that could not be made or left the world of numbers.
+    /// A simulation that could not be built or became no number.
     #[error("simulation of {at}: {what}")]
     Simulation {
         /// The episode or the scene.
@@ -90,7 +90,7 @@ pub enum CalibrationError {
 }
 
 impl CalibrationError {
-    /// A field with a value that is not allowed.
+    /// The error of a field with a forbidden value.
     pub(crate) fn field(
         at: impl Into<String>,
         field: impl Into<String>,
@@ -105,7 +105,7 @@ impl CalibrationError {
         }
     }
 
-    /// A simulation that failed.
+    /// The error of a failed simulation.
     pub(crate) fn simulation(at: impl Into<String>, what: impl std::fmt::Display) -> Self {
         Self::Simulation {
             at: at.into(),

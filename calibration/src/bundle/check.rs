@@ -12,12 +12,12 @@ type CheckResult = Result<(), CalibrationError>;
 pub(crate) const SIDES: [&str; 6] = ["floor", "ceiling", "west", "east", "north", "south"];
 /// Episodes below which nothing can be held out.
 const FEWEST_EPISODES: usize = 4;
-/// Of bodies, kg/m3: from a balloon, which is mostly what it floats in, to beyond osmium.
+/// Densities of bodies, kg/m3: from a balloon, which is mostly what it floats in, to beyond osmium.
 const DENSITIES_KG_M3: [f64; 2] = [0.05, 25_000.0];
 /// Poses of an episode below which nothing can be predicted from them.
 const FEWEST_POSES: usize = 6;
 
-/// Names of a manifest by position.
+/// Positions by the names of a manifest.
 pub(super) struct NameIndex {
     entities: BTreeMap<String, usize>,
     channels: BTreeMap<String, usize>,
@@ -70,7 +70,7 @@ fn find(
     })
 }
 
-/// A name of 1 to 128 printable characters.
+/// Checks a name of 1 to 128 printable characters.
 pub(super) fn name(at: &str, field: &str, name: &str) -> CheckResult {
     let fits = (1..=limits::NAME_CHARS).contains(&name.chars().count())
         && !name.chars().any(char::is_control);
@@ -86,19 +86,19 @@ pub(super) fn name(at: &str, field: &str, name: &str) -> CheckResult {
     ))
 }
 
-/// A finite number of at most `limit`.
+/// Checks a finite number of at most `limit`.
 pub(super) fn finite(at: &str, field: &str, value: f64, limit: f64) -> CheckResult {
     range(at, field, value, -limit, limit)
 }
 
-/// A position along an axis, m.
+/// Checks a position along an axis, m.
 pub(super) fn position(at: &str, field: &str, value: f64) -> CheckResult {
     let allowed = "-1000 to 1000 m; are lengths in millimetres? Divide them by 1000, or import with \"metres_per_unit\": \
                    0.001 in the map's table";
     finite(at, field, value, 1e3).map_err(|_| CalibrationError::field(at, field, value, allowed))
 }
 
-/// A time on a clock, s.
+/// Checks a time on a clock, s.
 pub(super) fn time(at: &str, t_s: f64) -> CheckResult {
     range(at, "t_s", t_s, -1e6, 1e6)
 }
@@ -115,7 +115,7 @@ fn range(at: &str, field: &str, value: f64, low: f64, high: f64) -> CheckResult 
     ))
 }
 
-/// A point in the room.
+/// Checks a point in the room.
 pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest) -> CheckResult {
     for (k, axis) in ["x", "y", "z"].iter().enumerate() {
         let field = format!("{field}_{axis}");
@@ -127,7 +127,7 @@ pub(super) fn place(at: &str, field: &str, point: [f64; 3], manifest: &Manifest)
     Ok(())
 }
 
-/// The manifest's own ranges.
+/// Checks the manifest's own ranges.
 pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
     if !(1..=VERSION).contains(&manifest.version) {
         let allowed = format!("1 to {VERSION}, the versions this build reads");
@@ -246,14 +246,14 @@ pub(super) fn manifest(at: &str, manifest: &Manifest) -> CheckResult {
     channels(at, manifest)
 }
 
-/// A length of a body, m: 1 mm to 10 m.
+/// Checks a length of a body, m: 1 mm to 10 m.
 fn length(at: &str, field: &str, value: f64) -> CheckResult {
     let allowed = "0.001 to 10 m; is it in millimetres? Divide it by 1000";
     range(at, field, value, 1e-3, 10.0)
         .map_err(|_| CalibrationError::field(at, field, value, allowed))
 }
 
-/// A mass that something of this volume can have.
+/// Checks that something of this volume can have a mass.
 fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> CheckResult {
     let found = mass_kg / volume_m3;
     let hint = if found > DENSITIES_KG_M3[1] {
@@ -269,7 +269,7 @@ fn density(at: &str, field: &str, mass_kg: f64, volume_m3: f64) -> CheckResult {
     Err(CalibrationError::field(at, field, found, allowed))
 }
 
-/// A sphere or a box, and an inertia that such a body can have.
+/// Checks a sphere or a box, and an inertia that such a body can have.
 fn shape(at: &str, of: &dyn Fn(&str) -> String, body: &BodyManifest) -> CheckResult {
     match (body.radius_m, body.half_extents_m) {
         (Some(radius), None) => {
@@ -450,7 +450,7 @@ fn missing(at: &str, what: &str, needed: &str) -> CalibrationError {
     }
 }
 
-/// Returns whether there is enough to work with.
+/// Checks that the data suffice.
 pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     let scene = &bundle.manifest.scene;
     let at = format!("{}/manifest.json", bundle.name);
@@ -564,7 +564,7 @@ pub(super) fn complete(bundle: &Bundle) -> CheckResult {
     unit_checks::motion(&bundle.name, &bundle.manifest, &bundle.episodes)
 }
 
-/// Returns whether no episode is longer than can be computed.
+/// Checks that no episode is longer than can be computed.
 fn durations(bundle: &Bundle) -> CheckResult {
     for episode in &bundle.episodes {
         let samples = episode.samples.iter().map(|s| s.t_s);

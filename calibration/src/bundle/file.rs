@@ -1,4 +1,4 @@
-//! The bundle's files as they are written: plain structs without meaning.
+//! The bundle's files as they are written: plain structs without interpretation.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -73,11 +73,11 @@ pub enum AngularFrame {
     World,
 }
 
-/// The situation in which was measured.
+/// The situation of the measurement.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneManifest {
-    /// The air and the place.
+    /// The air and gravity.
     #[serde(default)]
     pub environment: AmbientConditions,
     /// Bodies that are tracked.
@@ -97,7 +97,7 @@ pub struct SceneManifest {
     pub base: Option<BaseManifest>,
 }
 
-/// A base with two driven wheels side by side, as it is believed to be before any fit.
+/// A base with two driven wheels side by side, with the values assumed before any fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaseManifest {
@@ -109,7 +109,7 @@ pub struct BaseManifest {
     pub rate_hz: f64,
 }
 
-/// A flat board, the plane y = 0, with the contact values that are taken for it and the body before any fit.
+/// A flat board, the plane y = 0, with the contact values of it and the body that are assumed before any fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BoardManifest {
@@ -119,21 +119,21 @@ pub struct BoardManifest {
     pub restitution: f64,
 }
 
-/// Air and place; `null` where it was not measured.
+/// Air and gravity; `null` where it was not measured.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AmbientConditions {
-    /// Degrees Celsius; `null`: 20 is taken.
+    /// Temperature, degrees Celsius; `null`: 20 is assumed.
     pub temperature_c: Option<f64>,
-    /// Relative humidity, percent; `null`: 50 is taken.
+    /// Relative humidity, percent; `null`: 50 is assumed.
     pub humidity_pct: Option<f64>,
-    /// Static pressure, Pa; `null`: 101,325 is taken.
+    /// Static pressure, Pa; `null`: 101,325 is assumed.
     pub pressure_pa: Option<f64>,
-    /// Local acceleration of free fall, m/s²; `null`: standard gravity is taken.
+    /// Local acceleration of free fall, m/s²; `null`: standard gravity is assumed.
     pub g_m_s2: Option<f64>,
 }
 
-/// A body that is tracked: a sphere or a box.
+/// A tracked body: a sphere or a box.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyManifest {
@@ -141,7 +141,7 @@ pub struct BodyManifest {
     pub name: String,
     /// kg.
     pub mass_kg: f64,
-    /// Of a sphere, m; `null` for a box.
+    /// Radius of a sphere, m; `null` for a box.
     #[serde(default)]
     pub radius_m: Option<f64>,
     /// Half of each edge of a box, m; `null` for a sphere.
@@ -166,7 +166,7 @@ pub struct JointManifest {
     pub damping_n_m_s_rad: f64,
     /// Servo's strongest torque, N·m.
     pub max_torque_n_m: f64,
-    /// Coulomb friction that is known, N·m.
+    /// Known Coulomb friction, N·m.
     #[serde(default)]
     pub friction_n_m: f64,
 }
@@ -185,7 +185,7 @@ pub struct RoomManifest {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SurfaceManifest {
-    /// A substance of the engine's table, from which comes what is not given here.
+    /// A substance of the engine's table, which supplies the values that are not given here.
     pub substance: Option<String>,
     /// Absorption of energy at band centres in Hz.
     pub absorption: Option<BandTable>,
@@ -220,7 +220,7 @@ pub struct ChannelManifest {
 /// A row of `episodes.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeRow {
-    /// The name that other files use.
+    /// The name that other files use for it.
     pub episode: String,
     /// Episodes of one group (session, object, room) are held out together.
     pub split_group: String,

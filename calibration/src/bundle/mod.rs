@@ -1,4 +1,4 @@
-//! The measured bundle: a folder `NAME.measured/` with what was measured and in which situation.
+//! The measured bundle: a folder `NAME.measured/` with the measurements and their situation.
 //!
 //! | file | columns or content |
 //! | --- | --- |
@@ -9,7 +9,7 @@
 //! | `ir.csv` | `episode, file, source_x, source_y, source_z, receiver_x, receiver_y, receiver_z, rate_hz` (kind `impulse_response`) |
 //! | `poses.csv` | `episode, t_s, entity, x, y, z, qx, qy, qz, qw, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`) |
 //! | `starts.csv` | `episode, sample, vx, vy, vz, wx, wy, wz` (kind `pose_trajectory`; may be absent) |
-//! | `odometry.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `odometry`) |
+//! | `drive.csv` | `episode, t_s, x, y, heading, left_rad, right_rad` (kind `drive`) |
 //! | `ir/*.wav` | the responses that `ir.csv` names |
 //!
 //! Everything is SI; axes are the engine's (right-handed, y up).
@@ -105,7 +105,7 @@ pub(crate) struct MeasuredResponse {
 }
 
 impl Bundle {
-    /// Returns what kind of measurement it is.
+    /// Returns the kind of measurement.
     pub(crate) fn kind(&self) -> BundleKind {
         self.manifest.kind
     }

@@ -1,4 +1,4 @@
-//! Drives of a robot: what stands in `drive.csv`, and whether it can be what it says.
+//! Drives of a robot: the content of `drive.csv`, and its plausibility.
 
 use super::check;
 use super::file::{BaseManifest, DriveRow, Manifest};
@@ -10,12 +10,12 @@ use std::path::Path;
 
 /// Samples below which nothing can be predicted.
 const FEWEST_SAMPLES: usize = 42;
-/// Way by the wheels above which it is compared with the tracker's, m.
+/// Path length by the wheels above which it is compared with the tracker's, m.
 const TELLING_WAY_M: f64 = 1.0;
-/// Way by the wheels over that by the tracker beyond which something is wrong with units or signs.
+/// Ratios of the path length by the wheels to that by the tracker beyond which units or signs are wrong.
 const WAYS: [f64; 2] = [0.5, 2.0];
 
-/// Squares of turns in a sample by the wheels, added up, above which their sense is compared with the tracker's, rad2.
+/// Sum of squared turns in a sample by the wheels above which their sense is compared with the tracker's, rad2.
 const TELLING_TURN_RAD2: f64 = 0.01;
 
 type OdometryCheck = Result<(), CalibrationError>;
@@ -48,7 +48,7 @@ pub(super) fn read(
     Ok(())
 }
 
-/// Returns whether the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
+/// Checks that the drives are what the manifest says: long enough, evenly spaced, and with wheels that go as far as the robot.
 pub(super) fn complete(
     name: &str,
     manifest: &Manifest,
@@ -87,11 +87,11 @@ struct WheelAndTrackerPaths {
     wheels_m: f64,
     /// Along the heading, so that a tracker's noise does not add up.
     tracker_m: f64,
-    /// The same, were headings degrees.
+    /// The same, if headings were degrees.
     by_degrees_m: f64,
-    /// By the wheels, were the turns counted since the start.
+    /// By the wheels, if the turns were counted since the start.
     since_start_m: f64,
-    /// By the wheels in a sample, squared, and times what the tracker saw.
+    /// Turn by the wheels in a sample, squared, and times that by the tracker.
     turned: f64,
     turned_both: f64,
 }

@@ -1,4 +1,4 @@
-//! Pose trajectories: what stands in `poses.csv` and `starts.csv`, and whether it can be what it says.
+//! Pose trajectories: the content of `poses.csv` and `starts.csv`, and its plausibility.
 
 use super::check::{self, NameIndex};
 use super::file::{AngularFrame, Manifest, PoseRow, StartRow};
@@ -11,11 +11,11 @@ use std::path::Path;
 
 /// Largest deviation of a quaternion's length from one.
 const UNIT_TOLERANCE: f64 = 1e-3;
-/// Share of the turning speed, or of the speed, that a test of the velocities must leave unexplained before it speaks.
+/// Share of the turning speed, or of the speed, that a test of the velocities must leave unexplained to refute them.
 const WRONG_SHARE: f64 = 0.5;
-/// Below this speed, m/s or rad/s, a sample says nothing about frames or units.
+/// Speed below which a sample says nothing about frames or units, m/s or rad/s.
 const TELLING_SPEED: f64 = 0.5;
-/// Samples that must be telling before a test speaks.
+/// Smallest number of such samples for a test.
 const FEWEST_TELLING: usize = 50;
 
 type PoseCheck = Result<(), CalibrationError>;
@@ -28,7 +28,7 @@ pub(super) fn read(
     manifest: &Manifest,
     episodes: &mut [MeasuredEpisode],
 ) -> PoseCheck {
-    // `check::manifest` has asked for the form.
+    // `check::manifest` has required the form.
     let frame = manifest
         .poses
         .as_ref()
@@ -152,7 +152,7 @@ fn in_world(frame: AngularFrame, world_from_body: DQuat, angular: DVec3) -> DVec
     }
 }
 
-/// Returns whether the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
+/// Checks that the poses of all episodes are what the manifest says: evenly spaced, long enough, and with velocities that
 /// agree with the poses in unit, sign, frame and clock.
 pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> PoseCheck {
     let Some(form) = &manifest.poses else {
@@ -177,13 +177,13 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpis
     velocities(name, form.angular_velocity, step_s, episodes)
 }
 
-/// Sums of squares over samples that move fast enough to tell.
+/// Sums of squares over samples that move fast enough.
 #[derive(Default)]
 struct Mismatch {
     told: f64,
     left: f64,
     other_left: f64,
-    /// Told along what the poses show, and the latter alone.
+    /// Products of the stated velocities with those that the poses show, and squares of the latter.
     along: f64,
     shown: f64,
     count: usize,

@@ -1,4 +1,4 @@
-//! From files to a checked [`Bundle`].
+//! Reading of files into a checked [`Bundle`].
 
 use super::check::{self, NameIndex};
 use super::file::{BundleKind, CommandRow, EpisodeRow, Manifest, ResponseRow, TrajectoryRow};

@@ -3,7 +3,7 @@
 use crate::error::CalibrationError;
 use csv::{DeserializeErrorKind, ErrorKind, StringRecord};
 
-/// The fault of a row that is none: file and line, column, what was found, what to change.
+/// The fault of an invalid row: file and line, column, what was found, what to change.
 pub(super) fn fault(
     at: &str,
     error: &csv::Error,

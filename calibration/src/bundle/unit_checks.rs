@@ -11,17 +11,17 @@ type UnitCheck = Result<(), CalibrationError>;
 const SPACING_TOLERANCE: f64 = 0.05;
 /// Largest deviation of a factor from the one that explains it.
 const FACTOR_TOLERANCE: f64 = 0.3;
-/// Samples further apart than this show no motion, s.
+/// Spacing above which samples show no motion, s.
 const LONGEST_STEP_S: f64 = 0.5;
-/// Share of a motion that must fall as things fall for nothing to be said.
+/// Share of a motion that must fall as things fall for no fault to be reported.
 const FALLING_SHARE: f64 = 0.1;
-/// Share that must fall in another unit or along another axis, to two of three reaches at least, for that to be said.
+/// Share that must fall in another unit or along another axis, for two of three reaches at least, for a fault to be reported.
 const TELLING_SHARE: f64 = 0.25;
-/// Below this a rise after a fall is no bounce, m; nor below so many standard deviations of the noise.
+/// Height below which a rise after a fall is no bounce, m; nor below so many standard deviations of the noise.
 const LEAST_RISE_M: f64 = 0.02;
 const RISE_SD: f64 = 12.0;
 
-/// A unit that is taken for the SI one: what it is called, how many of it are one of SI.
+/// A unit that may be mistaken for the SI one: its name, and how many of it are one of SI.
 type UnitScale = (&'static str, f64);
 
 const LENGTHS: [UnitScale; 4] = [
@@ -42,7 +42,7 @@ fn is_near(found: f64, wanted: f64, tolerance: f64) -> bool {
     (found / wanted - 1.0).abs() <= tolerance
 }
 
-/// Returns what to do about numbers in another unit. `key`: of the map of `dwell measure import`.
+/// Returns the remedy for numbers in another unit. `key`: of the map of `dwell measure import`.
 fn convert(what: &str, unit: UnitScale, key: &str) -> String {
     let (name, factor) = unit;
     let digits = if factor.fract() == 0.0 { 0 } else { 4 };
@@ -52,13 +52,13 @@ fn convert(what: &str, unit: UnitScale, key: &str) -> String {
     )
 }
 
-/// Returns what to do about angles that are larger by `factor` than radians; empty where degrees do not explain it.
+/// Returns the remedy for angles that are larger by `factor` than radians; empty where degrees do not explain it.
 pub(super) fn degrees(what: &str, factor: f64) -> Option<String> {
     is_near(factor, DEGREES, FACTOR_TOLERANCE)
         .then(|| convert(what, ("degrees", DEGREES), "radians_per_unit"))
 }
 
-/// Returns what to do about lengths that are larger by `factor` than metres; empty where no unit explains it.
+/// Returns the remedy for lengths that are larger by `factor` than metres; empty where no unit explains it.
 pub(super) fn lengths(what: &str, factor: f64) -> Option<String> {
     let unit = LENGTHS
         .iter()
@@ -71,7 +71,7 @@ fn median(values: &mut [f64]) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-/// Refuses times that stand twice, or that do not rise evenly at a rate. `times`: rising.
+/// Refuses times that occur twice, or that do not rise evenly at a rate. `times`: rising.
 pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> UnitCheck {
     let Some(first) = times.first() else {
         return Ok(());
@@ -115,7 +115,7 @@ pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> Unit
     Err(CalibrationError::field(at, "t_s", times[k], allowed))
 }
 
-/// One number of a body over time.
+/// A coordinate of a body over time.
 struct CoordinateTrack {
     t_s: Vec<f64>,
     m: Vec<f64>,
@@ -139,10 +139,10 @@ impl CoordinateTrack {
         median(&mut sizes).unwrap_or(0.0) / (0.674_5 * 20.0_f64.sqrt())
     }
 
-    /// Returns where the body turns from falling to rising, which no flight does, and by how much it rises: (s, m).
+    /// Returns the point where the body turns from falling to rising, which no flight does, and the height of the rise: (s, m).
     fn bounce(&self) -> Option<(f64, f64)> {
         let least = LEAST_RISE_M.max(RISE_SD * self.noise_m());
-        // Without what one sample alone shows.
+        // Without outliers of one sample.
         let calm: Vec<f64> = self
             .m
             .windows(3)
@@ -189,7 +189,7 @@ fn tracks(manifest: &Manifest, episode: &MeasuredEpisode) -> [CoordinateTrack; 3
     })
 }
 
-/// Returns whether bodies fall along y by what the manifest says, in metres and seconds, and whether flights are flights alone.
+/// Checks that bodies fall along y by what the manifest says, in metres and seconds, and that flights are flights alone.
 pub(super) fn motion(name: &str, manifest: &Manifest, episodes: &[MeasuredEpisode]) -> UnitCheck {
     let file = match manifest.kind {
         BundleKind::Trajectory => "trajectory.csv",
@@ -222,7 +222,7 @@ type AxisGuess = (usize, f64, Option<UnitScale>);
 /// Refuses motions of which hardly any falls along y, while most fall along another axis or in another unit.
 fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitCheck {
     let g = manifest.scene.environment.g_m_s2.unwrap_or(9.806_65);
-    // By how many samples an acceleration reaches: near ones catch short flights, far ones see through noise.
+    // Reaches of an acceleration, samples: near ones catch short flights, far ones see through noise.
     let shares = [4, 8, 16].map(|part| {
         let mut found: BTreeMap<(usize, i8, usize), usize> = BTreeMap::new();
         let mut counts = [0_usize; 3];
@@ -244,7 +244,7 @@ fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitChe
         }
     });
     let share = |key| shares.iter().map(|of| of(key)).fold(0.0, f64::max);
-    // Steps of what measures, a millimetre each, look like any fall to near samples, but not to further ones.
+    // Quantization steps, a millimetre each, look like any fall to near samples, but not to further ones.
     let telling = |key| {
         let mut found = shares.each_ref().map(|of| of(key));
         found.sort_by(f64::total_cmp);
@@ -279,7 +279,7 @@ fn factors() -> impl Iterator<Item = f64> {
     std::iter::once(1.0).chain(LENGTHS.iter().map(|unit| unit.1))
 }
 
-/// Returns what to change where a guess holds.
+/// Returns the remedy for a guess.
 fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
     let mut told = String::new();
     if axis != 1 {

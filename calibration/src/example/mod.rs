@@ -23,7 +23,7 @@ const RADIUS_M: f64 = 0.02;
 const AIR_KG_M3: f64 = 1.204;
 
 /// Writes a bundle into `folder` (made where it is missing): a light ball is thrown across a room and filmed, and air
-/// drag, which the simulation lacks, slows it down. Answers what was hidden, in a sentence.
+/// drag, which the simulation lacks, slows it down. Returns the hidden effect, in a sentence.
 ///
 /// # Errors
 /// [`CalibrationError::Write`] names the file.

@@ -89,7 +89,7 @@ impl CmaEs {
             .collect()
     }
 
-    /// Takes the points with what each costs; a cost that is no number is the worst.
+    /// Takes the points with their costs; a cost that is no number is the worst.
     pub(crate) fn tell(&mut self, points: &[Vec<f64>], costs: &[f64]) {
         let mut order: Vec<usize> = (0..points.len().min(costs.len())).collect();
         let cost = |k: usize| {
@@ -134,7 +134,7 @@ impl CmaEs {
         self.sigma = (self.sigma * libm::exp(grown)).clamp(1e-6, 0.5);
     }
 
-    /// The middle of the distribution, in the unit cube.
+    /// The mean of the distribution, in the unit cube.
     pub(crate) fn mean(&self) -> Vec<f64> {
         self.mean.iter().map(|value| reflected(*value)).collect()
     }

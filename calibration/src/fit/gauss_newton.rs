@@ -74,7 +74,7 @@ impl FitTask<'_> {
         self.run(Vec::new(), start)
     }
 
-    /// The sum of squares at a point, nothing fitted.
+    /// The sum of squares at a point, without a fit.
     pub(crate) fn loss_at(&self, point: &ParameterVector) -> Result<f64, CalibrationError> {
         Ok(total(&self.evaluate(point)?.residuals, HuberLoss::SQUARE))
     }
@@ -130,7 +130,7 @@ impl FitTask<'_> {
                     break;
                 }
                 let trial = self.moved(global, point, &step);
-                // A trial that the engine refuses is a step too far.
+                // A trial that the engine refuses is too large a step.
                 let there = self
                     .evaluate(&trial)
                     .ok()

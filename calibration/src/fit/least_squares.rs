@@ -1,4 +1,4 @@
-//! Least squares over a few parameters, for any function that tells its residuals.
+//! Least squares over a few parameters, for any function that returns residuals.
 
 use super::robust::HuberLoss;
 use crate::error::CalibrationError;
@@ -10,15 +10,15 @@ pub(crate) struct Variable {
     pub(crate) start: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
-    /// A change that is small and can be seen.
+    /// Step of the finite differences: small, but large enough to be seen.
     pub(crate) step: f64,
 }
 
 const MOST_DAMPINGS: usize = 5;
-/// Share of the loss whose fall ends the iteration.
+/// Relative decrease of the loss at which the iteration ends.
 const TOLERANCE: f64 = 1e-4;
 
-/// The values that make the residuals small, outliers counting less (Huber's loss): damped Gauss-Newton with forward
+/// The values that minimize the residuals, with Huber's loss for outliers: damped Gauss-Newton with forward
 /// differences, `most` iterations. A parameter that nothing depends on stays where it starts.
 pub(crate) fn least_squares(
     variables: &[Variable],

@@ -1,4 +1,4 @@
-//! Samples far from the rest count less.
+//! Robust losses: samples far from the rest count less.
 
 /// Number of robust standard deviations from which on a residual counts less.
 const TURN: f64 = 3.0;

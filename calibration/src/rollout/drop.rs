@@ -80,7 +80,7 @@ impl BallDrops {
             });
         };
         let balls = manifest.scene.bodies.iter().map(|body| {
-            // `bundle::read` has asked for the radius.
+            // `bundle::read` has required the radius.
             let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             (body.name.clone(), ball)
         });

@@ -151,7 +151,7 @@ impl PoseTracks {
     }
 }
 
-/// Apart by a tenth of the width or ten degrees, two predictions are of different outcomes.
+/// Distances beyond which two predictions are of different outcomes: a tenth of the width or ten degrees.
 const DIVERGED_WIDTHS: f64 = 0.1;
 const DIVERGED_RAD: f64 = 0.174_533;
 

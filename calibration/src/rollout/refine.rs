@@ -1,4 +1,4 @@
-//! Is it the solver? The same windows with a quarter of the step.
+//! Refinement: the same windows with a quarter of the step, to find the solver's share of the residuals.
 
 use super::motion::Deviation;
 use super::regime::Regime;
@@ -9,11 +9,11 @@ use serde::Serialize;
 
 /// Number of steps of the finer simulation that make one of the other.
 pub const FINER: u32 = 4;
-/// A median residual that a finer step changes by more than this share is named an artefact of the solver.
+/// Relative change of a median residual by a finer step above which it is an artefact of the solver.
 const ARTEFACT_SHARE: f64 = 0.1;
-/// Smaller changes, mm and degrees, are none.
+/// Changes below which nothing has changed, mm and degrees.
 const LEAST_CHANGE: [f64; 2] = [0.01, 0.01];
-/// Windows below which a median says nothing.
+/// Number of windows below which a median says nothing.
 const FEWEST: usize = 20;
 
 /// The effect of a finer step in windows of one horizon and regime. Windows that diverge are left out.
@@ -87,7 +87,7 @@ pub fn refinements(coarse: &[WindowEnd], fine: &[WindowEnd]) -> Vec<Refinement> 
     found
 }
 
-/// Returns what came out, in a sentence.
+/// Returns the result, in a sentence.
 pub(crate) fn sentence(model: &str, refinements: &[Refinement]) -> String {
     let artefacts = refinements.iter().filter(|r| r.artefact);
     let told: Vec<String> = artefacts

@@ -11,7 +11,7 @@ use serde::Serialize;
 pub enum Regime {
     /// Nothing touches it.
     Flight,
-    /// Within two samples of a blow.
+    /// Within two samples of an impact.
     Impact,
     /// It touches the board and moves: it slides, rolls or tips.
     Contact,
@@ -70,13 +70,13 @@ impl Regime {
     }
 }
 
-/// A lowest corner above this height touches nothing, m: real boards and trackers are a few millimetres off.
+/// Height of the lowest corner above which nothing is touched, m: real boards and trackers are a few millimetres off.
 const CLEAR_M: f64 = 0.006;
-/// A change of the velocity of the origin in one sample, beyond that of free fall, that only a blow makes, m/s.
+/// Change of the velocity of the origin in one sample, beyond that of free fall, that only an impact makes, m/s.
 const BLOW_M_S: f64 = 0.15;
-/// Samples around a blow that belong to it.
+/// Samples around an impact that belong to it.
 const BLOW_SAMPLES: usize = 2;
-/// Below this speed of every corner a body lies still, m/s.
+/// Speed of every corner below which a body lies still, m/s.
 const STILL_M_S: f64 = 0.03;
 
 /// The regime of every sample.

@@ -63,8 +63,8 @@ pub struct Quantiles {
 /// A model's name and its windows; the windows of all models are the same.
 pub(crate) type ModelWindows<'a> = (&'a str, &'a [WindowEnd]);
 
-/// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and by `kinds` (of each episode) where these
-/// are more than one.
+/// All pictures of the windows that look `horizon` samples ahead: position and, where there are, rotation, by regime, by speed, and
+/// by `kinds` (of each episode) where these are more than one.
 pub(crate) fn all(
     rows: &[ModelWindows<'_>],
     horizon: usize,
@@ -137,7 +137,7 @@ fn by_speed(rows: &[(&str, Vec<&WindowEnd>)], residual: Residual) -> Vec<Residua
     groups.flatten().collect()
 }
 
-/// Quantiles of the windows that belong and that diverge in no model.
+/// Quantiles of the windows that belong to the group and that diverge in no model.
 fn group(
     rows: &[(&str, Vec<&WindowEnd>)],
     residual: Residual,

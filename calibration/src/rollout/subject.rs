@@ -10,22 +10,22 @@ pub trait RolloutSubject: Sync {
     /// The simulation, set to some values.
     type Rig: Send + Sync;
 
-    /// Returns how many episodes.
+    /// Returns the number of episodes.
     fn count(&self) -> usize;
 
-    /// Returns what was measured, at even spacing. Shape (sample,).
+    /// Returns the measured motion, at even spacing. Shape (sample,).
     fn measured(&self, episode: usize) -> &[MeasuredMotion];
 
-    /// Returns what the body did at each sample. Shape (sample,).
+    /// Returns the regime at each sample. Shape (sample,).
     fn regimes(&self, episode: usize) -> &[Regime];
 
-    /// Samples before a start that its state is estimated from and that must be there.
+    /// Number of samples before a start from which its state is estimated.
     fn past(&self) -> usize;
 
-    /// Apart by more than this, two predictions are of different outcomes.
+    /// The deviation beyond which two predictions are of different outcomes.
     fn divergence(&self) -> Deviation;
 
-    /// Returns how many samples ahead a residual tells most: pictures show that horizon, one of [`HORIZONS`](super::HORIZONS).
+    /// Returns the most informative horizon, which pictures show, one of [`HORIZONS`](super::HORIZONS).
     fn telling_horizon(&self) -> usize {
         10
     }

@@ -4,7 +4,7 @@ use super::score::Score;
 use crate::fit::median;
 use serde::Serialize;
 
-/// Over episodes.
+/// Statistics over episodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct EpisodeSpread {
     /// Mean.
@@ -16,7 +16,7 @@ pub struct EpisodeSpread {
 }
 
 impl EpisodeSpread {
-    /// Of some values.
+    /// The statistics of some values.
     pub fn of(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
@@ -29,7 +29,7 @@ impl EpisodeSpread {
     }
 }
 
-/// Below this `e_q` a toss counts as predicted.
+/// The `e_q` below which a toss counts as predicted.
 const PREDICTED_E_Q: f64 = 0.05;
 
 /// Scores of many episodes in one row.
@@ -48,7 +48,7 @@ pub struct ScoreSummary {
 }
 
 impl ScoreSummary {
-    /// Of some scores.
+    /// The summary of some scores.
     pub fn of(scores: &[Score]) -> Self {
         let column = |f: fn(&Score) -> f64| scores.iter().map(f).collect::<Vec<f64>>();
         let predicted = scores.iter().filter(|score| score.e_q < PREDICTED_E_Q);

@@ -17,7 +17,7 @@ const NUDGES: u64 = 4;
 /// The starts of windows, and their evaluation.
 #[derive(Clone, Copy, Debug)]
 pub struct WindowOptions {
-    /// They start at every so many samples.
+    /// Samples from one start to the next.
     pub stride: usize,
     /// Seed of the chaos guard's nudges; `None`: no guard, nothing diverges.
     pub guard: Option<RandomKey>,
@@ -124,7 +124,7 @@ pub fn ends<S: RolloutSubject>(
     Ok(found?.concat())
 }
 
-/// Returns what the windows deviate by, by horizon and regime; those that diverge apart.
+/// Returns the deviations of the windows, by horizon and regime; those that diverge apart.
 pub fn windows(ends: &[WindowEnd]) -> Vec<WindowScore> {
     let mut scores = Vec::new();
     for horizon in HORIZONS {

@@ -6,17 +6,17 @@ use crate::error::CalibrationError;
 use crate::twin::{ResidualStructure, range_of};
 use serde::Serialize;
 
-/// Standard deviations of difference from which on the name is refuted.
+/// Number of standard deviations of difference from which on the name is refuted.
 const REFUTED: f64 = 4.0;
-/// Differences under this share of the value are no refutation: masses and sizes are never known better.
+/// Share of the value below which a difference is no refutation: masses and sizes are never known better.
 const ALLOWED_SHARE: f64 = 0.05;
 
 /// The first parameter of a cause, fitted apart in the episodes that feel it least and most.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Agreement {
-    /// Fitted in the half of the episodes that feels it least.
+    /// Its fit in the half of the episodes that feels it least.
     pub weak: f64,
-    /// Fitted in the half that feels it most.
+    /// Its fit in the half that feels it most.
     pub strong: f64,
     /// Their difference over its standard deviation.
     pub z: f64,

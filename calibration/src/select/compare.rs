@@ -1,4 +1,4 @@
-//! One model against the model without it.
+//! Comparison of a model with the model without one cause.
 
 use super::gain::{HeldOutGain, gain};
 use super::residual::effective_count;
@@ -32,7 +32,7 @@ pub(crate) struct ScoredModel {
 }
 
 impl ScoredModel {
-    /// Independent numbers in a number.
+    /// Independent residuals per residual.
     pub(crate) fn effective_weight(&self) -> f64 {
         self.effective_count / self.fit.data.max(1) as f64
     }
@@ -114,8 +114,8 @@ impl CauseComparison<'_> {
         })
     }
 
-    /// Returns how much better `larger` is than `smaller`. `effective_weight`: independent numbers in a number, the same for all models that
-    /// are compared: a wrong model's residuals are correlated because it is wrong.
+    /// Returns the advantage of `larger` over `smaller`. `effective_weight`: independent residuals per residual, the same for all models
+    /// that are compared: a wrong model's residuals are correlated because it is wrong.
     ///
     /// # Source
     /// G. Schwarz, Ann. Stat. 6, 461 (1978), with a noise scale that is fitted and the effective count of data.

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// Gain on held-out episodes, each with its 95 % interval over episodes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeldOutGain {
-    /// Share of the held-out squared error that goes away.
+    /// Relative decrease of the held-out squared error.
     pub share: f64,
     /// Its interval.
     pub share_interval: [f64; 2],
@@ -17,7 +17,7 @@ pub struct HeldOutGain {
 }
 
 /// Compares the losses of two models episode by episode. `scale`: mean squared residual of the better model where it was
-/// fitted; `worth`: independent numbers in a number.
+/// fitted; `worth`: independent residuals per residual.
 ///
 /// # Source
 /// B. Efron, Ann. Stat. 7, 1 (1979): percentiles of the bootstrap.
@@ -61,7 +61,7 @@ pub(super) fn gain(
     }
 }
 
-/// The share of a squared error that goes away from `before` to `after` (of each group), and its 95 % interval.
+/// The relative decrease of a squared error from `before` to `after` (of each group), and its 95 % interval.
 pub(crate) fn share_gained(
     before: &[f64],
     after: &[f64],

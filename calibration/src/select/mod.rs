@@ -1,4 +1,4 @@
-//! Selection: which cause the data ask for, and whether they name it.
+//! Selection: the cause that the data support, and whether they identify it.
 
 mod agreement;
 mod compare;

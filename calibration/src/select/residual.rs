@@ -16,7 +16,7 @@ pub struct ChannelResidual {
     pub count: usize,
     /// Effective number of independent residuals, by their autocorrelation.
     pub effective_count: f64,
-    /// Correlation of what is left with itself one sample later.
+    /// Correlation of residuals with the next one.
     pub autocorrelation: f64,
     /// Mean of measured minus simulated, in the unit.
     pub bias: f64,
@@ -56,7 +56,7 @@ fn autocorrelation(sequences: &[&[f64]]) -> f64 {
     if square > 0.0 { product / square } else { 0.0 }
 }
 
-/// Returns how many independent numbers `count` autocorrelated ones are worth.
+/// Returns the effective number of `count` autocorrelated values.
 ///
 /// # Source
 /// G. V. Bayley, J. M. Hammersley, Suppl. J. R. Stat. Soc. 8, 184 (1946), for an autoregression of first order.
@@ -154,7 +154,7 @@ pub(crate) fn by_channel(
     report
 }
 
-/// Returns how many independent numbers all residuals are worth.
+/// Returns the effective number of all residuals.
 pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f64>]) -> f64 {
     match twin.structure() {
         ResidualStructure::OverTime => {
@@ -189,7 +189,7 @@ pub(super) fn effective_count(twin: &dyn Twin, set: &[usize], residuals: &[Vec<f
 /// A test for residuals beyond noise.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct UnexplainedResidual {
-    /// Mean square of what is left over that of its noise: 1 for noise alone.
+    /// Mean square of the residuals over that of their noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.
     pub threshold: f64,

@@ -4,7 +4,7 @@ use crate::twin::EpisodeData;
 use dwell_scene::random::RandomKey;
 use std::collections::BTreeSet;
 
-/// Positions of the episodes that are fitted, and of those that judge.
+/// Positions of the episodes for fitting, and of those held out.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct EpisodeSplit {
     pub(crate) train: Vec<usize>,

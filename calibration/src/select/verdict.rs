@@ -14,7 +14,7 @@ use dwell_scene::parallel::Threads;
 /// Share of the misfit that a name must explain where something systematic is left.
 const LEAST_EXPLAINED: f64 = 0.8;
 
-/// All that was found, before it is put into words.
+/// All findings, before they are put into words.
 pub(crate) struct Findings {
     pub(crate) split: EpisodeSplit,
     /// Nuisances alone.
@@ -144,7 +144,7 @@ pub(crate) fn explain(
     })
 }
 
-/// Fits the nuisances, and takes the noise of channels that do not say it from what is left.
+/// Fits the nuisances, and estimates the noise of channels that do not state it from the residuals.
 fn estimate_noise(
     twin: &mut dyn Twin,
     split: &EpisodeSplit,
@@ -254,7 +254,7 @@ fn decide(
         };
         return Ok((decision, base.clone()));
     };
-    // Rivals count whether or not each passes on its own: what fits as well could be it.
+    // Rivals count whether or not each passes on its own: a cause that fits as well could be it.
     let close = |single: &&SingleCause| {
         best.against.delta_bic - single.against.delta_bic < all.options.rival_delta_bic
     };
@@ -302,7 +302,7 @@ fn nearest(all: &CauseComparison<'_>, singles: &[SingleCause]) -> String {
     }
 }
 
-/// Looks for a second cause beside the first.
+/// Searches for a second cause beside the first.
 fn second_cause(
     all: &CauseComparison<'_>,
     first: &SingleCause,
@@ -311,7 +311,7 @@ fn second_cause(
     let remainder =
         UnexplainedResidual::of(all.twin, &all.split.train, &first.judged.fit.residuals);
     let alone = (Decision::Named(vec![first.cause]), first.judged.clone());
-    // A second cause is looked for only where the first leaves something.
+    // A second cause is searched only where the first leaves structure.
     if !remainder.is_structured() {
         return Ok(alone);
     }

@@ -1,4 +1,4 @@
-//! An impulse response in numbers: levels in bands and windows of time.
+//! Features of an impulse response: levels in bands and windows of time.
 
 use crate::bundle::MeasuredResponse;
 use dwell_acoustics::Echogram;
@@ -28,7 +28,7 @@ pub(super) fn bands(rate_hz: u32) -> std::ops::Range<usize> {
     FIRST_BAND..NOMINAL_CENTRES_HZ.iter().filter(whole).count()
 }
 
-/// Returns when the direct sound arrives, s from the first sample: the first sample near the peak, refined to a fraction of a
+/// Returns the arrival time of the direct sound, s from the first sample: the first sample near the peak, refined to a fraction of a
 /// sample by the parabola through the largest of the next few.
 pub(super) fn onset_s(response: &MeasuredResponse) -> f64 {
     let samples = &response.samples;
@@ -60,7 +60,7 @@ pub(super) fn onset_s(response: &MeasuredResponse) -> f64 {
 pub(super) fn measured_db(response: &MeasuredResponse) -> Vec<f64> {
     let rate = f64::from(response.rate_hz);
     let onset = onset_s(response);
-    // What lies after the last window costs time and says nothing.
+    // The part after the last window costs time and says nothing.
     let needed = ((onset + EDGES_S[WINDOWS] + SMEAR_S) * rate) as usize + 1;
     let samples = &response.samples[..needed.min(response.samples.len())];
     let split = FilterBank::new(rate, samples.len(), OVERLAP).split(samples);
@@ -165,7 +165,7 @@ impl Smear {
     }
 }
 
-/// Returns what chance does to a level, dB: with B T degrees of freedom the energy of overlapping arrivals spreads by 1/sqrt(B T)
+/// Returns the random deviation of a level, dB: with B T degrees of freedom the energy of overlapping arrivals spreads by 1/sqrt(B T)
 /// of itself.
 ///
 /// # Source

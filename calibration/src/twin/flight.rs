@@ -14,7 +14,7 @@ use dwell_scene::{LawInfo, LawSpec};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Samples from which an episode's start is guessed.
+/// Number of samples from which an episode's start is estimated.
 const START_SAMPLES: usize = 8;
 
 /// Free flight of bodies.
@@ -74,7 +74,7 @@ impl FlightTwin {
         let size_m = (4.0 * reach + 40.0).min(1000.0) as f32;
         let mut stages = Vec::new();
         for body in &manifest.scene.bodies {
-            // `bundle::read` has asked for the radius.
+            // `bundle::read` has required the radius.
             let ball = TestObject::ball(&body.name, body.mass_kg, body.radius_m.unwrap_or(0.0));
             let config = PhysicsConfig {
                 control_rate_hz: options.physics_rate_hz as f32,
@@ -332,7 +332,7 @@ impl Twin for FlightTwin {
             .collect())
     }
 
-    /// Returns where a flight starts shifts all of it.
+    /// The start of a flight shifts all of it.
     fn derivative(
         &self,
         episode: usize,

@@ -1,4 +1,4 @@
-//! The simulation of what was measured, as fitting sees it.
+//! The simulation of the measurement, as fitting sees it.
 
 mod air;
 mod features;
@@ -17,7 +17,7 @@ pub(crate) use servo::ServoTwin;
 use crate::error::CalibrationError;
 use nalgebra::DMatrix;
 
-/// The numbers of one episode, by channel, each by time.
+/// The data of one episode, by channel, each by time.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EpisodeData {
     pub(crate) name: String,
@@ -43,9 +43,9 @@ pub(crate) struct ChannelInfo {
 /// The structure by which model error is distinguished from noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ResidualStructure {
-    /// Samples follow each other in time: what the model lacks is smoother than noise.
+    /// Samples are consecutive in time: model error is smoother than noise.
     OverTime,
-    /// Every episode has the same cells (band and time): what the model lacks is common to the episodes.
+    /// Every episode has the same cells (band and time): model error is common to the episodes.
     ByCell,
 }
 
@@ -71,26 +71,26 @@ pub(crate) enum ParameterIndex {
     Cause(usize),
 }
 
-/// The simulation of what was measured.
+/// The simulation of the measurement.
 pub(crate) trait Twin: Sync {
     /// The episodes.
     fn episodes(&self) -> &[EpisodeData];
     /// The episodes, for estimates of their noise.
     fn episodes_mut(&mut self) -> &mut [EpisodeData];
-    /// Returns what the channels mean.
+    /// Returns the channels.
     fn channels(&self) -> &[ChannelInfo];
     /// The structure by which noise and model error are distinguished.
     fn structure(&self) -> ResidualStructure;
-    /// Returns what may be wrong.
+    /// Returns the causes that may be missing.
     fn causes(&self) -> &[Cause];
     /// Nuisances that all episodes share.
     fn shared(&self) -> &[FitParameter];
     /// Nuisances of each episode.
     fn own(&self) -> &[FitParameter];
-    /// Returns where an episode's nuisances start.
+    /// Returns the initial values of an episode's nuisances.
     fn start(&self, episode: usize) -> Vec<f64>;
 
-    /// Returns what the simulation says instead of [`EpisodeData::y`].
+    /// Returns the predictions of [`EpisodeData::y`].
     fn predict(
         &self,
         episode: usize,
@@ -153,7 +153,7 @@ pub(crate) trait Twin: Sync {
             .collect())
     }
 
-    /// Returns what is known about a slot's parameter.
+    /// Returns the description of a slot's parameter.
     fn parameter(&self, slot: ParameterIndex) -> &FitParameter {
         match slot {
             ParameterIndex::Own(k) => &self.own()[k],
@@ -218,7 +218,7 @@ impl ParameterVector {
         }
     }
 
-    /// Returns where fitting begins: no cause acts.
+    /// Returns the initial point of a fit: no cause acts.
     pub(crate) fn start(twin: &dyn Twin) -> Self {
         let parameters = twin.causes().iter().flat_map(|cause| &cause.parameters);
         Self {

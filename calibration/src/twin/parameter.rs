@@ -2,12 +2,12 @@
 
 use dwell_scene::LawInfo;
 
-/// A number that is fitted.
+/// A fitted parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct FitParameter {
     pub(crate) name: String,
     pub(crate) unit: String,
-    /// The value at which nothing changes.
+    /// The value without an effect.
     pub(crate) default: f64,
     pub(crate) low: f64,
     pub(crate) high: f64,
@@ -67,11 +67,11 @@ pub(crate) enum Installation {
     Unsupported,
 }
 
-/// Something that the simulation may lack or have wrong.
+/// Something that the simulation may lack or model wrongly.
 #[derive(Clone, Debug)]
 pub(crate) struct Cause {
     pub(crate) id: String,
-    /// As it stands in a sentence.
+    /// Its name in a sentence.
     pub(crate) name: String,
     pub(crate) equation: String,
     pub(crate) parameters: Vec<FitParameter>,

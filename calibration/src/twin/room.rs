@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 /// Step of a finite difference of an absorption.
 const ABSORPTION_STEP: f64 = 0.04;
-/// Materials of a house that are looked at, those with the largest area.
+/// Number of materials of a house that are fitted, those with the largest area.
 const MOST_MATERIALS: usize = 8;
 /// Floor of the standard deviation from chance and the ray count, dB.
 const LEAST_SD_DB: f64 = 0.4;
@@ -209,7 +209,7 @@ impl RoomTwin {
     }
 }
 
-/// Returns how finely the twin hears.
+/// Returns the acoustic settings of the twin.
 fn config(bundle: &Bundle, options: &Options, rate_hz: u32) -> AcousticConfig {
     let air = &bundle.manifest.scene.environment;
     AcousticConfig {

@@ -1,4 +1,4 @@
-//! The tiny houses in which trajectories and servos are simulated, and the physics worlds over them.
+//! Small houses in which trajectories and servos are simulated, and the physics worlds over them.
 
 use crate::error::CalibrationError;
 use dwell_physics::{PhysicsConfig, PhysicsWorld};
@@ -10,7 +10,7 @@ use dwell_scene::{
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
 
-/// Half the edge of the box that stands for all that a servo turns, m.
+/// Half the edge of the box that stands for the servo's load, m.
 const ARM_HALF_EDGE_M: f32 = 0.1;
 /// Substance of all tracked things.
 pub(crate) const THING_SUBSTANCE: &str = "rubber";
@@ -80,8 +80,8 @@ impl TestObject {
 }
 
 impl TestWorld {
-    /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: a
-    /// flight through larger coordinates would be rough by more than what is looked for.
+    /// A closed box of `size_m` around the origin with one thing in it. Near the origin single precision is finest: the
+    /// rounding of larger coordinates would exceed the effects that are looked for.
     pub(crate) fn new(
         size_m: f32,
         thing: &TestObject,
@@ -100,7 +100,7 @@ impl TestWorld {
             }
             *mesh = Arc::new(moved);
         }
-        // Nothing here asks where the room is.
+        // Nothing here needs rooms.
         data.rooms = IdVec::new();
         for piece in &mut data.structure {
             piece.room = None;
@@ -148,7 +148,7 @@ impl TestWorld {
         Ok(stage)
     }
 
-    /// Takes over what was changed in the state.
+    /// Adopts changes of the state.
     pub(crate) fn adopt(&mut self) -> Result<(), CalibrationError> {
         let adopted = self.world.adopt(&mut self.state);
         adopted.map_err(|error| CalibrationError::simulation("a start", error))
@@ -259,7 +259,7 @@ fn put_board(data: &mut HouseData) {
     });
 }
 
-/// Something to see, as every part must have.
+/// A mesh, as every part must have one.
 fn octahedron() -> Mesh {
     let axes = [
         Vec3::X,

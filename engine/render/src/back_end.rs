@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A rendering back end, as spelled in files and by people: `cpu`; `gpu` for the likely quickest adapter that is not software; or
-/// `gpu:NAME` for the first whose name or place on the bus holds `NAME` (`gpu:vulkan/NAME` among those of one interface). `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the
-/// [`VisibilityPath`]; otherwise the one that a short measurement finds quicker is taken.
+/// `gpu:NAME` for the first whose name or place on the bus holds `NAME` (`gpu:vulkan/NAME` among those of one interface).
+/// `gpu+compute` and `gpu+raster` (or `gpu+raster:NAME`) choose the [`VisibilityPath`]; otherwise the one that a short measurement
+/// finds quicker is taken.
 ///
 /// ```
 /// use dwell_render::BackEnd;
@@ -104,7 +105,7 @@ pub enum Renderer {
 }
 
 impl Renderer {
-    /// A back end for the house of `tables`. An adapter is opened once in a process, whoever asks for it.
+    /// A back end for the house of `tables`. An adapter is opened once in a process and shared.
     ///
     /// # Errors
     /// [`RenderError::NoAdapter`], [`RenderError::TooLarge`] or [`RenderError::Driver`] for a graphics adapter.
@@ -142,8 +143,8 @@ impl Renderer {
         matches!(self, Self::Gpu(_)) && preset != Preset::Full
     }
 
-    /// Starts a batch that is rendered while the caller goes on; see [`GpuRenderer::submit`]. `None` where
-    /// [`Self::can_submit`] says no to a view.
+    /// Starts a batch that is rendered while the caller goes on; see [`GpuRenderer::submit`]. `None` if
+    /// [`Self::can_submit`] refuses a view.
     ///
     /// # Errors
     /// As [`GpuRenderer::submit`].
@@ -176,7 +177,7 @@ impl Renderer {
         }
     }
 
-    /// Returns who renders, in words: `cpu`, or the adapter and its path.
+    /// Returns the back end in words: `cpu`, or the adapter and its path.
     pub fn describe(&self) -> String {
         match self {
             Self::Cpu(_) => "cpu".to_owned(),

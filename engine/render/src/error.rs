@@ -77,7 +77,7 @@ pub enum RenderError {
         /// The number of levels.
         count: usize,
     },
-    /// A back end that there is not.
+    /// A back end that does not exist.
     #[error(
         "no back end {found:?}; there are cpu, gpu and gpu:NAME (with a part of an adapter's name), and gpu+compute and gpu+raster"
     )]
@@ -92,7 +92,7 @@ pub enum RenderError {
     NoAdapter {
         /// The requested adapter.
         wanted: String,
-        /// The adapters that there are.
+        /// The available adapters.
         found: String,
     },
     /// Something that does not fit into an adapter's memory or limits.
@@ -104,7 +104,7 @@ pub enum RenderError {
         what: String,
         /// Its size.
         needed: u64,
-        /// Of the sizes.
+        /// The unit of the sizes.
         unit: &'static str,
         /// The largest size.
         allowed: u64,
@@ -139,7 +139,7 @@ pub enum RenderError {
         /// The driver's message.
         message: String,
     },
-    /// A law of cameras on an agent that there is not.
+    /// A law of cameras on an agent that does not exist.
     #[error("law {law}: target {found:?} is no agent; there are {agents}, counted from 0")]
     LawTarget {
         /// The law's id.

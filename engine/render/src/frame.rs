@@ -13,9 +13,9 @@ pub enum Preset {
     /// Texture times colour, no lamps: fast, and the same for every time of day.
     #[default]
     Flat,
-    /// Lamps, sun and sky with at most two shadow rays a surface, light that rooms throw back, tone-mapped. See the crate's page.
+    /// Lamps, sun and sky with at most two shadow rays a surface, indirect light of rooms, tone-mapped. See the crate's page.
     Lit,
-    /// All light: sixteen rays a pixel, soft shadows of every lamp, window and the sun, light that surfaces throw on one another,
+    /// All light: sixteen rays a pixel, soft shadows of every lamp, window and the sun, light that surfaces reflect on one another,
     /// glossy reflections. For pictures, not for training: some 600 times the cost of `lit`. Always by the `cpu` back end.
     Full,
 }
@@ -24,7 +24,7 @@ impl Preset {
     /// Every preset, cheapest first.
     pub const ALL: [Self; 3] = [Self::Flat, Self::Lit, Self::Full];
 
-    /// The name that it has in files and commands.
+    /// Its name in files and commands.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flat => "flat",
@@ -39,7 +39,7 @@ impl Preset {
     }
 }
 
-/// One picture: a camera, where it stands, and how much light there is.
+/// One picture: a camera, its pose, and the light transport.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// The camera.
@@ -107,7 +107,7 @@ impl ImageChannels {
         flow: false,
     };
 
-    /// The images of both.
+    /// The union of both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -145,7 +145,7 @@ pub struct PreviousFrame<'a> {
     pub agents: &'a [Vec3],
 }
 
-/// The images of one view in memory of the caller; `None`: not wanted. Rows from the top, without gaps.
+/// The images of one view in the caller's memory; `None`: not wanted. Rows from the top, without gaps.
 #[derive(Debug, Default)]
 pub struct FrameMut<'a> {
     /// Colour, sRGB-encoded. Shape (height, width, 3).
@@ -155,7 +155,7 @@ pub struct FrameMut<'a> {
     pub depth: Option<&'a mut [f32]>,
     /// [`EntityId`] of what is seen; 0 for nothing. Shape (height, width).
     pub instance: Option<&'a mut [i32]>,
-    /// Class of what is seen, a position in [`crate::semantic_classes`]; 0 for nothing. Shape (height, width).
+    /// Class of the visible surface, a position in [`crate::semantic_classes`]; 0 for nothing. Shape (height, width).
     pub semantic: Option<&'a mut [i32]>,
     /// Unit normal of the surface in camera space, on the side that is seen; zeros for nothing. Shape (height, width, 3).
     pub normals: Option<&'a mut [f32]>,
@@ -182,7 +182,7 @@ macro_rules! each_image {
 pub(crate) use each_image;
 
 impl<'a> FrameMut<'a> {
-    /// The same frame for a shorter time.
+    /// Reborrows the frame.
     pub fn reborrow(&mut self) -> FrameMut<'_> {
         let mut frame = FrameMut::default();
         macro_rules! lend {
@@ -194,7 +194,7 @@ impl<'a> FrameMut<'a> {
         frame
     }
 
-    /// Takes the first `pixels` pixels off, such as those of the first rows; a shorter frame gives nothing.
+    /// Splits the first `pixels` pixels off, such as those of the first rows; a shorter frame gives nothing.
     #[must_use]
     pub fn take_pixels(&mut self, pixels: usize) -> FrameMut<'a> {
         let mut frame = FrameMut::default();
@@ -265,7 +265,7 @@ impl Frame {
         macro_rules! fill {
             ($image:ident, $parts:expr) => {
                 if channels.$image {
-                    // Zeros that the system gives when they are touched: nothing to wait for here.
+                    // Zeroed memory that the system gives at first use: nothing to wait for here.
                     frame.$image = vec![Default::default(); pixels * $parts];
                 }
             };

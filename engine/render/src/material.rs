@@ -8,9 +8,9 @@ use dwell_scene::{House, Id, Material};
 /// No texture.
 const NONE: u32 = u32::MAX;
 
-/// A mirror is a metal,
+/// Metalness from which on a smooth surface is a mirror.
 const MIRROR_METALLIC: f32 = 0.9;
-/// and smoother than polished steel.
+/// Roughness up to which a metal is a mirror: smoother than polished steel.
 const MIRROR_ROUGHNESS: f32 = 0.05;
 
 /// One material, prepared.
@@ -72,7 +72,7 @@ impl ShadingMaterial {
         look
     }
 
-    /// Returns how agents' bodies look: a middle blue, unlike most furniture.
+    /// Returns the look of agents' bodies: a middle blue, unlike most furniture.
     pub(crate) fn body() -> Self {
         let base = [0.08, 0.19, 0.42];
         Self {

@@ -13,7 +13,7 @@ const OTHER_PROP: i32 = 40;
 
 struct ClassTable {
     names: Vec<String>,
-    /// By name and by alias.
+    /// Classes by name and by alias.
     class: BTreeMap<String, i32>,
     /// The NYU-40 class of each row; 0 for void.
     nyu40_of_row: Vec<i32>,
@@ -147,7 +147,7 @@ pub fn semantic_classes(house: &House) -> Vec<String> {
 /// The class of every entity of a house.
 #[derive(Clone, Debug)]
 pub struct EntityClasses {
-    /// Void, structure pieces, objects, by [`dwell_scene::EntityId`]; the last one is that of agents.
+    /// Classes of void, structure pieces, objects, by [`dwell_scene::EntityId`]; the last one is that of agents.
     classes: Vec<i32>,
 }
 
@@ -182,7 +182,7 @@ impl EntityClasses {
         Self { classes }
     }
 
-    /// Of void, structure pieces, objects in order, and of agents.
+    /// The classes of void, structure pieces, objects in order, and of agents.
     pub(crate) fn all(&self) -> &[i32] {
         &self.classes
     }

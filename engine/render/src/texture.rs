@@ -1,4 +1,4 @@
-//! Textures as cameras sample them: sRGB bytes with alpha, smaller and smaller copies, bilinear.
+//! Textures as cameras sample them: sRGB bytes with alpha, mip levels, bilinear.
 
 #![expect(
     clippy::inline_always,
@@ -12,7 +12,7 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::{House, Id, Texture, TextureId};
 use glam::{Vec2, Vec4};
 
-/// Texels between looks at whether the house's textures are still wanted.
+/// Texels between checks for cancellation.
 const TEXELS_PER_CHECK: usize = 1 << 14;
 
 /// All images of a house, side by side.
@@ -32,7 +32,7 @@ pub(crate) struct Textures {
 pub(crate) struct MipImage {
     first_level: u32,
     pub(crate) last_level: u32,
-    /// Of the largest level.
+    /// Width of the largest level.
     width: u32,
     height: u32,
     /// The one colour of all its texels.

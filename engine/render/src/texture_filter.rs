@@ -9,22 +9,22 @@ pub(crate) const GRAZING: f32 = 0.05;
 /// Most samples along the longer axis of a footprint; a longer one is averaged more coarsely in both directions.
 pub(crate) const MOST_TAPS: f32 = 8.0;
 
-/// Below this sine a surface is seen straight on.
+/// Sine below which a surface is seen straight on.
 const STRAIGHT: f32 = 1e-3;
 
 /// A pixel's footprint on an image: a strip of samples, each about as wide as long.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TextureFootprint {
-    /// Samples, at least 1.
+    /// Number of samples, at least 1.
     taps: u32,
-    /// From one to the next, in texture coordinates.
+    /// Step from one to the next, in texture coordinates.
     step: Vec2,
     /// Width of one sample, texels of the largest level.
     texels: f32,
 }
 
 impl TextureFootprint {
-    /// Of a ray that is `width_m` wide where it meets a triangle. `size`: pixels of the image, across and down.
+    /// The footprint of a ray that is `width_m` wide where it meets a triangle. `size`: pixels of the image, across and down.
     ///
     /// # Source
     /// The axes: T. Akenine-Möller et al., *Improved Shader and Texture Level of Detail Using Ray Cones*, JCGT 10(1), 2021,

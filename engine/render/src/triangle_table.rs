@@ -8,7 +8,7 @@ use dwell_scene::{House, Id, Mesh, PartId, PlacedMesh, Pose, State, SurfaceOwner
 use glam::{Affine3A, DVec3, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use std::collections::BTreeMap;
 
-/// Triangles between looks at whether the tables are still wanted.
+/// Triangles between checks for cancellation.
 const TRIANGLES_PER_CHECK: usize = 1 << 12;
 
 /// One triangle; a cache line.
@@ -33,7 +33,7 @@ pub(crate) struct PosedTriangle {
 }
 
 impl TriangleShading {
-    /// As it stands with what it moves with.
+    /// The triangle as posed with its part.
     #[inline]
     pub(crate) fn posed(&self, pose: Option<&Pose>) -> PosedTriangle {
         let Some(pose) = pose else {
@@ -66,7 +66,7 @@ impl PosedTriangle {
 }
 
 impl PosedTriangle {
-    /// Returns how texture coordinates change along a way on the triangle.
+    /// Returns the change of texture coordinates along a vector on the triangle.
     #[inline]
     pub(crate) fn uv_along(&self, way: Vec3) -> Vec2 {
         let [u, v] = &self.uv;
@@ -237,7 +237,7 @@ impl TriangleTable {
         self.first.iter().chain(&self.bodies).copied()
     }
 
-    /// Returns where a hit's triangle stands in the tables.
+    /// Returns the position of a hit's triangle in the tables.
     #[inline]
     pub(crate) fn position(&self, instance: Option<u32>, triangle: u32) -> usize {
         match instance {
@@ -252,7 +252,7 @@ impl TriangleTable {
         }
     }
 
-    /// The part of a moving instance; nothing for agents' bodies.
+    /// The part of a moving instance; `None` for agents' bodies.
     pub(crate) fn part_of(&self, instance: u32) -> Option<PartId> {
         self.movable.get(instance as usize).copied()
     }
@@ -279,7 +279,7 @@ impl TriangleTable {
         a * (1.0 - u - v) + b * u + c * v
     }
 
-    /// From the space of [`TriangleShading::normal`] to the world; nothing where that is the world, or turned as the world is.
+    /// From the space of [`TriangleShading::normal`] to the world; `None` where that is the world, or turned as the world is.
     #[inline]
     pub(crate) fn pose<'a>(&self, instance: Option<u32>, state: &'a State) -> Option<&'a Pose> {
         let part = self.part_of(instance?)?;

@@ -18,7 +18,7 @@ pub struct VisibleObject {
     pub end: [u32; 2],
 }
 
-/// All that an instance image shows, by id, without void.
+/// All things that an instance image shows, by id, without void.
 ///
 /// `instance`: shape (height, `width`).
 pub fn sightings(instance: &[i32], width: u32) -> Vec<VisibleObject> {

@@ -32,11 +32,11 @@ pub struct SeriesOptions {
     /// Folds of the cross-validation, at least 2, default 5; where there are at most three times as many groups, each
     /// group is a fold of its own.
     pub folds: usize,
-    /// The most episodes that a fit looks at; default 40.
+    /// Largest number of episodes in a fit; default 40.
     pub fit_episodes: usize,
-    /// The most iterations of a fit; default 6.
+    /// Largest number of iterations of a fit; default 6.
     pub iterations: usize,
-    /// Windows start at every so many samples; default 20.
+    /// Stride of the starts of windows, samples; default 20.
     pub window_stride: usize,
     /// Draws of the bootstrap; default 2,000.
     pub bootstrap_draws: usize,
@@ -67,7 +67,7 @@ pub struct ModelOutcome {
     pub episodes: Vec<EpisodeError>,
     /// Medians by kind of episode; the first row is of all.
     pub kinds: Vec<KindErrors>,
-    /// Against the model that it extends.
+    /// The gain over the model that it extends.
     pub gain: Option<ModelGain>,
     /// Windows, each out of fold.
     pub windows: Vec<WindowScore>,
@@ -86,7 +86,7 @@ pub struct SeriesReport {
     pub licence: String,
     /// The options of the study.
     pub options: SeriesOptions,
-    /// In a sentence.
+    /// The result in a sentence.
     pub sentence: String,
     /// The models, as they were given.
     pub models: Vec<ModelOutcome>,
@@ -206,7 +206,7 @@ fn folds_of<S: ModelledSubject>(
     Ok(folds(&groups, count, options.seed))
 }
 
-/// A model on its way through the folds.
+/// A model in cross-validation.
 struct ModelStudy<'a, S: ModelledSubject> {
     subject: &'a S,
     model: &'a SimulationModel,
@@ -267,7 +267,7 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
         Ok((outcome, found))
     }
 
-    /// Returns what the other folds choose.
+    /// Returns the parameters that the other folds choose.
     fn fitted(
         &self,
         fold: usize,
@@ -280,7 +280,7 @@ impl<S: ModelledSubject> ModelStudy<'_, S> {
         let mut train: Vec<usize> = (0..self.fold_of.len())
             .filter(|episode| self.fold_of[*episode] != fold)
             .collect();
-        // All models look at the same episodes.
+        // All models use the same episodes.
         let key = RandomKey::root(self.options.seed)
             .child("part")
             .child(fold as u64);

@@ -16,7 +16,7 @@ pub struct ModelParameter {
     pub start: f64,
     /// The range that is searched.
     pub range: [f64; 2],
-    /// A small change, for derivatives.
+    /// Step of the derivatives.
     #[serde(skip)]
     pub step: f64,
 }
@@ -76,10 +76,10 @@ pub trait ModelledSubject: RolloutSubject {
     /// Episodes of one group are held out together.
     fn group(&self, episode: usize) -> &str;
 
-    /// Returns what kind of episode it is: what tables are ordered by.
+    /// Returns the kind of an episode, by which tables are ordered.
     fn kind(&self, episode: usize) -> &str;
 
-    /// Returns how far from its centre a turn moves the body, m: what turns angles into distances; 0: turns were not measured.
+    /// Returns the lever that turns angles into distances, m; 0: rotations were not measured.
     fn lever_m(&self) -> f64;
 
     /// The simulation, with `finer` as many steps between two samples.
@@ -93,6 +93,6 @@ pub trait ModelledSubject: RolloutSubject {
         finer: u32,
     ) -> Result<Self::Rig, CalibrationError>;
 
-    /// Returns what goes into the simulator.
+    /// Returns the effects to install in the simulator.
     fn found(&self, model: &SimulationModel, values: &[f64]) -> FoundEffects;
 }

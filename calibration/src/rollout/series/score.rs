@@ -1,4 +1,4 @@
-//! Errors of whole episodes, and what a model gains over another.
+//! Errors of whole episodes, and the gain of a model over another.
 
 use super::{ModelOutcome, ModelledSubject};
 use crate::error::CalibrationError;
@@ -109,7 +109,7 @@ pub(super) fn error<S: ModelledSubject>(
     })
 }
 
-/// Returns what a fit makes small: each episode counts as one, whatever its length. mm.
+/// Returns the residuals that a fit minimizes: each episode counts as one, whatever its length. mm.
 pub(super) fn residuals<S: ModelledSubject>(
     subject: &S,
     rig: &S::Rig,
@@ -159,7 +159,7 @@ pub(super) fn by_kind(episodes: &[EpisodeError]) -> Vec<KindErrors> {
         .collect()
 }
 
-/// Returns what `after` gains over `before`. Groups are drawn, not episodes: those of one session are alike.
+/// Returns the gain of `after` over `before`. Groups are drawn, not episodes: those of one session are alike.
 pub(super) fn gained<S: ModelledSubject>(
     subject: &S,
     before: &ModelOutcome,
@@ -185,7 +185,7 @@ pub(super) fn gained<S: ModelledSubject>(
     }
 }
 
-/// Returns what came out.
+/// Returns the result in a sentence.
 pub(super) fn sentence(best: &ModelOutcome, all: &[ModelOutcome]) -> String {
     let ends = |outcome: &ModelOutcome| {
         outcome.kinds.first().map_or_else(String::new, |all| {

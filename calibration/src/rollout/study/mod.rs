@@ -45,7 +45,7 @@ pub struct StudyOptions {
     pub generations: [usize; 2],
     /// Number of episodes of that part; default 60.
     pub first_episodes: usize,
-    /// Windows start at every so many samples; default 20.
+    /// Stride of the starts of windows, samples; default 20.
     pub window_stride: usize,
     /// Draws of the bootstrap; default 2,000.
     pub bootstrap_draws: usize,
@@ -100,7 +100,7 @@ pub struct ModelReport {
     pub refinements: Vec<Refinement>,
     /// Every episode.
     pub episodes: Vec<EpisodeScore>,
-    /// Against the peers, episode by episode.
+    /// The comparison with the peers, episode by episode.
     pub against: Vec<SimulatorComparison>,
 }
 
@@ -117,7 +117,7 @@ pub struct StudyReport {
     pub options: StudyOptions,
     /// The tracker's noise from sample to sample.
     pub noise: TrackerNoise,
-    /// In a sentence.
+    /// The result in a sentence.
     pub sentence: String,
     /// The residuals that are the solver's, a sentence for each model.
     pub solver: Vec<String>,

@@ -56,7 +56,7 @@ const fn number(
 const RESTITUTION: ContactParameter = number("restitution", "1", [0.0, 0.5], false);
 const FREQUENCY: ContactParameter = number("natural_frequency_hz", "Hz", [8.0, 120.0], true);
 const DAMPING: ContactParameter = number("damping_ratio", "1", [0.2, 3.0], true);
-/// Negative slopes, restitution that grows with speed, are what no material has; they are searched so that a fit may say so.
+/// Negative slopes, restitution that grows with speed, exist in no material; they are searched so that a fit may say so.
 const SLOPE: ContactParameter = number("restitution_slope_s_m", "s/m", [-0.2, 0.4], false);
 const TORSION: ContactParameter = number("torsion_radius_m", "m", [0.0, 0.03], false);
 
@@ -119,7 +119,7 @@ impl ContactParameter {
         }
     }
 
-    /// The place in 0..1 of a value; [`ContactParameter::at`] backwards. What lies outside is taken to the edge.
+    /// The place in 0..1 of a value, the inverse of [`ContactParameter::at`]. Values outside the range are clamped.
     pub(super) fn place(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         let place = if self.by_ratio {
@@ -132,7 +132,7 @@ impl ContactParameter {
 }
 
 impl ContactModel {
-    /// Returns what a rig is set to for these values, one for each parameter.
+    /// Returns the settings of a rig for these values, one for each parameter.
     pub fn settings(&self, values: &[f64], nominal: NominalContact) -> RigSettings {
         let value = |name: &str| {
             let mut pairs = self.parameters.iter().zip(values);

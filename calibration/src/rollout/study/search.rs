@@ -1,4 +1,4 @@
-//! The parameters of a contact model that predict some episodes best.
+//! Search for the parameters of a contact model that predict some episodes best.
 
 use super::StudyOptions;
 use super::model::ContactModel;
@@ -9,10 +9,10 @@ use crate::rollout::{BoardRig, PoseTracks, Score, scores};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 
-/// The share of episodes, the best in each quantity, that the cost looks at: one toss in eight lands on another face than
+/// Share of episodes, the best in each quantity, that the cost counts: one toss in eight lands on another face than
 /// predicted, by chance rather than by parameters.
 const TRIMMED_SHARE: f64 = 0.75;
-/// The search starts this wide, as a share of the ranges, around the bundle's own values and the middles of the others.
+/// Initial width of the search, as a share of the ranges, around the bundle's own values and the middles of the others.
 const FIRST_SIGMA: f64 = 0.1;
 
 /// ln of the mean squared distance plus ln of the mean squared angle, each over the best three quarters of the episodes:
@@ -29,8 +29,8 @@ pub(super) fn cost(scores: &[Score]) -> f64 {
         + libm::log(trimmed(|s| s.rotation_square_rad2).max(1e-18))
 }
 
-/// Searches on the episodes `train`: first on a part of them, then on all. What was best among the last points that were
-/// tried and their mean is chosen.
+/// Searches on the episodes `train`: first on a part of them, then on all. Chooses the better of the best among the last points and
+/// their mean.
 pub(super) fn search(
     model: &ContactModel,
     rig: &BoardRig,

@@ -1,4 +1,4 @@
-//! Searches that a former run has ended, kept in a folder, so that a run that was stopped goes on where it was.
+//! Cache of ended searches in a folder, so that a stopped run goes on where it was.
 
 use super::StudyOptions;
 use super::model::ContactModel;
@@ -34,7 +34,7 @@ struct SearchResult {
     chosen: Vec<f64>,
 }
 
-/// Returns what a model's search in a fold chose: from `folder` where it was answered before, else by `search`, kept there.
+/// Returns the result of a model's search in a fold: from `folder` where it is stored, else by `search`, and stores it there.
 ///
 /// # Errors
 /// [`CalibrationError::Write`], and those of `search`.
@@ -60,7 +60,7 @@ pub(super) fn cached_or_search(
         first_episodes: options.first_episodes,
     };
     let name = format!("search-{}-{fold}.json", model.name);
-    // What cannot be read is searched again.
+    // A file that cannot be read is searched again.
     let text = file::read(&folder.join(&name), MOST_BYTES).unwrap_or_default();
     if let Ok(answer) = serde_json::from_slice::<SearchResult>(&text)
         && answer.question == question

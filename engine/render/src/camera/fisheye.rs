@@ -15,7 +15,7 @@ fn radius(k: [f32; 4], angle: f64) -> f64 {
     angle * (1.0 + square * (k1 + square * (k2 + square * (k3 + square * k4))))
 }
 
-/// Its growth.
+/// The derivative of [`radius`] by the angle.
 fn slope(k: [f32; 4], angle: f64) -> f64 {
     let square = angle * angle;
     let [k1, k2, k3, k4] = k.map(f64::from);
@@ -29,7 +29,7 @@ pub(super) fn first_fold(k: [f32; 4], most: f32) -> Option<f64> {
         .find(|angle| slope(k, *angle) <= 0.0)
 }
 
-/// The angle with this radius, rad; nothing beyond `most`.
+/// The angle with this radius, rad; `None` beyond `most`.
 fn angle(k: [f32; 4], wanted: f64, most: f64) -> Option<f64> {
     if wanted > radius(k, most) {
         return None;
@@ -77,11 +77,11 @@ pub(super) fn direction(at: Vec2, k: [f32; 4], half_angle: f32) -> Vec3 {
     Vec3::new((x * across) as f32, (-y * across) as f32, -cosine)
 }
 
-/// Returns where a point in the camera's frame appears, focal lengths from the principal point, y down.
+/// Returns the image of a point in the camera's frame, focal lengths from the principal point, y down.
 pub(super) fn project(point: Vec3, k: [f32; 4], half_angle: f32) -> Option<Vec2> {
     let across = point.truncate().length();
     let angle = math::atan2(across, -point.z);
-    // Beyond the square root of what numbers hold there is no length.
+    // Beyond the square root of the largest number there is no length.
     if angle > half_angle || point == Vec3::ZERO || !across.is_finite() {
         return None;
     }

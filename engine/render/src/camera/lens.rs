@@ -1,8 +1,8 @@
-//! Brown's lens: where it bends a ray, and which ray it bent.
+//! Brown's lens: the distortion of a ray, and its inverse.
 
 use glam::{DVec2, Vec2};
 
-/// Coefficients beyond this are no lens.
+/// Largest coefficient of a lens.
 pub(super) const MOST: f32 = 100.0;
 /// Steps of Newton's method.
 const STEPS: usize = 30;
@@ -12,7 +12,7 @@ const RINGS: u8 = 24;
 /// Radial k1, k2, k3 and tangential p1, p2.
 pub(super) type Lens = [f32; 5];
 
-/// Returns where the lens puts a point of the plane at depth 1, y down, with the derivatives by x and by y.
+/// Returns the distorted point of a point of the plane at depth 1, y down, with the derivatives by x and by y.
 fn bend(lens: Lens, p: DVec2) -> (DVec2, DVec2, DVec2) {
     let [k1, k2, k3, p1, p2] = lens.map(f64::from);
     let DVec2 { x, y } = p;
@@ -44,13 +44,13 @@ fn is_before_fold(lens: Lens, p: DVec2) -> bool {
     })
 }
 
-/// Returns where the lens puts a point of the plane at depth 1; nothing beyond its fold.
+/// Returns the distorted point of a point of the plane at depth 1; `None` beyond its fold.
 pub(super) fn distort(lens: Lens, p: Vec2) -> Option<Vec2> {
     let p = p.as_dvec2();
     is_before_fold(lens, p).then(|| bend(lens, p).0.as_vec2())
 }
 
-/// The point of the plane at depth 1 that the lens puts to `seen`; nothing where there is none before the fold.
+/// The point of the plane at depth 1 that the lens maps to `seen`; `None` where there is none before the fold.
 pub(super) fn undistort(lens: Lens, seen: Vec2) -> Option<Vec2> {
     let seen = seen.as_dvec2();
     let mut p = seen;

@@ -1,4 +1,4 @@
-//! Cameras: where a pixel looks, and where a point appears.
+//! Cameras: rays of pixels, and projection of points.
 
 mod fisheye;
 mod lens;
@@ -15,7 +15,7 @@ use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 use std::f32::consts::{PI, TAU};
 
-/// A camera without a place: image size, projection, and the range of depth in which things are seen.
+/// A camera without a pose: image size, projection, and the range of depth in which things are seen.
 ///
 /// Checked when made; equal cameras see equal pixels.
 ///
@@ -218,7 +218,7 @@ impl Camera {
         self.width as usize * self.height as usize
     }
 
-    /// Returns where pixels look.
+    /// Returns the projection.
     pub fn projection(&self) -> Projection {
         self.projection
     }
@@ -253,7 +253,7 @@ impl Camera {
         (self.width as f32, self.height as f32)
     }
 
-    /// The ray through a point of the image, in camera space: where it starts (depth 0) and its direction **per metre of
+    /// The ray through a point of the image, in camera space: its origin (depth 0) and its direction **per metre of
     /// depth**, so that the point at depth d is `start + d * direction`. For cameras whose depth is range the direction has
     /// unit length, for others z is -1. A direction of zero: this point of the image sees nothing.
     ///
@@ -314,7 +314,7 @@ impl Camera {
         }
     }
 
-    /// Returns where a point in camera space appears, pixels from the top left corner, and its depth, m; nothing for a point that
+    /// Returns the image of a point in camera space, pixels from the top left corner, and its depth, m; `None` for a point that
     /// the camera cannot see wherever its image ends, such as one beside or behind a pinhole. The image may end before.
     pub fn project(&self, point_in_camera: Vec3) -> Option<(Vec2, f32)> {
         let depth = -point_in_camera.z;

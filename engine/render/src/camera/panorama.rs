@@ -1,4 +1,4 @@
-//! Cameras that see all around: equirectangular pictures and cube maps.
+//! Panoramic cameras: equirectangular pictures and cube maps.
 
 use dwell_scene::math;
 use glam::{Vec2, Vec3};
@@ -21,7 +21,7 @@ pub(super) fn sphere_direction(image: Vec2, (width, height): (f32, f32)) -> Vec3
     Vec3::new(sin_right * cos_up, sin_up, -cos_right * cos_up)
 }
 
-/// Returns where a point appears in an equirectangular image.
+/// Returns the image of a point in an equirectangular image.
 pub(super) fn sphere_project(point: Vec3, (width, height): (f32, f32)) -> Option<Vec2> {
     if point == Vec3::ZERO {
         return None;
@@ -44,7 +44,7 @@ pub(super) fn cube_direction(image: Vec2, edge: f32) -> Vec3 {
     (right * x + up * y - back).normalize_or_zero()
 }
 
-/// Returns where a point appears in a cube map.
+/// Returns the image of a point in a cube map.
 pub(super) fn cube_project(point: Vec3, edge: f32) -> Option<Vec2> {
     let mut best: Option<(usize, f32)> = None;
     for (k, [.., back]) in FACES.iter().enumerate() {

@@ -119,7 +119,7 @@ impl Projection {
         matches!(self, Self::Pinhole { .. } | Self::Orthographic { .. })
     }
 
-    /// Focal lengths and principal point in pixels `(fx, fy, cx, cy)`, where it has some.
+    /// Focal lengths and principal point in pixels `(fx, fy, cx, cy)`; `None` for a projection without them.
     pub fn intrinsics(&self) -> Option<(f32, f32, f32, f32)> {
         match *self {
             Self::Pinhole { fx, fy, cx, cy }

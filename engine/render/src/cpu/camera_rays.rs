@@ -28,7 +28,7 @@ pub(super) struct CameraRays {
     pub(super) pixel_area: (f32, f32),
 }
 
-/// The rays of some pixels and what they met. Lane k is column k % 8 and row k / 8.
+/// The rays of some pixels with their hits. Lane k is column k % 8 and row k / 8.
 pub(super) struct CameraPacket {
     rays: RayPacket<LANES>,
     /// Depth per length along the ray.
@@ -38,7 +38,7 @@ pub(super) struct CameraPacket {
     beam: Option<Box<ScalarRays>>,
 }
 
-/// Rays from one point and what they met.
+/// Rays from one point with their hits.
 #[derive(Clone, Copy)]
 pub(super) struct PacketView<'a> {
     pub(super) rays: &'a RayPacket<LANES>,
@@ -57,7 +57,7 @@ struct ScalarRays {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PrimaryHit {
     pub(super) point: Vec3,
-    /// Of the ray; unit length.
+    /// Direction of the ray; unit length.
     pub(super) direction: Vec3,
     pub(super) depth: f32,
     /// Depth per length along the ray.
@@ -85,7 +85,7 @@ impl CameraPacket {
         Vec3::new(x[lane], y[lane], z[lane])
     }
 
-    /// Returns what a pixel sees.
+    /// Returns a pixel's closest hit.
     #[inline]
     pub(super) fn sight(&self, lane: usize) -> Option<PrimaryHit> {
         let direction = self.direction(lane);
@@ -126,7 +126,7 @@ impl CameraPacket {
         })
     }
 
-    /// Returns what pixels see, and along which rays, where those start at one point.
+    /// Returns the closest hits of pixels and their rays, where those start at one point.
     #[inline]
     pub(super) fn packet_view(&self) -> Option<PacketView<'_>> {
         let seen = PacketView {
@@ -145,7 +145,7 @@ impl CameraPacket {
         }
     }
 
-    /// Depths of what pixels see, m; `far_m` for those that see nothing.
+    /// Depths of the pixels' hits, m; `far_m` for those without one.
     #[inline]
     pub(super) fn depths(&self, near_m: f32, far_m: f32) -> [f32; LANES] {
         match &self.beam {
@@ -159,7 +159,7 @@ impl CameraPacket {
         }
     }
 
-    /// Ids of what pixels see; 0 for those that see nothing.
+    /// Ids of the pixels' hits; 0 for those without one.
     #[inline]
     pub(super) fn ids(&self) -> [i32; LANES] {
         match &self.beam {
@@ -168,7 +168,7 @@ impl CameraPacket {
         }
     }
 
-    /// Weights of the second and third corner of the triangle that a pixel sees.
+    /// Weights of the second and third corner of the triangle that a pixel hits.
     pub(super) fn weights(&self, scene: SceneBvh<'_>, lane: usize) -> (f32, f32) {
         let hit = match &self.beam {
             None => scene.packet_hit(&self.rays, &self.hits, lane),
@@ -177,7 +177,7 @@ impl CameraPacket {
         hit.map_or((0.0, 0.0), |hit| (hit.u, hit.v))
     }
 
-    /// Goes on behind the given depths; lanes that are not named see nothing from now on.
+    /// Continues behind the given depths; lanes that are not named hit nothing from now on.
     pub(super) fn advance_behind(
         &mut self,
         rays: &CameraRays,
@@ -232,7 +232,7 @@ impl CameraRays {
         (self.view.camera.near_m(), self.view.camera.far_m())
     }
 
-    /// Returns what the pixels from (`left`, `top`) on see; those beyond `width` and `height` see nothing.
+    /// Returns the closest hits of the pixels from (`left`, `top`) on; those beyond `width` and `height` hit nothing.
     #[inline]
     pub(super) fn cast(
         &self,
@@ -314,7 +314,7 @@ impl CameraRays {
         }
     }
 
-    /// The ray through a point of the image, and depth per length along it; none where the camera sees nothing.
+    /// The ray through a point of the image, and depth per length along it; `None` where the camera sees nothing.
     pub(super) fn ray(&self, image: Vec2) -> Option<(Ray, f32)> {
         let camera = &self.view.camera;
         let (start, seen) = camera.ray_in_camera(image);
@@ -345,7 +345,7 @@ impl CameraRays {
         self.view.preset == Preset::Full
     }
 
-    /// Returns what the camera does not see.
+    /// Returns the id that the camera does not see.
     pub(super) fn hidden(&self) -> i32 {
         self.hidden.0
     }

@@ -19,7 +19,7 @@ use crate::triangle_table::{PosedTriangle, SLOW, coordinate};
 use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use glam::Vec3;
 
-/// Fewer pixels than this are quicker one by one.
+/// Number of pixels below which they are quicker one by one.
 const FEW: u32 = 4;
 
 /// The positions of the bits that are set, the lowest first.
@@ -41,12 +41,12 @@ struct TexelLookups {
     weights: [[f32; LANES]; 2],
 }
 
-/// Finds the places of pixels that see one triangle.
+/// Locates the texels of pixels that see one triangle.
 struct TexelLocator<'a> {
     seen: PacketView<'a>,
     standing: &'a PosedTriangle,
     image: &'a MipImage,
-    /// Of the triangle, texels of the largest level for each m².
+    /// Texels of the largest level for each m² of the triangle.
     density: f32,
     /// See [`crate::camera::Camera::pixel_area`].
     pixel_area: (f32, f32),

@@ -59,13 +59,13 @@ pub struct CpuRenderer {
     pub(crate) surfaces: TriangleTable,
     /// Class of every entity, by each table.
     classes: [EntityClasses; 3],
-    /// Around the surface of each part, in its own space. Shape (part,).
+    /// Boxes around the surface of each part, in its own space. Shape (part,).
     part_bounds: OnceLock<Vec<Aabb>>,
-    /// Made when the first lit view is asked for.
+    /// Made for the first lit view.
     light: OnceLock<HouseLight>,
     /// The light of worlds in earlier calls, that of the latest last.
     lightings: Mutex<VecDeque<Lighting>>,
-    /// The trees of meshes, made when they are looked at alone. Shape (mesh,).
+    /// The trees of meshes, made when one is rendered alone. Shape (mesh,).
     trees: Vec<OnceLock<Arc<TriangleBvh>>>,
 }
 
@@ -80,7 +80,7 @@ pub struct RenderJob<'a> {
     pub view: View,
     /// The previous frame, for flow; without it nothing has moved.
     pub before: Option<PreviousFrame<'a>>,
-    /// The first row and the one behind the last, of those that are wanted; `None`: all.
+    /// The first wanted row and the one behind the last; `None`: all.
     pub rows: Option<(u32, u32)>,
     /// The buffers for its images: of the rows that are wanted.
     pub frame: FrameMut<'a>,
@@ -230,7 +230,7 @@ impl CpuRenderer {
             .get_or_init(|| HouseLight::new(&self.house, &self.looks, &self.textures))
     }
 
-    /// The light of a world as it stands: kept where all that it depends on is as it was, else made in the memory that was used
+    /// The light of a world as it stands: kept where all its inputs are as they were, else computed in the memory that was used
     /// longest ago; see [`Self::keep_lighting`].
     pub(crate) fn lighting(&self, scene: &RayScene, state: &State) -> Lighting {
         let inputs = LightingInputs {
@@ -255,7 +255,7 @@ impl CpuRenderer {
         lighting
     }
 
-    /// Takes back [`Self::lighting`].
+    /// Returns the light of [`Self::lighting`] for reuse.
     pub(crate) fn keep_lighting(&self, lighting: Lighting) {
         self.lightings().push_back(lighting);
     }
@@ -277,7 +277,7 @@ impl CpuRenderer {
         self.classes[ClassSet::Coarse as usize].of(entity)
     }
 
-    /// Around the surface of each part, in its own space; made at first use. Shape (part,).
+    /// Boxes around the surface of each part, in its own space; made at first use. Shape (part,).
     pub(crate) fn part_bounds(&self) -> &[Aabb] {
         self.part_bounds.get_or_init(|| {
             let parts = self.house.parts.iter();

@@ -7,7 +7,7 @@ use crate::frame::PreviousFrame;
 use dwell_scene::{Id, State};
 use glam::{Vec2, Vec3};
 
-/// Returns how a point that is seen at `image` has moved there, pixels; it was at `was` in the world.
+/// Returns the motion in the image of a point that is seen at `image`, pixels; it was at `was` in the world.
 pub(super) fn flow(
     camera: &Camera,
     before: &PreviousFrame<'_>,
@@ -18,7 +18,7 @@ pub(super) fn flow(
     moved(camera, image, eye.rotation.inverse() * (was - eye.position))
 }
 
-/// As [`flow`] for what is seen in a direction infinitely far away.
+/// As [`flow`] for a direction that is infinitely far away.
 pub(super) fn far_flow(
     camera: &Camera,
     before: &PreviousFrame<'_>,
@@ -55,7 +55,7 @@ fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
 }
 
 impl CpuRenderer {
-    /// Returns where in the world the point that is seen was before.
+    /// Returns the previous position in the world of the point that is seen.
     pub(super) fn point_before(
         &self,
         sight: &PrimaryHit,

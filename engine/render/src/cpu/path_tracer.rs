@@ -1,9 +1,9 @@
 //! Pictures with all light: paths of many rays a pixel.
 //!
 //! Each pixel is the mean of [`SAMPLES`] rays through different places in it. Where one meets a surface, every source of light is
-//! asked by a ray to another point of it, so that shadows are soft; light from all around is gathered by rays to what throws it,
-//! which has light of its own and the room's mean for the rest. Metals and what is polished reflect; how facets of rough surfaces
-//! hide one another is left out.
+//! sampled by a ray to another point of it, so that shadows are soft; light from all around is gathered by rays to the surfaces
+//! that reflect it, which have light of their own and the room's mean for the rest. Metals and polished surfaces reflect; how facets of
+//! rough surfaces hide one another is left out.
 //!
 //! # Source
 //! J. T. Kajiya, *The rendering equation*, SIGGRAPH 1986, cut off after the second surface by what `lit` says of it.
@@ -23,17 +23,17 @@ use dwell_scene::EntityId;
 use dwell_scene::bvh::Ray;
 use glam::{Vec2, Vec3};
 
-/// Places in a pixel, along each edge.
+/// Sample positions in a pixel, along each edge.
 pub(super) const EDGE: usize = 4;
 /// Rays a pixel.
 pub(super) const SAMPLES: usize = EDGE * EDGE;
 /// Rays of each that gather light from all around.
 const GATHERED: usize = 2;
-/// No gathered ray brings more, in units of display white: few that meet a patch of sun would show as single bright pixels.
+/// Largest radiance of a gathered ray, in units of display white: few that meet a patch of sun would show as single bright pixels.
 const MOST_GATHERED: f32 = 3.0;
 /// Reflectance of smooth glass, varnish or ceramic at normal incidence.
 const STRAIGHT: f32 = 0.04;
-/// Rougher than this a surface that is no metal shows no reflection. This, and that polish falls evenly up to there, is ours.
+/// Roughness above which a non-metal shows no reflection. This, and that polish falls evenly up to there, is ours.
 const DULL: f32 = 0.7;
 /// Distance of the sample points of a window into the room, m: before its frame.
 const BEFORE_FRAME_M: f32 = 0.05;
@@ -45,10 +45,10 @@ const SUN_RADIUS: f32 = 0.004_65;
 /// The remaining budget of bounces of one kind of ray.
 #[derive(Clone, Copy)]
 struct PathState {
-    /// Surfaces that may still throw light on.
+    /// Surfaces that may still reflect diffusely.
     bounces: u32,
     mirrors: u32,
-    /// Of the camera's footprint, as for [`PrimaryHit`].
+    /// Depth of the camera's footprint, as for [`PrimaryHit`].
     depth: f32,
     per_length: f32,
     hidden: i32,
@@ -101,7 +101,7 @@ impl ImageTile<'_> {
 }
 
 impl PathTracer<'_> {
-    /// Returns what comes along a ray, in units of display white.
+    /// Returns the radiance along a ray, in units of display white.
     fn light_along(&self, mut ray: Ray, path: PathState, dice: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
@@ -126,7 +126,7 @@ impl PathTracer<'_> {
             rest *= 1.0 - opacity;
             ray.near_m = distance * (1.0 + GAP.1) + GAP.0;
         }
-        // The sky's light on rooms comes by their windows, each asked for itself.
+        // The sky's light on rooms comes by their windows, each sampled by itself.
         if path.bounces == 0 {
             return light;
         }
@@ -134,7 +134,7 @@ impl PathTracer<'_> {
         light + sky(ray.direction, Some((fixed, self.exposure))) * rest
     }
 
-    /// Returns what a surface sends back along the ray that met it, and how much of what lies behind it hides.
+    /// Returns the radiance that a surface sends back along the ray that met it, and its opacity.
     fn surface(
         &self,
         (sight, distance_m): (&PrimaryHit, f32),
@@ -210,7 +210,7 @@ impl PathTracer<'_> {
         dice: &mut PixelSampler,
     ) -> Vec3 {
         let direction = sight.direction.reflect(facet).normalize_or(facing);
-        // A facet that throws light into its own surface would show that; the surface's mirror image stands for it.
+        // A facet that reflects into its own surface would show that; the surface's mirror image stands for it.
         let direction = if direction.dot(facing) > 0.0 {
             direction
         } else {
@@ -226,7 +226,7 @@ impl PathTracer<'_> {
         self.light_along(Ray::new(off, direction), path, dice)
     }
 
-    /// Returns what other surfaces throw on one of reflectance 1.
+    /// Returns the light that other surfaces reflect on one of reflectance 1.
     fn indirect_light(
         &self,
         off: Vec3,
@@ -249,7 +249,7 @@ impl PathTracer<'_> {
         sum / GATHERED as f32
     }
 
-    /// Returns whether light arrives from a place in its source.
+    /// Returns whether light arrives from a point of its source.
     fn arrives(
         &self,
         source: LightSource,
@@ -301,7 +301,7 @@ fn reflects(look: &ShadingMaterial) -> bool {
     look.metallic > 0.0 || look.roughness < DULL
 }
 
-/// Returns what a surface of a colour reflects, by the cosine between the viewer and the facet: metals by their colour, others the less the
+/// Returns a surface's reflectance, by its colour and the cosine between the viewer and the facet: metals by their colour, others less the
 /// rougher they are.
 fn reflectance(look: &ShadingMaterial, color: Vec3, cosine: f32) -> Vec3 {
     let left = 1.0 - cosine.clamp(0.0, 1.0);

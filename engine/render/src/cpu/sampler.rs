@@ -1,4 +1,4 @@
-//! Places, directions and facets that fall evenly, by pixel and sample; the same each time.
+//! Sample points, directions and facets of even distribution, by pixel and sample; the same each time.
 
 use dwell_scene::math;
 use glam::Vec3;
@@ -30,7 +30,7 @@ impl PixelSampler {
     pub(super) fn pair(&mut self) -> (f32, f32) {
         self.throw += 1;
         let shift = mixed(self.pixel ^ mixed(self.throw));
-        // Throws of one sample would go together if all took the samples in one order.
+        // Draws of one sample would be correlated if all took the samples in one order.
         let place = (self.sample ^ (mixed(self.throw) & MIXED)) as f32;
         let part = |bits: u32, step: f32| {
             let number = f32::from(bits as u16) * (1.0 / 65536.0) + place * step;
@@ -98,7 +98,7 @@ mod tests {
         sum / 65536.0
     }
 
-    /// Means of 65,536 throws against their integrals; errors of plain chance would be 0.003.
+    /// Means of 65,536 draws against their integrals; errors of plain chance would be 0.003.
     #[test]
     fn throws_are_even() {
         let normal = Vec3::new(0.48, 0.6, -0.64);

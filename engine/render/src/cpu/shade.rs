@@ -13,13 +13,13 @@ use dwell_scene::bvh::Ray;
 use dwell_scene::{Entity, EntityId, Pose, State};
 use glam::Vec3;
 
-/// Most surfaces that a ray passes; the last one counts as opaque.
+/// Largest number of surfaces that a ray passes; the last one counts as opaque.
 pub(super) const LAYERS: usize = 8;
 /// Opacity from which on a surface shows only itself.
 pub(super) const OPAQUE: f32 = 1.0 - 1.0 / 512.0;
-/// A ray that goes on starts so far behind the surface that it passed: a length and a part of the depth.
+/// Offset of a continued ray behind the surface that it passed: a length and a part of the depth.
 pub(super) const GAP: (f32, f32) = (2e-4, 2e-6);
-/// Most mirrors that light meets; one more shows its colour.
+/// Largest number of mirrors that light meets; one more shows its colour.
 pub(super) const MIRRORS: u32 = 2;
 /// Offset from a surface at which its shadow ray or reflection starts, m.
 pub(super) const OFF_SURFACE_M: f32 = 1e-3;
@@ -41,9 +41,9 @@ pub(super) struct ShadedSurface<'a> {
     /// Reflectance, linear.
     pub(super) color: Vec3,
     pub(super) opacity: f32,
-    /// By the winding, world space.
+    /// Normal by the winding, world space.
     pub(super) normal: Vec3,
-    /// Of the part that it moves with.
+    /// Pose of the part that it moves with.
     pose: Option<&'a Pose>,
 }
 
@@ -85,14 +85,14 @@ impl TransmittedLanes {
     }
 }
 
-/// Sources of light of which each pixel asks whether they are hidden.
+/// Number of light sources of each pixel that get a shadow ray.
 const SHADOW_RAYS: usize = 2;
 
 /// A surface that a pixel sees, whose shadows are not yet known.
 #[derive(Clone, Copy)]
 pub(super) struct PendingShadows {
     lane: usize,
-    /// The share of what lies behind it that it hides.
+    /// Opacity: the share of what lies behind it that it hides.
     opacity: f32,
     /// The light that it sends to the camera.
     pub(super) incoming: IncidentLight<SHADOW_RAYS>,
@@ -118,7 +118,7 @@ impl PendingShadows {
 /// The light that a surface sends to the camera.
 struct OutgoingLight {
     incoming: IncidentLight<SHADOW_RAYS>,
-    /// The share of what lies behind it that it hides.
+    /// Opacity: the share of what lies behind it that it hides.
     opacity: f32,
     off: Vec3,
     facing: Vec3,
@@ -155,7 +155,7 @@ impl ShadeScratch {
 }
 
 impl CpuRenderer {
-    /// Returns what is seen of a surface without light.
+    /// Returns the surface at a hit, without light.
     pub(super) fn surface_at_hit<'a>(
         &'a self,
         rays: &CameraRays,
@@ -362,7 +362,7 @@ impl ImageTile<'_> {
         }
     }
 
-    /// Light of nothing.
+    /// Radiance where nothing is hit.
     fn sky(&self, renderer: &CpuRenderer, direction: Vec3) -> Vec3 {
         let light = self
             .light
@@ -380,7 +380,7 @@ impl ImageTile<'_> {
         SrgbTables::tables().encode3(shown.to_array())
     }
 
-    /// Light that a surface sends to the camera, and how much of what lies behind it hides, once its shadows are known.
+    /// The light that a surface sends to the camera, and its opacity, once its shadows are known.
     fn settle(&self, renderer: &CpuRenderer, sent: &OutgoingLight) -> (Vec3, f32) {
         let light = self.light.map_or(sent.incoming.light, |(lighting, _)| {
             sent.incoming.arriving(|source| {
@@ -390,9 +390,9 @@ impl ImageTile<'_> {
         (light, sent.opacity)
     }
 
-    /// Returns what a surface sends to the camera.
+    /// Returns the light that a surface sends to the camera.
     ///
-    /// `mirrors`: how many more of them light meets. `weights`: of the second and third corner.
+    /// `mirrors`: how many more of them the ray may meet. `weights`: of the second and third corner.
     #[inline]
     fn surface(
         &self,
@@ -432,7 +432,7 @@ impl ImageTile<'_> {
         }
     }
 
-    /// Returns what a mirror shows: the light that comes from where the ray goes on.
+    /// Returns the radiance that a mirror reflects: from where the ray goes on.
     #[cold]
     fn reflected(
         &self,

@@ -10,13 +10,13 @@ use glam::Vec3;
 
 /// Largest distance at which something casts a shadow of the sky or the sun, m.
 const SKY_RAY_M: f32 = 500.0;
-/// Most surfaces of glass that light passes; behind more it counts as shadow.
+/// Largest number of glass surfaces that light passes; behind more it counts as shadow.
 const PANES: usize = 8;
 /// Transmittance above which a material counts as glass.
 const GLASS: f32 = 0.5;
 
 impl CpuRenderer {
-    /// Returns whether nothing but glass stands on a ray, apart from a thing.
+    /// Returns whether nothing but glass blocks a ray, apart from one thing.
     pub(super) fn passes(&self, scene: SceneBvh<'_>, ray: &Ray, hidden: i32) -> bool {
         let mut ray = *ray;
         for _ in 0..PANES {
@@ -74,7 +74,7 @@ impl CpuRenderer {
         }
     }
 
-    /// Adds to each pixel the light that arrives there. A source's rays are asked together: they start at one point.
+    /// Adds to each pixel the light that arrives there. A source's shadow rays are traced together: they start at one point.
     pub(super) fn add_light(
         &self,
         scene: SceneBvh<'_>,

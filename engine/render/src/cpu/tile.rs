@@ -1,4 +1,4 @@
-//! Some rows of one picture.
+//! A tile: some rows of one picture.
 
 use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, ROWS};
 use super::motion;
@@ -11,18 +11,18 @@ use dwell_scene::bvh::SceneBvh;
 use dwell_scene::interrupt::PollEvery;
 use glam::Vec3;
 
-/// Packets between looks at whether the picture is still wanted.
+/// Packets between checks for cancellation.
 const PACKETS_PER_CHECK: usize = 32;
 
-/// Rows of a picture, with the memory they go to.
+/// Rows of a picture, with their destination.
 pub(super) struct ImageTile<'a> {
     pub(super) scene: SceneBvh<'a>,
     pub(super) state: &'a State,
     before: Option<PreviousFrame<'a>>,
     pub(super) rays: CameraRays,
-    /// Nothing for flat views.
+    /// The light; `None` for flat views.
     pub(super) light: Option<(&'a Lighting, Exposure)>,
-    /// Of the picture.
+    /// Size of the picture, pixels.
     size: (usize, usize),
     /// Its first row in the picture.
     first_row: usize,
@@ -147,7 +147,7 @@ impl<'a> ImageTile<'a> {
         }
     }
 
-    /// Normal, reflectance and movement of what one pixel sees.
+    /// Writes normal, reflectance and flow of one pixel's surface.
     fn write_surface(
         &mut self,
         renderer: &CpuRenderer,

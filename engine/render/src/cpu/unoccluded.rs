@@ -1,4 +1,4 @@
-//! One thing without all others: how much of it there would be to see.
+//! Unoccluded pixels: how many a thing would have without all others.
 
 use super::CpuRenderer;
 use super::camera_rays::{COLUMNS, CameraPacket, CameraRays, LANES, ROWS};
@@ -12,7 +12,7 @@ use std::sync::{Arc, LazyLock};
 static NOTHING: LazyLock<TriangleBvh> = LazyLock::new(TriangleBvh::default);
 
 impl CpuRenderer {
-    /// Returns how many pixels of a view would show a thing if nothing else were there: those whose middle's ray meets it within
+    /// Returns the number of pixels of a view that would show a thing if nothing else were there: those whose middle's ray meets it within
     /// the camera's range. 0 for what is neither an object nor an agent.
     pub fn unoccluded_pixels(
         &self,
@@ -46,7 +46,7 @@ impl CpuRenderer {
         count
     }
 
-    /// The parts of an object where they stand.
+    /// The instances of an object's parts.
     fn object_instances(&self, state: &State, object: ObjectId) -> InstanceSet {
         let (house, geometry) = (self.house(), self.house().geometry());
         let thing = &house.objects[object];
@@ -82,7 +82,7 @@ impl CpuRenderer {
     }
 }
 
-/// An agent's body where it stands.
+/// The instances of an agent's body.
 fn agent_instances(scene: &RayScene, renderer: &CpuRenderer, agent: AgentId) -> InstanceSet {
     let mut set = scene.bvh().moving.clone();
     let parts = renderer.house().geometry().movable.len();

@@ -1,4 +1,4 @@
-//! The graphics adapters of this machine, and which of them is meant.
+//! The graphics adapters of this machine, and the choice among them.
 
 use crate::error::RenderError;
 use std::pin::pin;
@@ -33,7 +33,7 @@ impl AdapterKind {
     }
 }
 
-/// One adapter. Two of them are the same when all of this is: names alone are shared by equal cards, and by one card behind two
+/// An adapter. Two of them are the same when all fields are equal: names alone are shared by equal cards, and by one card behind two
 /// interfaces.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Adapter {
@@ -41,7 +41,7 @@ pub struct Adapter {
     pub kind: AdapterKind,
     /// `vulkan`, `metal`, `dx12` or `gl`.
     pub interface: String,
-    /// As its driver calls it.
+    /// Its driver's name for it.
     pub name: String,
     /// The numbers of its maker and model, as the interface has them (those of PCI as a rule); 0 where it has none.
     pub ids: [u32; 2],
@@ -94,7 +94,7 @@ impl std::fmt::Display for Adapter {
     }
 }
 
-/// The result of a future of wgpu, which on this side of browsers needs no waker.
+/// The result of a future of wgpu, which outside of browsers needs no waker.
 pub(super) fn ready<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
@@ -151,7 +151,7 @@ impl std::fmt::Display for AdapterChoice<'_> {
     }
 }
 
-/// All adapters, the likely quickest first and software last. `ask`: those behind some interfaces. GL is asked where nothing else
+/// All adapters, the likely quickest first and software last. `ask`: those behind some interfaces. GL is queried where nothing else
 /// answers but software: a card may have no other driver. Its software is listed only where there is no other.
 fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(Adapter, T)> {
     let is_hardware = |(adapter, _): &(Adapter, T)| adapter.kind != AdapterKind::Software;
@@ -185,8 +185,8 @@ fn gather<T>(mut ask: impl FnMut(wgpu::Backends) -> Vec<(Adapter, T)>) -> Vec<(A
 /// The process that found adapters behind GL first; 0 as long as none has. Forked ones inherit it.
 static GL_USED_BY: AtomicU32 = AtomicU32::new(0);
 
-/// Returns whether a process may ask GL. Its drivers keep one display for a whole process, whose threads are not there in a forked one:
-/// whoever draws there waits for them for ever.
+/// Returns whether a process may query GL. Its drivers keep one display for a whole process, whose threads do not exist in a forked one:
+/// drawing there would wait for them for ever.
 fn may_ask_gl(used_by: &AtomicU32, process: u32) -> bool {
     [0, process].contains(&used_by.load(Ordering::Relaxed))
 }
@@ -240,7 +240,7 @@ pub(super) fn forked(adapter: &Adapter) -> RenderError {
     }
 }
 
-/// The first adapter that is meant.
+/// The first adapter that fits the choice.
 ///
 /// # Errors
 /// [`RenderError::NoAdapter`]; [`RenderError::Forked`] where it may be behind GL, which cannot be asked here.

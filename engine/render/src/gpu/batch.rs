@@ -1,4 +1,4 @@
-//! A batch as the kernels read it: views, worlds, and where images go.
+//! A batch as the kernels read it: views, worlds, and offsets of images.
 
 use super::batch_buffers::SEEN_BYTES;
 use super::house_buffers::point;
@@ -15,7 +15,7 @@ use dwell_scene::rays::BODY_PIECES;
 use dwell_scene::{Id, Pose, State};
 use glam::{Quat, Vec2, Vec3, Vec4};
 
-/// As in `shaders/common.wgsl`.
+/// Rows of a view, as in `shaders/common.wgsl`.
 const VIEW_ROWS: usize = 16;
 /// No image.
 const NOT_WANTED: u32 = u32::MAX;
@@ -118,7 +118,7 @@ impl LensRays {
     }
 }
 
-/// The rows of a batch, and where its images go. Its memory is used again.
+/// The rows of a batch, and the offsets of its images. Its memory is reused.
 #[derive(Debug, Default)]
 pub(super) struct GpuBatch {
     pub(super) rows: Vec<PackedRow>,
@@ -210,7 +210,7 @@ impl GpuBatch {
         self.rows[0] = [jobs.len(), self.tiles, records, pieces].map(|number| number as u32);
     }
 
-    /// Bytes of what grows with the batch: rows, rays of lenses, first hits and images.
+    /// Bytes of all that grows with the batch: rows, rays of lenses, first hits and images.
     pub(super) fn bytes(&self) -> [u64; 4] {
         [
             size_of_val(&self.rows[..]) as u64,
@@ -220,7 +220,7 @@ impl GpuBatch {
         ]
     }
 
-    /// The light of a world, and which things are switched off; returns the first row.
+    /// Adds the light of a world, and which things are switched off; returns the first row.
     fn add_light(&mut self, cpu: &CpuRenderer, lighting: &Lighting, state: &State) -> u32 {
         let first = self.rows.len() as u32;
         lighting.flatten(&mut self.rows);
@@ -310,7 +310,7 @@ impl GpuBatch {
         }
     }
 
-    /// Returns where each instance was; returns the first row.
+    /// Adds the previous pose of each instance; returns the first row.
     fn add_before(&mut self, job: &RenderJob<'_>, before: &PreviousFrame<'_>) -> u32 {
         let first = self.rows.len() as u32;
         for part in &job.scene.house().geometry().movable {

@@ -24,7 +24,7 @@ impl GrowableBuffer {
         }
     }
 
-    /// Makes room; returns whether the buffer is another one now.
+    /// Reserves space; returns whether the buffer is another one now.
     fn reserve(&mut self, gpu: &Gpu, bytes: u64) -> Result<bool, RenderError> {
         if self
             .buffer
@@ -65,7 +65,7 @@ impl StagingBuffer {
         }
     }
 
-    /// Writes bytes, and has them copied before what the encoder gets later.
+    /// Writes bytes, and has them copied before later commands of the encoder.
     fn send(
         &mut self,
         gpu: &Gpu,
@@ -93,7 +93,7 @@ impl StagingBuffer {
         Ok(())
     }
 
-    /// Asks to write again when the batch that was submitted is done.
+    /// Maps the memory again when the submitted batch is done.
     fn recall(&self) {
         if let Some(buffer) = &self.buffer {
             let is_mapped = self.is_mapped.clone();
@@ -141,7 +141,7 @@ impl BatchBuffers {
         }
     }
 
-    /// Sends the rows of the batch, and makes room for its images.
+    /// Uploads the rows of the batch, and reserves space for its images.
     pub(super) fn upload(
         &mut self,
         gpu: &Gpu,
@@ -204,7 +204,7 @@ impl BatchBuffers {
         self.group.as_ref()
     }
 
-    /// Returns where kernels write images, and where they come back to.
+    /// Returns the buffers of images: that which kernels write, and that into which it is read back.
     pub(super) fn ways(&self, gpu: &Gpu) -> Result<(&wgpu::Buffer, &wgpu::Buffer), RenderError> {
         Ok((self.images.held(gpu)?, self.back.held(gpu)?))
     }

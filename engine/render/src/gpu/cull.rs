@@ -15,7 +15,7 @@ use std::ops::Range;
 const CHUNK_BLOCKS: u32 = 32;
 /// Walls that are tried for a view: those that cover most of it.
 const SHADOWS: usize = 24;
-/// The least solid angle of a wall that is tried, sr.
+/// Smallest solid angle of a wall that is tried, sr.
 const LEAST_SR: f32 = 0.02;
 /// Slack of the planes, m, and for each metre from the camera: more than rounding.
 pub(super) const SLACK_M: f32 = 1e-3;
@@ -33,12 +33,12 @@ struct Subtree {
 /// The chunks and walls of a house.
 #[derive(Debug, Default)]
 pub(super) struct Culler {
-    /// Each before those below it.
+    /// The subtrees, each before those below it.
     subtrees: Vec<Subtree>,
     occluders: Vec<Occluder>,
 }
 
-/// A place from which a picture is taken.
+/// A viewpoint of a picture.
 #[derive(Clone, Debug)]
 pub(super) struct CullingView {
     pub(super) position: Vec3,
@@ -55,10 +55,10 @@ pub(super) struct VisibilityQuery<'a> {
     shadows: &'a [OcclusionVolume],
 }
 
-/// Memory for a [`VisibilityQuery`], used again.
+/// Memory for a [`VisibilityQuery`], reused.
 #[derive(Debug, Default)]
 pub(super) struct OccluderScratch {
-    /// Walls by the solid angle that they cover, sr.
+    /// Walls by the solid angle that they subtend, sr.
     best: Vec<(f32, usize)>,
     shadows: Vec<OcclusionVolume>,
 }
@@ -127,7 +127,7 @@ impl Culler {
         }
     }
 
-    /// Returns what can be seen from an eye.
+    /// Returns the visibility query of an eye.
     pub(super) fn sightline<'a>(
         &self,
         eye: &'a CullingView,

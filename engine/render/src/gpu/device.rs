@@ -17,7 +17,7 @@ pub struct Gpu {
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
     pub(super) layouts: BindGroupLayouts,
-    /// By the links that their stacks hold.
+    /// Kernels by the links that their stacks hold.
     kernels: Mutex<BTreeMap<usize, Arc<Kernels>>>,
     raster: OnceLock<wgpu::RenderPipeline>,
     /// The measured speeds of both paths here; see [`VisibilityPathSpeeds::measure`].
@@ -25,19 +25,19 @@ pub struct Gpu {
     /// The process that opened it.
     process: u32,
     buffers_made: AtomicUsize,
-    /// The first message of the driver that nobody has seen.
+    /// The first message of the driver that was not reported yet.
     fault: Arc<Mutex<Option<String>>>,
 }
 
-/// A lock, whoever panicked with it.
+/// Locks a mutex, even a poisoned one.
 pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Most that batches take of an adapter at once: what is more is cut into several submissions.
+/// Limits of what batches take of an adapter at once: larger ones are cut into several submissions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BatchLimits {
-    /// Of each buffer, a house's included, bytes.
+    /// Size of each buffer, a house's included, bytes.
     pub buffer_bytes: u64,
     /// Groups of 64 pixels along either axis of a call.
     pub groups: u32,
@@ -74,13 +74,13 @@ impl DeviceRegistry {
         if gpu.check_process().is_ok() {
             return Some(gpu.clone());
         }
-        // Closing what another process opened would call its driver, which is not there.
+        // Closing another process's adapter would call its driver, which is not there.
         std::mem::forget(self.gpus.remove(adapter));
         None
     }
 }
 
-/// Bytes of the buffer that is made for so many.
+/// The size of the buffer that is made for so many bytes.
 pub(super) fn buffer_size(bytes: u64) -> u64 {
     bytes.max(64).next_multiple_of(16)
 }
@@ -168,7 +168,7 @@ impl Gpu {
         Ok(Arc::new(gpu))
     }
 
-    /// As [`Self::open`]; who asks for the same adapter in one process gets the same.
+    /// As [`Self::open`]; the same adapter is shared in one process.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -224,7 +224,7 @@ impl Gpu {
         &self.adapter
     }
 
-    /// Returns how quick both paths are on this adapter; measured over the first house that asks, then known.
+    /// Returns the speeds of both paths on this adapter; measured over the first house, then kept.
     ///
     /// # Errors
     /// As [`VisibilityPathSpeeds::measure`].
@@ -240,7 +240,7 @@ impl Gpu {
         Ok(*self.speeds.get_or_init(|| speeds))
     }
 
-    /// The program that draws; made when first asked for.
+    /// The program that draws; made at first use.
     pub(super) fn raster(&self) -> &wgpu::RenderPipeline {
         self.raster
             .get_or_init(|| raster::pipeline(&self.device, &self.layouts))
@@ -260,7 +260,7 @@ impl Gpu {
         self.buffers_made.load(Ordering::Relaxed)
     }
 
-    /// Returns what the driver said since the last time, as an error.
+    /// Returns the driver's message since the last call, as an error.
     pub(super) fn check(&self, doing: &'static str) -> Result<(), RenderError> {
         match lock(&self.fault).take() {
             None => Ok(()),
@@ -339,7 +339,7 @@ impl Gpu {
         Ok(buffer)
     }
 
-    /// Kernels whose stacks hold at least so many links; made when first asked for.
+    /// Kernels whose stacks hold at least so many links; made at first use.
     pub(super) fn kernels(&self, stack: usize) -> Result<Arc<Kernels>, RenderError> {
         let stack = stack.next_multiple_of(32);
         let mut made = lock(&self.kernels);

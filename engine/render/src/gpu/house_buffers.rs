@@ -22,11 +22,11 @@ const HEADER_ROWS: usize = 8;
 #[derive(Debug)]
 pub(super) struct HouseBuffers {
     pub(super) group: wgpu::BindGroup,
-    /// Most links that wait while the tree of what never moves is walked.
+    /// Stack size for the tree of static geometry: the most links that wait while it is walked.
     pub(super) stack: usize,
     /// As `stack`, for the deepest mesh of an instance.
     pub(super) mesh_stack: usize,
-    /// For the raster path.
+    /// The data for the raster path.
     pub(super) drawable: RasterScene,
     /// Memory held, bytes.
     pub(super) bytes: u64,

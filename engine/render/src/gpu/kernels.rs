@@ -1,4 +1,4 @@
-//! The programs that run on the adapter, and the buffers that they see.
+//! Kernels of the adapter, and the buffers that they bind.
 
 use std::sync::OnceLock;
 
@@ -17,7 +17,7 @@ pub(super) struct BindGroupLayouts {
 }
 
 impl BindGroupLayouts {
-    /// Buffers that a kernel sees.
+    /// Number of buffers that a kernel binds.
     pub(super) const BUFFERS: u32 = 8;
 
     pub(super) fn new(device: &wgpu::Device) -> Self {
@@ -77,7 +77,7 @@ impl BindGroupLayouts {
     }
 }
 
-/// The kernels, for trees in which at most so many links wait.
+/// The kernels, for trees whose traversal stacks hold at most so many links.
 #[derive(Debug)]
 pub(super) struct Kernels {
     stack: usize,
@@ -125,7 +125,7 @@ impl Kernels {
         })
     }
 
-    /// Returns what each pixel of drawn pictures sees first.
+    /// Returns the kernel that finds the closest hit of each pixel of drawn pictures.
     pub(super) fn settle(
         &self,
         device: &wgpu::Device,

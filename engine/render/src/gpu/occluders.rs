@@ -1,4 +1,4 @@
-//! Walls as what hides other things: large flat convex pieces without gaps.
+//! Occluders: large flat convex pieces of walls without gaps.
 
 use super::cull::SLACK_M;
 use dwell_scene::Aabb;
@@ -18,9 +18,9 @@ const FLAT_M: f32 = 1e-5;
 /// A flat convex piece of something that never moves.
 #[derive(Clone, Debug)]
 pub(super) struct Occluder {
-    /// In order around it.
+    /// Corners in order around it.
     corners: Vec<Vec3>,
-    /// Unit length.
+    /// Normal, unit length.
     normal: Vec3,
     area_m2: f32,
     pub(super) id: i32,
@@ -54,7 +54,7 @@ impl Occluder {
         })
     }
 
-    /// A flat convex piece; nothing for corners that make none.
+    /// A flat convex piece; `None` for corners that make none.
     fn new(corners: Vec<Vec3>, id: i32) -> Option<Self> {
         let twice = Self::area_vector(&corners);
         let normal = twice.try_normalize()?.as_vec3();
@@ -76,14 +76,14 @@ impl Occluder {
         })
     }
 
-    /// About how much of the view from a point it covers, sr.
+    /// The approximate solid angle that it subtends at a point, sr.
     pub(super) fn solid_angle_sr(&self, eye: Vec3) -> f32 {
         let way = self.bounds.center() - eye;
         let squared = way.length_squared().max(0.01);
         self.area_m2 * (self.normal.dot(way).abs() / squared.sqrt()) / squared
     }
 
-    /// Returns what it hides from a point; nothing where parts of it may be nearer than `near_m`, where they are not seen.
+    /// Returns the volume that it hides from a point; `None` where parts of it may be nearer than `near_m`, where they are not seen.
     pub(super) fn shadow(&self, eye: Vec3, near_m: f32) -> Option<OcclusionVolume> {
         let height = self.normal.dot(self.corners[0] - eye);
         if height.abs() < near_m.max(0.01) {
@@ -105,7 +105,7 @@ impl Occluder {
         Some(shadow)
     }
 
-    /// The two as one piece, where they share an edge and that is flat and convex.
+    /// Joins two pieces, where they share an edge and the result is flat and convex.
     fn joined(&self, other: &Self) -> Option<Self> {
         let (a, b) = (&self.corners, &other.corners);
         if self.id != other.id || a.len() + b.len() - 2 > MOST_CORNERS {
@@ -157,7 +157,7 @@ pub(super) fn occluders(blocks: &[PackedRow]) -> Vec<Occluder> {
             );
         }
     }
-    // By edge, the piece that has waited there for a neighbour.
+    // The piece at each edge that waits for a neighbour.
     let mut waiting: BTreeMap<EdgeKey, usize> = BTreeMap::new();
     let mut open: Vec<usize> = (0..pieces.len()).collect();
     while let Some(k) = open.pop() {

@@ -32,14 +32,14 @@ pub(super) struct RasterScene {
     pub(super) culls: bool,
 }
 
-/// A picture's place in the texture, its size, and what it draws.
+/// A picture's place in the texture, its size, and its drawing.
 #[derive(Clone, Debug)]
 pub(super) struct AtlasTile {
     pub(super) x: u32,
     pub(super) y: u32,
     width: u32,
     height: u32,
-    /// Of the pieces of the drawing.
+    /// Range among the pieces of the drawing.
     pieces: Range<u32>,
 }
 
@@ -49,11 +49,11 @@ pub(super) struct DrawBatch {
     pub(super) sheets: Vec<AtlasTile>,
     /// Five rows each: from a mesh to the picture's clip space, then source, id and the id that is not seen.
     pub(super) records: Vec<PackedRow>,
-    /// First block, how many blocks, and the record.
+    /// First block, number of blocks, and the record.
     pub(super) pieces: Vec<PackedRow>,
-    /// Of the texture.
+    /// Size of the texture.
     pub(super) size: (u32, u32),
-    /// Of each sheet.
+    /// The list of each sheet.
     lists: Vec<DrawList>,
 }
 
@@ -81,7 +81,7 @@ struct DrawListJob<'a, 'b, 'c> {
 }
 
 impl DrawBatch {
-    /// Returns whether the raster path takes a view: straight lines must stay straight, and pixels need neighbours above and below.
+    /// Returns whether the raster path supports a view: straight lines must stay straight, and pixels need neighbours above and below.
     fn supports_view(job: &RenderJob<'_>) -> bool {
         let camera = &job.view.camera;
         let is_whole = job.row_range() == (0, camera.height() as usize);
@@ -90,7 +90,7 @@ impl DrawBatch {
             && is_whole
     }
 
-    /// Lists what is to be drawn for some jobs; returns the sheet of each that is drawn.
+    /// Lists the drawing of some jobs; returns the sheet of each that is drawn.
     pub(super) fn fill(
         &mut self,
         house: &RasterScene,
@@ -136,7 +136,7 @@ impl DrawBatch {
         places
     }
 
-    /// Finds room for pictures, in rows from left to right; those without room are not drawn.
+    /// Allocates space for pictures, in rows from left to right; those without space are not drawn.
     fn lay_out(&mut self, jobs: &[RenderJob<'_>], most_edge: u32) -> Vec<Option<usize>> {
         let pixels: usize = jobs.iter().map(|job| job.view.camera.pixels()).sum();
         let widest = jobs.iter().map(|job| job.view.camera.width()).max();
@@ -173,7 +173,7 @@ impl DrawBatch {
         places
     }
 
-    /// Returns how often [`Self::draw`] calls the adapter.
+    /// Returns the number of draw calls of [`Self::draw`].
     pub(super) fn calls(&self) -> usize {
         let sheets = self.sheets.iter();
         sheets.filter(|sheet| !sheet.pieces.is_empty()).count()
@@ -197,7 +197,7 @@ impl DrawList {
         self.pieces.clear();
     }
 
-    /// Lists what is seen of a shot: static geometry, then instances.
+    /// Lists the visible geometry of a shot: static geometry, then instances.
     fn fill(&mut self, house: &RasterScene, shot: &DrawView<'_, '_>) {
         let hidden = shot.eye.hidden as u32;
         let mut shadows = std::mem::take(&mut self.shadows);
@@ -251,7 +251,7 @@ impl DrawList {
         self.records.push(facts);
     }
 
-    /// Blocks under the latest record.
+    /// Adds blocks under the latest record.
     fn piece(&mut self, blocks: Range<u32>) {
         let record = (self.records.len() / RECORD_ROWS - 1) as u32;
         let pieces = blocks.clone().step_by(PIECE_BLOCKS as usize);
@@ -317,7 +317,7 @@ impl<'a, 'b> DrawView<'a, 'b> {
     }
 }
 
-/// Textures that are drawn into; they grow.
+/// Render targets; they grow.
 #[derive(Debug)]
 pub(super) struct RenderAtlas {
     size: (u32, u32),
@@ -327,7 +327,7 @@ pub(super) struct RenderAtlas {
 }
 
 impl RenderAtlas {
-    /// Textures of at least this size; the same as before where they are large enough.
+    /// Returns targets of at least this size; the same as before where they are large enough.
     pub(super) fn reserve(
         held: Option<Self>,
         gpu: &Gpu,
@@ -404,7 +404,7 @@ impl RenderAtlas {
     }
 }
 
-/// The program that draws.
+/// The render pipeline.
 pub(super) fn pipeline(device: &wgpu::Device, layouts: &BindGroupLayouts) -> wgpu::RenderPipeline {
     let source = [
         include_str!("shaders/common.wgsl"),

@@ -10,8 +10,8 @@ const BYTES: u64 = 64 << 20;
 const ROUNDS: usize = 4;
 
 impl Gpu {
-    /// Bytes a second from the adapter's memory into that of the caller, as pictures go: the best of four rounds over 64 MiB,
-    /// or the largest buffer there may be.
+    /// Measures the read-back rate from the adapter's memory into that of the caller, bytes a second: the best of four rounds over 64 MiB,
+    /// or the largest possible buffer.
     ///
     /// # Errors
     /// [`RenderError::Driver`].

@@ -24,7 +24,7 @@ pub struct GpuRenderer {
     path: VisibilityPath,
     /// Memory of earlier batches.
     slots: Mutex<Vec<BatchBuffers>>,
-    /// Shared with the batches that it was given.
+    /// Shared with the batches that it submitted.
     own: Arc<()>,
 }
 
@@ -32,18 +32,18 @@ pub struct GpuRenderer {
 #[derive(Debug)]
 pub struct PendingBatch {
     parts: Vec<SubmittedPart>,
-    /// Of the renderer that was given it.
+    /// The renderer that submitted it.
     owner: Arc<()>,
 }
 
 impl PendingBatch {
-    /// Calls that draw, of the raster path: one for each view that shows something.
+    /// Number of draw calls of the raster path: one for each view that shows something.
     pub fn draws(&self) -> usize {
         let parts = self.parts.iter();
         parts.map(|part| part.slot.batch.drawing.calls()).sum()
     }
 
-    /// Into how many submissions the batch was cut.
+    /// Number of submissions into which the batch was cut.
     pub fn parts(&self) -> usize {
         self.parts.len()
     }
@@ -64,7 +64,7 @@ struct ReadBack<'a, 'b> {
 }
 
 impl GpuRenderer {
-    /// Sends the tables that `cpu` has prepared for its house to an adapter, which takes the given path.
+    /// Uploads the tables that `cpu` has prepared for its house to an adapter, which takes the given path.
     ///
     /// # Errors
     /// [`RenderError::TooLarge`] when the house does not fit, [`RenderError::Driver`].
@@ -89,7 +89,7 @@ impl GpuRenderer {
         &self.gpu
     }
 
-    /// Returns how it finds what pixels see first.
+    /// Returns the method by which it finds what pixels see first.
     pub fn path(&self) -> VisibilityPath {
         self.path
     }
@@ -119,7 +119,7 @@ impl GpuRenderer {
         if jobs.iter().all(|job| is_ours(job)) {
             let submitted = self.submit(jobs, threads)?;
             let frames = jobs.iter_mut().map(|job| &mut job.frame);
-            // What an adapter has begun is waited for.
+            // Work that an adapter has begun is waited for.
             return interrupt::uninterruptible(|| self.deliver(submitted, frames, threads));
         }
         for (k, job) in jobs.iter().enumerate() {
@@ -185,7 +185,7 @@ impl GpuRenderer {
         interrupt::uninterruptible(|| self.deliver(submitted, frames.iter_mut(), threads))
     }
 
-    /// Returns how many of the first jobs fit into one submission as far as their images go; at least one.
+    /// Returns the number of the first jobs whose images fit into one submission; at least one.
     fn fitting(&self, jobs: &[RenderJob<'_>]) -> usize {
         let (most, most_groups) = (self.gpu.most_bytes(), self.gpu.most_groups());
         let (mut seen, mut words, mut groups) = (0, 0, 0);

@@ -1,4 +1,4 @@
-//! Two ways to what each pixel sees first.
+//! Two methods for what each pixel sees first.
 
 use super::device::Gpu;
 use super::renderer::GpuRenderer;
@@ -18,7 +18,7 @@ use std::time::Instant;
 pub enum VisibilityPath {
     /// A kernel walks the trees of `cpu`, ray by ray.
     Compute,
-    /// Triangles are drawn, those that cannot be seen left out; rays decide at edges. Cameras other than pinholes go the way of
+    /// Triangles are drawn, those that cannot be seen left out; rays decide at edges. Cameras other than pinholes use
     /// [`Self::Compute`]. Of coincident surfaces either may be seen.
     Raster,
 }
@@ -27,7 +27,7 @@ impl VisibilityPath {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Compute, Self::Raster];
 
-    /// As people say it.
+    /// Its name.
     pub fn word(self) -> &'static str {
         match self {
             Self::Compute => "compute",
@@ -62,7 +62,7 @@ const EDGE: u32 = 64;
 const ROUNDS: usize = 3;
 
 impl VisibilityPathSpeeds {
-    /// Measures both over views in the rooms of a house, as it stands at the start: the best of three rounds each, after one
+    /// Measures both paths over views in the rooms of a house, as it stands at the start: the best of three rounds each, after one
     /// that compiles.
     ///
     /// # Errors

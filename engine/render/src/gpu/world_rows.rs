@@ -6,10 +6,10 @@ use dwell_scene::Pose;
 use dwell_scene::bvh::flat::{INSTANCE_ROWS, NODE_ROWS, PackedRow, flat_pose};
 use dwell_scene::parallel::Threads;
 
-/// The worlds of a batch. Their memory is used again.
+/// The worlds of a batch. Their memory is reused.
 #[derive(Debug, Default)]
 pub(super) struct WorldRows {
-    /// Of each world, positions counted from its own first row.
+    /// The rows of each world, positions counted from its own first row.
     lists: Vec<Vec<PackedRow>>,
 }
 

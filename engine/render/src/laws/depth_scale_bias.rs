@@ -1,4 +1,4 @@
-//! Depths that are too large by a part and by an amount.
+//! Depths with a scale and an offset error.
 
 use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;

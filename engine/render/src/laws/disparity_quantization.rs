@@ -1,4 +1,4 @@
-//! Depth from disparities that come in steps.
+//! Depth from quantized disparities.
 
 use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;

@@ -1,4 +1,4 @@
-//! Readings between a thing and what lies behind it.
+//! Flying pixels: readings between a thing and what lies behind it.
 
 use super::{DepthContext, LawValues, RenderLaw, RenderStage};
 use dwell_scene::LawInfo;

@@ -1,4 +1,4 @@
-//! A focal length other than it is said to be.
+//! An error of the focal length.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;

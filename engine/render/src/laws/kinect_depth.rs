@@ -39,7 +39,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
     acts: RenderStage::DepthByNormals(change),
 };
 
-/// Steeper than this the measurements end, rad.
+/// Steepest angle that is measured, rad.
 const STEEPEST: f32 = 80.0 / 180.0 * std::f32::consts::PI;
 
 /// Standard deviation along the ray, m.
@@ -69,7 +69,7 @@ fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image:
             let normal = Vec3::from_slice(&scan.normals[3 * (row * width + column)..]);
             let image = Vec2::new(column as f32 + 0.5, row as f32 + 0.5);
             let ray = scan.camera.ray_in_camera(image).1.normalize_or(Vec3::NEG_Z);
-            // No normal: nothing is seen.
+            // No normal: nothing is hit.
             let angle = if normal == Vec3::ZERO {
                 0.0
             } else {

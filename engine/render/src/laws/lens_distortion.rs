@@ -1,4 +1,4 @@
-//! A lens that bends straight lines.
+//! Lens distortion.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::{Camera, Projection};

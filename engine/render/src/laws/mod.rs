@@ -27,7 +27,7 @@ use dwell_scene::{AgentId, Id, LawInfo, LawSpec};
 use glam::Vec3;
 use std::sync::LazyLock;
 
-/// A law of this engine: what is known about it, and where it acts.
+/// A law of this engine with its stage.
 struct RenderLaw {
     info: LawInfo,
     acts: RenderStage,
@@ -35,15 +35,15 @@ struct RenderLaw {
 
 /// The stage of rendering in which a law acts.
 enum RenderStage {
-    /// On where pixels look.
+    /// The projection of the camera.
     Lens(fn(LawValues<'_>, Camera) -> Camera),
-    /// On when pixels look.
+    /// The shutter.
     Shutter(fn(LawValues<'_>, &mut Shutter)),
-    /// On depths, m. What is drawn depends on the key and the image's size alone.
+    /// Depths, m. Random draws depend on the key and the image's size alone.
     Depth(fn(LawValues<'_>, &DepthContext<'_>, RandomKey, &mut [f32])),
-    /// As [`RenderStage::Depth`], and needs normals.
+    /// As [`RenderStage::Depth`], with normals.
     DepthByNormals(fn(LawValues<'_>, &DepthContext<'_>, RandomKey, &mut [f32])),
-    /// On light, linear, 1 for display white. Shape (height * width,).
+    /// Light, linear, 1 for display white. Shape (height * width,).
     Color(fn(LawValues<'_>, &Camera, RandomKey, &mut [Vec3])),
 }
 
@@ -64,7 +64,7 @@ static LAWS: &[RenderLaw] = &[
     depth_scale_bias::LAW,
 ];
 
-/// Returns what is known about each law of cameras.
+/// Returns the descriptions of all laws of cameras.
 ///
 /// ```
 /// let law = dwell_render::laws::all().iter().find(|law| law.id == "redwood_depth").unwrap();
@@ -92,7 +92,7 @@ impl LawValues<'_> {
 /// The inputs of a law of depth beside the depths.
 struct DepthContext<'a> {
     camera: &'a Camera,
-    /// Shape (height, width, 3); empty unless the law asked for normals.
+    /// Shape (height, width, 3); empty unless the law needs normals.
     normals: &'a [f32],
 }
 
@@ -119,7 +119,7 @@ impl Shutter {
     }
 }
 
-/// Checks that laws of cameras name agents that there are.
+/// Checks that the targets of laws of cameras are existing agents.
 ///
 /// # Errors
 /// [`RenderError::LawTarget`].
@@ -175,7 +175,7 @@ impl<'a> Optics<'a> {
         Self { laws: Vec::new() }
     }
 
-    /// The camera as it is, from the camera as it should be.
+    /// The real camera, from the ideal one.
     #[must_use]
     pub fn camera(&self, mut camera: Camera) -> Camera {
         for (values, acts, _) in &self.laws {
@@ -186,7 +186,7 @@ impl<'a> Optics<'a> {
         camera
     }
 
-    /// Returns when rows are taken.
+    /// Returns the shutter.
     pub fn shutter(&self) -> Shutter {
         let mut shutter = Shutter::default();
         for (values, acts, _) in &self.laws {
@@ -197,7 +197,7 @@ impl<'a> Optics<'a> {
         shutter
     }
 
-    /// Returns whether [`Self::depth`] looks at normals.
+    /// Returns whether [`Self::depth`] needs normals.
     pub fn needs_normals(&self) -> bool {
         let by_normals = |acts: &RenderStage| matches!(acts, RenderStage::DepthByNormals(_));
         self.laws.iter().any(|(_, acts, _)| by_normals(acts))
@@ -205,7 +205,7 @@ impl<'a> Optics<'a> {
 
     /// Applies the sensor's laws to the depths `image`, m; 0 to the camera's far end.
     ///
-    /// `camera`: as it is. `normals`: as [`crate::FrameMut::normals`], if [`Self::needs_normals`].
+    /// `camera`: the real one. `normals`: as [`crate::FrameMut::normals`], if [`Self::needs_normals`].
     ///
     /// # Determinism
     /// Equal keys, equal bits.

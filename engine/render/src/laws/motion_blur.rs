@@ -1,4 +1,4 @@
-//! Light that is gathered while things move.
+//! Motion blur: light that is gathered while things move.
 
 use super::{LawValues, RenderLaw, RenderStage, Shutter};
 use dwell_scene::LawInfo;

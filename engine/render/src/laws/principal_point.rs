@@ -1,4 +1,4 @@
-//! A principal point other than it is said to be.
+//! An error of the principal point.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;

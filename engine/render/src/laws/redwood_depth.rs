@@ -39,7 +39,7 @@ const BASE: f64 = 35.13;
 const SIGMA: f64 = 1.0 / 36.0;
 /// Standard deviation of place, px.
 const SHUFFLE_PX: f64 = 0.25;
-/// From here on there is no reading, m.
+/// Range from which on there is no reading, m.
 const FURTHEST_M: f32 = 10.0;
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {

@@ -1,4 +1,4 @@
-//! Rows that are taken one after another.
+//! Rolling shutter: rows that are exposed one after another.
 
 use super::{LawValues, RenderLaw, RenderStage, Shutter};
 use dwell_scene::LawInfo;

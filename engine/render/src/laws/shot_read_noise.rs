@@ -1,4 +1,4 @@
-//! Light that comes in electrons, and what reading them adds.
+//! Shot noise of electrons, and read noise.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;
@@ -44,7 +44,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
     acts: RenderStage::Color(change),
 };
 
-/// From this mean on rejection is faster than counting.
+/// Mean from which on rejection is faster than counting.
 const COUNTED: f64 = 12.0;
 
 fn change(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
@@ -66,7 +66,7 @@ fn change(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [V
     }
 }
 
-/// A number from Poisson's law.
+/// Draws from the Poisson distribution.
 ///
 /// # Source
 /// Few: D. E. Knuth, The Art of Computer Programming 2, 3.4.1. Many: W. Hörmann, Insurance: Mathematics and Economics 12 (1993)

@@ -1,4 +1,4 @@
-//! Corners that are darker than the middle.
+//! Vignetting: corners that are darker than the middle.
 
 use super::{LawValues, RenderLaw, RenderStage};
 use crate::camera::Camera;

@@ -4,7 +4,7 @@ use super::indirect::HouseLight;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, State};
 
-/// All that the light of a world depends on, but what never changes about its house.
+/// The changing inputs of a world's light.
 #[derive(Clone, Copy)]
 pub(crate) struct LightingInputs<'a> {
     pub(crate) house: &'a House,
@@ -16,7 +16,7 @@ pub(crate) struct LightingInputs<'a> {
 }
 
 impl LightingInputs<'_> {
-    /// Tells the bits of all of it.
+    /// Passes the bits of all of it to `tell`.
     fn each(&self, mut tell: impl FnMut(u32)) {
         let places = (0..).map_while(|instance| self.scene.world_from_mesh(instance));
         for place in places {
@@ -36,7 +36,7 @@ impl LightingInputs<'_> {
         doors.for_each(|open| tell(open.to_bits()));
     }
 
-    /// A number that differs where the inputs do, as a rule (Fowler, Noll and Vo's mixing, by words of 32 bits).
+    /// A hash of the inputs (Fowler, Noll and Vo's mixing, by words of 32 bits).
     pub(crate) fn hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
         self.each(|word| {
@@ -48,7 +48,7 @@ impl LightingInputs<'_> {
     }
 }
 
-/// The inputs of the light that was made last.
+/// The inputs of the latest light.
 #[derive(Debug, Default)]
 pub(crate) struct LightingCacheKey {
     hash: Option<u64>,
@@ -56,12 +56,12 @@ pub(crate) struct LightingCacheKey {
 }
 
 impl LightingCacheKey {
-    /// Returns whether inputs of this hash may be the ones.
+    /// Returns whether inputs of this hash may be these.
     pub(crate) fn has(&self, hash: u64) -> bool {
         self.hash == Some(hash)
     }
 
-    /// Returns whether these are the ones, to the bit; notes them otherwise. `hash`: theirs.
+    /// Returns whether the inputs are these, to the bit; stores them otherwise. `hash`: theirs.
     pub(crate) fn renew(&mut self, inputs: &LightingInputs<'_>, hash: u64) -> bool {
         if self.has(hash) {
             let (mut is_same, mut known) = (true, self.words.iter());
@@ -86,7 +86,7 @@ mod tests {
     use std::cell::Cell;
     use std::sync::Arc;
 
-    /// Returns how many rays the light of a world takes; none when it is kept.
+    /// Returns the number of rays that the light of a world takes; 0 when it is kept.
     fn rays(lighting: &mut Lighting, cpu: &CpuRenderer, scene: &RayScene, state: &State) -> usize {
         let asked = Cell::new(0);
         let ask = || {

@@ -50,8 +50,8 @@ fn air_rows(air: &OutdoorLight) -> Vec<PackedRow> {
 }
 
 impl HouseLight {
-    /// All that never changes, when its first row is `first`: four rows of heads, storeys, windows, where those of each room
-    /// start, the open air, and cells of storeys.
+    /// The constant light, when its first row is `first`: four rows of heads, storeys, windows, first windows of each room,
+    /// the open air, and cells of storeys.
     pub(crate) fn flat(&self, first: usize) -> Vec<PackedRow> {
         let grid = &self.grid;
         let storeys = first + 4;
@@ -114,8 +114,8 @@ fn lamp_rows(lamp: &PointLamp) -> [PackedRow; 4] {
 }
 
 impl Lighting {
-    /// Appends the light of one state: two rows of heads (first rows of lamps, of where those of each room start, of rooms, and
-    /// behind all; of what casts shadows), then these.
+    /// Appends the light of one state: two rows of heads (first rows of lamps, of the first lamps of each room, of rooms, and
+    /// behind all; of shadow casters), then these.
     pub(crate) fn flatten(&self, rows: &mut Vec<PackedRow>) {
         let lamps = rows.len() + 2;
         let starts = lamps + self.lamps.len() * 4;

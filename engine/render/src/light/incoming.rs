@@ -1,4 +1,4 @@
-//! Light on a point, apart by what casts its shadows.
+//! Incident light on a point, by shadow caster.
 
 use super::indirect::luminance;
 use glam::Vec3;
@@ -6,11 +6,11 @@ use glam::Vec3;
 /// A source of light that a shadow ray may find occluded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LightSource {
-    /// From nowhere.
+    /// No source.
     None,
     /// Light reflected by the walls of a room.
     Room,
-    /// From all around under the open sky.
+    /// The whole open sky.
     Sky,
     /// The sky in a window: a position in [`super::HouseLight::windows`].
     Window(u32),
@@ -35,7 +35,7 @@ impl LightSample {
     };
 }
 
-/// Light on a point: of its `N` strongest sources apart, of which a ray each tells whether it arrives; the rest arrives.
+/// Incident light on a point: that of its `N` strongest sources apart, each with a shadow ray; the rest arrives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct IncidentLight<const N: usize> {
     /// The light that arrives, in units of display white.
@@ -57,7 +57,7 @@ impl<const N: usize> IncidentLight<N> {
         }
     }
 
-    /// Adds a source; the weakest of more than `N` arrives.
+    /// Adds a source; the weakest of more than `N` counts as arriving.
     pub(super) fn offer(&mut self, source: LightSource, light: Vec3) {
         if !matches!(source, LightSource::Sun | LightSource::Caster(_)) {
             self.light += light;
@@ -82,7 +82,7 @@ impl<const N: usize> IncidentLight<N> {
         }
     }
 
-    /// As a surface of that reflectance sends it on.
+    /// The light that a surface of that reflectance reflects.
     pub(crate) fn on(mut self, color: Vec3) -> Self {
         self.light *= color;
         for ray in &mut self.rays {

@@ -1,4 +1,4 @@
-//! The light that rooms throw back.
+//! Indirect light in rooms.
 
 use super::openings::{LightPortal, WindowLight, openings};
 use super::outdoor::OutdoorLight;
@@ -9,18 +9,18 @@ use dwell_scene::{House, Id, RoomId, State};
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Luminance of the sky of a house that does not say, cd/m²: an overcast sky that gives about 8,000 lx in the open.
+/// Luminance of the sky of a house without a stated one, cd/m²: an overcast sky that gives about 8,000 lx in the open.
 const SKY_LUMINANCE_CD_M2: f32 = 2500.0;
 /// Albedo of the ground before such a house.
 const GROUND: f32 = 0.2;
 /// Transmittance of window panes.
 pub(crate) const PANE_TRANSMITTANCE: f32 = 0.7;
-/// Illuminance by the sun of a house that does not say, on a surface across its rays behind a pane, lx: a low sun behind
+/// Illuminance by the sun of a house without a stated sky, on a surface across its rays behind a pane, lx: a low sun behind
 /// thin cloud.
 const SUN_LX: f32 = 2500.0;
-/// Towards that sun: 36 degrees high, between the axes, so that it enters houses however they stand.
+/// Direction to that sun: 36 degrees high, between the axes, so that it enters houses however they stand.
 pub(super) const TO_SUN: Vec3 = Vec3::new(0.485, 0.588, 0.647);
-/// Illuminance that even a dark room has, lx: what comes through gaps and from appliances that are not modelled.
+/// Illuminance that even a dark room has, lx: light through gaps and from appliances that are not modelled.
 const RESIDUAL_LX: f32 = 15.0;
 /// Factor by which furniture lowers the walls' reflectance.
 const FURNITURE: f32 = 0.85;
@@ -39,7 +39,7 @@ pub(crate) struct HouseLight {
     pub(crate) air: Option<OutdoorLight>,
     /// Direction to the sun, and its illuminance behind a pane across its rays, lx.
     pub(crate) sun: (Vec3, Vec3),
-    /// By room.
+    /// Windows by room.
     pub(crate) windows: Vec<WindowLight>,
     /// The first window of each room, and the end of the last room's. Shape (room + 1,).
     pub(super) window_starts: Vec<usize>,
@@ -60,7 +60,7 @@ struct RoomReflectance {
 /// The light in a room.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RoomLight {
-    /// Illuminance from all around by light that was reflected, lx.
+    /// Illuminance by reflected light from all around, lx.
     pub(crate) indirect: Vec3,
     /// Mean illuminance of its surfaces, lx.
     pub(crate) mean: f32,
@@ -74,7 +74,7 @@ impl HouseLight {
             let Some(air) = &air else {
                 return [1.0, GROUND].map(|part| Vec3::splat(part * SKY_LUMINANCE_CD_M2));
             };
-            // Each half of what a window sees, as if evenly bright.
+            // The two halves of a window's view, as if evenly bright.
             let mean = |lx: Vec3, share: f32| lx / (PI * share.max(0.05));
             let up = 0.5 + 0.5 * outwards.y;
             [
@@ -111,13 +111,13 @@ impl HouseLight {
         &self.windows[self.window_starts[room]..self.window_starts[room + 1]]
     }
 
-    /// Returns how far what closes each passage between rooms is open, 0 to 1.
+    /// Returns the openness of each passage between rooms, 0 to 1.
     pub(super) fn openness(&self, house: &House, state: &State) -> impl Iterator<Item = f32> {
         let passages = self.passages.iter();
         passages.map(|passage| state.openness(house, passage.door).unwrap_or(1.0))
     }
 
-    /// The light in every room when lamps send `flux_lm` into each. `sunlit`: how much of each window the sun reaches.
+    /// The light in every room when lamps send `flux_lm` into each. `sunlit`: the sunlit share of each window.
     ///
     /// # Source
     /// The equation of the integrating sphere, E A (1 - r) = `flux`, whose indirect part is what walls throw back; e.g.
@@ -177,8 +177,8 @@ impl HouseLight {
     }
 }
 
-/// The mean illuminance of rooms that exchange light, lx. `flux_lm`: what is sent into each; `taken_m2`: how much of it a unit of
-/// illuminance leaves on its walls; `openings`: between which two, and how large, m².
+/// The mean illuminance of rooms that exchange light, lx. `flux_lm`: the flux into each; `taken_m2`: the flux that walls absorb at unit
+/// illuminance; `openings`: the two rooms of each, and its area, m².
 fn exchange_light(
     flux_lm: &[Vec3],
     taken_m2: &[Vec3],

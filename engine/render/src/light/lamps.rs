@@ -1,4 +1,4 @@
-//! Lamps as light sources without size.
+//! Lamps as point sources.
 
 use super::room_grid::RoomGrid;
 use dwell_scene::{House, Light, LightShape, State, math};
@@ -8,7 +8,7 @@ use std::f32::consts::PI;
 /// Luminous flux of a lamp of one watt, lm: SUNCG's watts are those of efficient lamps.
 pub(crate) const LUMEN_PER_WATT: f32 = 100.0;
 
-/// Nearer than this a lamp shines as at this distance, m: it has a size in truth.
+/// Distance below which a lamp shines as at this distance, m: it has a size in truth.
 const NEAREST_M: f32 = 0.05;
 
 /// Parts of a glowing line, as fractions of its length: midpoints of equal quarters.
@@ -68,7 +68,7 @@ impl PointLamp {
     }
 }
 
-/// Appends what a light amounts to in this state: nothing while it is off, four lamps for a line.
+/// Appends the lamps of a light in this state: none while it is off, four for a line.
 pub(crate) fn add_lamps(
     house: &House,
     state: &State,

@@ -1,4 +1,4 @@
-//! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and what rooms throw back.
+//! The light of [`Preset::Lit`](crate::Preset): lamps, daylight through windows, and indirect light of rooms.
 
 mod cache_key;
 mod gpu_layout;
@@ -44,7 +44,7 @@ const LIT_SKY: f32 = 2.5;
 /// All light of a house in one state.
 #[derive(Debug, Default)]
 pub(crate) struct Lighting {
-    /// By room; those outside come first.
+    /// Lamps by room; those outside come first.
     lamps: Vec<PointLamp>,
     /// The first lamp of each room, those outside first, and the end of the last. Shape (room + 2,).
     lamp_starts: Vec<usize>,
@@ -74,7 +74,7 @@ impl Lighting {
         self.cache_key.has(hash)
     }
 
-    /// Reads the switches and places of lamps, in the memory of an earlier state; nothing where all is as it was then. `hash`: of
+    /// Reads the switches and places of lamps, in the memory of an earlier state; does nothing where all is as it was then. `hash`: of
     /// the inputs. `sun_reaches`: whether nothing stands between a point and the sun. `passes`: as for [`lamp_clusters::cluster_lamps`].
     pub(crate) fn update(
         &mut self,
@@ -117,7 +117,7 @@ impl Lighting {
                 self.flux_lm[room] += lamp.flux_lm;
             }
         }
-        // Agents that walk change what stands before lamps, and rarely what rooms throw back.
+        // Agents that walk change the occlusion of lamps, and rarely the indirect light of rooms.
         let [now, last] = &mut self.room_inputs;
         now.clear();
         let flux = self.flux_lm.iter().flat_map(Vec3::to_array);
@@ -137,7 +137,7 @@ impl Lighting {
         );
     }
 
-    /// Returns how a camera at `eye` is exposed: by the mean light of its room, not quite to the full, so that dim rooms look
+    /// Returns the exposure of a camera at `eye`: by the mean light of its room, not quite to the full, so that dim rooms look
     /// dimmer than bright ones.
     pub(crate) fn exposure(&self, fixed: &HouseLight, eye: Vec3) -> Exposure {
         let mean = if let Some(room) = fixed.grid.room(eye) {
@@ -153,12 +153,12 @@ impl Lighting {
         }
     }
 
-    /// Returns what casts the shadows of a source.
+    /// Returns the shadow caster of a source.
     pub(crate) fn caster(&self, position: u32) -> &LampCluster {
         &self.casters[position as usize]
     }
 
-    /// A place in what casts shadows from which light comes to `point`: in one of its lamps, as likely as that one's flux, on the
+    /// A point of a shadow caster from which light comes to `point`: in one of its lamps, as likely as that one's flux, on the
     /// side that the point sees. `pick`: which lamp and where along it, from 0 up to 1 each; `within`: in a ball of radius 1.
     pub(crate) fn place_in_caster(
         &self,
@@ -185,7 +185,7 @@ impl Lighting {
         lamp.position + lamp.half * (2.0 * pick.1 - 1.0) + seen * BULB_M
     }
 
-    /// Returns what a surface of reflectance 1 shows, for red, green and blue: of its strongest sources apart, before shadows.
+    /// Returns the light on a surface of reflectance 1, for red, green and blue: of its strongest sources apart, before shadows.
     #[inline]
     pub(crate) fn incoming<const N: usize>(
         &self,
@@ -200,7 +200,7 @@ impl Lighting {
         incoming
     }
 
-    /// Tells what each source sends to a surface of reflectance 1, in units of display white, before shadows.
+    /// Passes on the light of each source on a surface of reflectance 1, in units of display white, before shadows.
     #[inline]
     pub(crate) fn each(
         &self,
@@ -297,13 +297,13 @@ pub(crate) fn room_lookup_point(point: Vec3, facing: Vec3, direction: Vec3) -> V
     point + facing * off - direction * back
 }
 
-/// Returns how much of a room's reflected light reaches a surface by where it faces, about 1: floors face bright walls and
+/// Returns the share of a room's indirect light that reaches a surface by its orientation, about 1: floors face bright walls and
 /// ceilings, and walls that meet in a corner differ a little.
 fn fill(normal: Vec3) -> f32 {
     0.95 + 0.08 * normal.y + 0.07 * normal.x + 0.03 * normal.z
 }
 
-/// Illuminance by a window, lx: the sky as a disc of the same area seen through it; and how much of the sun the surface
+/// Illuminance by a window, lx: the sky as a disc of the same area seen through it; and the share of the sun that the surface
 /// has, where its ray passes the window.
 fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (Vec3, f32) {
     let way = window.center - point;
@@ -332,7 +332,7 @@ fn daylight(window: &WindowLight, to_sun: Vec3, point: Vec3, normal: Vec3) -> (V
     (sky, on_surface * inside[0] * inside[1])
 }
 
-/// Returns how much of a window the sun reaches, by points on it.
+/// Returns the sunlit share of a window, by points on it.
 fn sunlit(
     window: &WindowLight,
     (to_sun, lx): (Vec3, Vec3),
@@ -351,14 +351,14 @@ fn sunlit(
     count as f32 / (SUN_POINTS * SUN_POINTS) as f32
 }
 
-/// Returns what white shows in the open air of a house that knows no sky, in units of display white.
+/// Returns the radiance of white in the open air of a house without a sky, in units of display white.
 fn open_air(normal: Vec3) -> Vec3 {
     let sky = 0.35 + 0.25 * normal.y;
     let sun = 0.5 * normal.dot(TO_SUN).max(0.0);
     Vec3::splat((sky + sun) * OPEN_AIR)
 }
 
-/// Returns what is seen where nothing is, in units of display white, along a unit direction. `light`: nothing on a flat picture.
+/// Returns the radiance of the background, in units of display white, along a unit direction. `light`: `None` on a flat picture.
 pub(crate) fn sky(direction: Vec3, light: Option<(&HouseLight, Exposure)>) -> Vec3 {
     match light {
         None => plain_sky(direction),

@@ -1,4 +1,4 @@
-//! Windows and doors: where daylight comes in and where rooms share their light.
+//! Windows and doors: the openings for daylight, and those by which rooms exchange light.
 
 use super::room_grid::RoomGrid;
 use dwell_scene::{Aabb, House, ObjectId};
@@ -10,7 +10,7 @@ const STEP_M: f32 = 0.35;
 /// A window between a room and the open air.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WindowLight {
-    /// The room's position.
+    /// Position of its room.
     pub(crate) room: usize,
     /// Its middle, m.
     pub(crate) center: Vec3,
@@ -32,7 +32,7 @@ impl WindowLight {
 /// An opening between two rooms.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightPortal {
-    /// The rooms' positions.
+    /// Positions of the rooms.
     pub(crate) rooms: [usize; 2],
     /// m².
     pub(crate) area_m2: f32,

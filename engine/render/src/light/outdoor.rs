@@ -14,15 +14,15 @@ const STEPS: [u32; 2] = [16, 32];
 #[derive(Debug)]
 pub(crate) struct OutdoorLight {
     pub(super) dome: SkyDome,
-    /// Unit length.
+    /// Direction to the sun, unit length.
     pub(crate) to_sun: Vec3,
-    /// Across its rays, lx.
+    /// Illuminance by the sun across its rays, lx.
     pub(crate) sun_lx: Vec3,
     /// Luminance of the sky as spherical harmonics, cd/m². Shape (9,).
     pub(super) harmonics: [Vec3; 9],
     /// Radiant exitance of the ground, lm/m².
     pub(super) ground_lx: Vec3,
-    /// Display white per lx out there.
+    /// Display white per lx in the open.
     pub(super) per_lx: f32,
 }
 
@@ -88,18 +88,18 @@ impl OutdoorLight {
         sum.max(Vec3::ZERO)
     }
 
-    /// Illuminance by the ground on a surface that faces along `normal`, lx: the share of what it sees.
+    /// Illuminance by the ground on a surface that faces along `normal`, lx: its share of the hemisphere.
     pub(crate) fn ground_illuminance(&self, normal: Vec3) -> Vec3 {
         self.ground_lx * (0.5 - 0.5 * normal.y)
     }
 
-    /// Returns how the open air is exposed beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
+    /// Returns the exposure of the open air beside a camera's own exposure: as eyes adapt to it by day, and not brighter than
     /// rooms by night.
     pub(crate) fn per_lx(&self, camera_per_lx: f32) -> f32 {
         self.per_lx.min(camera_per_lx)
     }
 
-    /// Returns what is seen where nothing is, cd/m² times pi.
+    /// Returns the luminance of the background, cd/m² times pi.
     pub(crate) fn background_luminance(&self, direction: Vec3) -> Vec3 {
         if direction.y >= 0.0 {
             self.dome.luminance(direction) * PI

@@ -5,9 +5,9 @@ use glam::{Vec2, Vec3};
 
 /// Edge of a cell, m; larger for houses that would need more than [`MOST_CELLS`].
 const CELL_M: f32 = 0.1;
-/// Most cells a storey.
+/// Largest number of cells a storey.
 const MOST_CELLS: f32 = 1e6;
-/// Most cells along an edge.
+/// Largest number of cells along an edge.
 const MOST_CELLS_ALONG: f32 = 16_384.0;
 /// Reach of rooms beyond their floor, in cells: into the walls around them.
 const REACH: usize = 2;
@@ -17,7 +17,7 @@ const OUTSIDE: u16 = u16::MAX;
 /// The rooms of one storey from above.
 #[derive(Debug)]
 pub(super) struct StoreyGrid {
-    /// Heights between which the storey is meant, m.
+    /// Heights between which the storey lies, m.
     pub(super) low_y: f32,
     pub(super) high_y: f32,
     /// Shape (cells along z, cells along x).
@@ -127,7 +127,7 @@ impl RoomGrid {
         }
     }
 
-    /// Gives cells outside to a room beside them.
+    /// Assigns cells outside to a room beside them.
     fn grow(&self, cells: &mut [u16]) {
         let before = cells.to_vec();
         let at = |x: usize, z: usize| before[z * self.width + x];

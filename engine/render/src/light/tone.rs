@@ -1,4 +1,4 @@
-//! From light to display.
+//! Tone mapping: from light to display.
 
 use super::indirect::luminance;
 use dwell_scene::math;

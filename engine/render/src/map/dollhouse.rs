@@ -1,4 +1,4 @@
-//! A storey as one sees a doll's house: from outside and above, without what is over a cut.
+//! Doll's house views: a storey from outside and above, without the part over a cut.
 
 use super::section_view::SectionView;
 use super::{StoreyMap, floor_y};
@@ -76,7 +76,7 @@ impl DollhouseConfig {
 /// A storey from outside and above, cut open; storeys of one house are seen from the same place above them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dollhouse {
-    /// Camera and place. What it would see over the cut is left out by [`Self::picture`].
+    /// Camera and pose. [`Self::picture`] leaves out the part over the cut.
     pub view: View,
     /// Height of the cut, m.
     pub cut_y: f32,

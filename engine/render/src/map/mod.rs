@@ -83,7 +83,7 @@ impl StoreyMap {
         })
     }
 
-    /// Returns what the image spans, (x, z), m.
+    /// Returns the size of the image, (x, z), m.
     pub fn size_m(&self) -> Vec2 {
         let camera = &self.view.camera;
         Vec2::new(camera.width() as f32, camera.height() as f32) / self.pixels_per_m
@@ -110,7 +110,7 @@ impl StoreyMap {
         cut.picture(renderer, scene, state, threads)
     }
 
-    /// Returns where a point appears, pixels from the upper left corner of the image.
+    /// Returns the image of a point, pixels from the upper left corner of the image.
     pub fn image_from_world(&self, point: Vec3) -> Vec2 {
         (Vec2::new(point.x, point.z) - self.corner) * self.pixels_per_m
     }

@@ -1,4 +1,4 @@
-//! Pictures of what lies below a level cut: each ray begins where it passes the cut.
+//! Pictures of the part below a level cut: each ray begins where it passes the cut.
 
 use super::{StoreyMap, walls};
 use crate::camera::Camera;
@@ -12,16 +12,16 @@ use dwell_scene::rays::RayScene;
 use dwell_scene::{Entity, EntityId, State, StructureKind};
 use glam::{Vec2, Vec3};
 
-/// Between looks at whether the map is still wanted.
+/// Pixels between checks for cancellation.
 const PIXELS_PER_CHECK: usize = 1 << 14;
-/// Pixels of a strip of rows that is drawn at a time: what it takes to colour a large picture would fill the memory, and to give
-/// that back takes its time.
+/// Pixels of a strip of rows that is drawn at a time: the buffers for a large picture would fill the memory, and to give
+/// them back takes its time.
 const PIXELS_PER_STRIP: usize = 1 << 20;
 /// Background colour, sRGB.
 const PAPER: [u8; 3] = [250, 249, 246];
 /// Direction to the light in the camera's frame: from above, the left, and the viewer.
 const LIGHT: Vec3 = Vec3::new(-0.35, 0.72, 0.6);
-/// Light that comes from everywhere, as a share of that on what faces the light.
+/// Ambient light, as a share of that on a surface that faces the light.
 const AMBIENT: f32 = 0.5;
 
 /// The channels from which colours are made.
@@ -35,7 +35,7 @@ const BESIDE: ImageChannels = ImageChannels {
 /// A level cut through a storey.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SectionView<'a> {
-    /// From above, without roll: then a row of the image meets the cut at one depth.
+    /// The view from above, without roll: then a row of the image meets the cut at one depth.
     pub(super) view: View,
     /// Height of the cut, m.
     pub(super) level_y: f32,
@@ -85,7 +85,7 @@ impl SectionView<'_> {
         Ok(rgb)
     }
 
-    /// The depth at which a row meets the cut; nothing for one that looks level or up.
+    /// The depth at which a row meets the cut; `None` for one that looks level or up.
     fn near_m(&self, row: u32) -> Option<f32> {
         let pose = &self.view.world_from_camera;
         let (start, direction) = self
@@ -99,7 +99,7 @@ impl SectionView<'_> {
         (direction.y < -1e-3).then(|| ((self.level_y - start.y) / direction.y).max(0.0))
     }
 
-    /// Draws rows, the first and the one behind the last, as they are without light.
+    /// Draws rows, the first and the one behind the last, without light.
     fn draw(
         &self,
         rows: (u32, u32),

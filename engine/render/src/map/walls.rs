@@ -7,7 +7,7 @@ use glam::Vec2;
 
 /// Width of the lines around walls, m: the skins of a wall are about so thick.
 const LINE_M: f32 = 0.06;
-/// Pixels between looks at whether the map is still wanted.
+/// Pixels between checks for cancellation.
 const PIXELS_PER_CHECK: usize = 1 << 16;
 /// The colour of walls.
 pub(super) const SRGB: [u8; 3] = [40, 40, 44];
@@ -27,7 +27,7 @@ impl StoreyMap {
         }
     }
 
-    /// Returns where triangles cross the cut, as points of the map from its corner, m. With the front of its triangle a line has the
+    /// Returns the lines where triangles cross the cut, as points from the map's corner, m. With the front of its triangle a line has the
     /// same side as all others.
     fn cut(&self, mesh: &Mesh) -> Vec<[Vec2; 2]> {
         let mut lines = Vec::new();
@@ -46,7 +46,7 @@ impl StoreyMap {
         lines
     }
 
-    /// Paints lines, and what they enclose if they do.
+    /// Paints lines, and the areas that they enclose.
     fn fill(&self, lines: &[[Vec2; 2]], rgb: &mut [u8]) {
         let half_m = (LINE_M * 0.5).max(0.75 / self.pixels_per_m);
         // Lines around a solid lead back to where they started.
@@ -111,7 +111,7 @@ impl StoreyMap {
     }
 }
 
-/// From a point to a line between two others.
+/// The distance from a point to a line between two others.
 fn distance(p: Vec2, a: Vec2, b: Vec2) -> f32 {
     let along = b - a;
     let part = (p - a).dot(along) / along.length_squared().max(1e-12);
