@@ -193,7 +193,7 @@ pub(crate) fn response_metrics_json(
     })
 }
 
-/// Returns what two ears make of their impulse responses: one JSON object.
+/// Returns the interaural measures of the two ears' impulse responses: one JSON object.
 #[pyfunction]
 pub(crate) fn ear_metrics_json(
     py: Python<'_>,

@@ -1,4 +1,4 @@
-//! NumPy: made ready before it is needed, and arrays that are read where they lie.
+//! NumPy: initialized before it is needed, and arrays that are read in place.
 
 use crate::errors::{PyFault, to_python};
 use numpy::{Element, PyArray1, PyReadonlyArray1};
@@ -6,10 +6,10 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::panic::catch_unwind;
 
-/// Looks NumPy's functions up, which runs Python code the first time. The `numpy` crate panics where a signal's handler
+/// Initializes NumPy's functions, which runs Python code the first time. The `numpy` crate panics where a signal's handler
 /// raises in the middle of that, and looks again the next time; so it is done where that can be caught.
 pub(crate) fn ready(py: Python<'_>) -> PyResult<()> {
-    // Whatever else is wrong with NumPy is found again at the first array.
+    // Any other fault of NumPy is found again at the first array.
     catch_unwind(|| drop(PyArray1::<u8>::zeros(py, 0, false)))
         .map_err(|_| PyKeyboardInterrupt::new_err("while NumPy was looked up"))
 }

@@ -1,4 +1,4 @@
-//! Houses that people make and change, for Python: plans and edits come as JSON.
+//! Authoring of houses for Python: plans and edits come as JSON.
 
 use crate::errors::PyFault;
 use dwell::Engines;
@@ -41,7 +41,7 @@ pub(crate) fn edited(
     Ok((house, rows(&all)?))
 }
 
-/// Refuses sounds that nobody can make.
+/// Refuses signals that do not exist.
 fn check_signals(house: &House, known: usize) -> Result<(), PyFault> {
     for emitter in house.emitters.iter().skip(known.min(house.emitters.len())) {
         let told = match emitter.sound_file {
@@ -64,14 +64,14 @@ fn unmapped(house: &House, report: &Value) -> UnmappedNames {
     authoring::unmapped(house, &report_of(report))
 }
 
-/// Counts, rooms and categories, with what stayed unmapped, as JSON.
+/// Counts, rooms and categories, with the unmapped names, as JSON.
 pub(crate) fn info(engines: &Engines, report: &Value) -> Result<String, PyFault> {
     let mut info = dwell::info(engines, report);
     info["unmapped"] = serde_json::to_value(unmapped(engines.house(), report))?;
     Ok(info.to_string())
 }
 
-/// A map file for what stayed unmapped.
+/// A map file for the unmapped names.
 pub(crate) fn map_template(house: &House, report: &Value, name: &str) -> String {
     authoring::map_template(name, &unmapped(house, report))
 }

@@ -30,7 +30,7 @@ enum BorrowedBuffer<'py> {
     Text(String),
 }
 
-/// The refusal of an array that cannot be written into as it lies.
+/// The error of an array that cannot be written in place.
 fn refused(sensor: &str, dtype: Dtype) -> PyErr {
     let dtype = match dtype {
         Dtype::Uint8 => "uint8",
@@ -80,7 +80,7 @@ fn action(number: i64) -> Result<Option<DiscreteAction>, PyFault> {
 }
 
 impl PyBatch {
-    /// The batch for one call. A call that found a bug left it poisoned: then it refuses.
+    /// Locks the batch for one call. A call that found a bug left it poisoned: then it refuses.
     pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -88,12 +88,12 @@ impl PyBatch {
     ) -> PyResult<T> {
         py.engine(|| {
             let mut batch = self.lock()?;
-            // Not through the guard: it would take the unwinding for a panic. The batch mends itself.
+            // Not through the guard: it would take the unwinding for a panic. The batch repairs itself.
             interrupt::catch_interrupt(|| work(&mut batch))?
         })
     }
 
-    /// The batch for one call, without the GIL. A call that found a bug left it poisoned: then it refuses.
+    /// Locks the batch for one call, without the GIL. A call that found a bug left it poisoned: then it refuses.
     pub(crate) fn lock(&self) -> Result<std::sync::MutexGuard<'_, Batch>, PyFault> {
         self.batch.lock().map_err(|_| {
             PyFault::Usage(
@@ -161,7 +161,7 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.reset(&seeds)?))
     }
 
-    /// An environment takes the place of environment `env`, and its episode goes on where it began one.
+    /// Replaces environment `env`, whose episode goes on where it has one.
     fn put(&self, py: Python<'_>, env: usize, spare: &Bound<'_, PyPreparedEnv>) -> PyResult<()> {
         let spare = spare.get();
         self.with(py, |batch| {
@@ -170,7 +170,7 @@ impl PyBatch {
         })
     }
 
-    /// Returns how many steps each environment's episode has had.
+    /// Returns the number of steps of each environment's episode.
     fn steps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<i64>>> {
         let steps = self.with(py, |batch| {
             let of = |env: &Env| env.steps().cast_signed();
@@ -294,7 +294,7 @@ impl PyBatch {
         })
     }
 
-    /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
+    /// Returns `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
     fn rule(&self, py: Python<'_>, env: usize, ruling_json: &str) -> PyResult<String> {
         self.with(py, |batch| {
             let ruling: ExternalVerdict = serde_json::from_str(ruling_json)?;
@@ -351,7 +351,7 @@ impl PyBatch {
             .into_pyarray(py))
     }
 
-    /// Returns what the scripted expert of one environment would do now.
+    /// Returns the action of one environment's scripted expert now.
     fn expert_action(&self, py: Python<'_>, env: usize) -> PyResult<i64> {
         self.with(py, |batch| Ok(batch.env_mut(env)?.expert_action()? as i64))
     }

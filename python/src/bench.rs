@@ -1,10 +1,10 @@
-//! Throughput of every stage, measured where nothing of Python is in the way.
+//! Throughput of every stage, measured without Python.
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use pyo3::prelude::*;
 
-/// Measures one stage: `load`, `render`, `physics`, `acoustics` or `env`; answers its figures as one JSON object. `progress`:
+/// Measures one stage: `load`, `render`, `physics`, `acoustics` or `env`; returns its figures as one JSON object. `progress`:
 /// called with a fraction and what is measured next.
 #[pyfunction]
 #[pyo3(signature = (what, house, options_json="{}", progress=None))]

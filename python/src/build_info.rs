@@ -14,9 +14,9 @@ pub(crate) fn actions() -> Vec<&'static str> {
     DiscreteAction::ALL.map(DiscreteAction::name).to_vec()
 }
 
-/// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field], codes: [{name, about}]}`, the discrete ones first, in the order of
-/// their numbers. A field is `{name, about, required, schema}`; a kind's `target` says what it is done to, and is null where it is
-/// done to nothing; the fields that name a target stand once.
+/// The actions: `{kinds: [{name, about, is_of_hand, target, fields}], target: [field], codes: [{name, about}]}`, the discrete ones first,
+/// in the order of their numbers. A field is `{name, about, required, schema}`; a kind's `target` describes its target, and is null
+/// without one; the fields that name a target are listed once.
 #[pyfunction]
 pub(crate) fn action_table_json() -> String {
     let kinds = dwell::actions::all().iter().map(|kind| {
@@ -81,7 +81,7 @@ pub(crate) fn settings_json() -> String {
     .to_string()
 }
 
-/// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those asked for by name alone.
+/// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those installed by name alone.
 #[pyfunction]
 pub(crate) fn laws_json() -> PyResult<String> {
     let row = |info| -> Result<Value, serde_json::Error> {
@@ -126,7 +126,7 @@ pub(crate) fn max_text_length() -> usize {
     dwell_semantics::instruct::MAX_TEXT_LEN
 }
 
-/// First seed, end and fields of a HOUSE string that stands for several houses; nothing for any other.
+/// First seed, end and fields of a HOUSE string that stands for several houses; `None` for any other.
 #[pyfunction]
 pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u64, String)>> {
     py.engine(|| -> Result<_, PyFault> {
@@ -158,7 +158,7 @@ fn doctor() -> Result<String, PyFault> {
     .to_string())
 }
 
-/// The adapters that `gpu` and `gpu:NAME` may mean, with the path that each takes and the speeds that say so.
+/// The adapters that `gpu` and `gpu:NAME` may choose, with the path that each takes and the speeds on which that rests.
 fn graphics_adapters() -> Vec<serde_json::Value> {
     let adapters = dwell_render::adapters().into_iter();
     let facts = adapters.map(|adapter| {
@@ -181,7 +181,7 @@ fn graphics_adapters() -> Vec<serde_json::Value> {
     facts.collect()
 }
 
-/// Returns how quick the paths of an adapter are in a built-in house.
+/// Returns the speeds of an adapter's paths in a built-in house.
 fn speeds(adapter: &dwell_render::Adapter) -> Result<dwell_render::VisibilityPathSpeeds, String> {
     let house = dwell_houses::open("builtin:studio").map_err(|error| error.to_string())?;
     let tables = Arc::new(dwell_render::CpuRenderer::new(&Arc::new(house.0)));

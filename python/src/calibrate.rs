@@ -7,7 +7,7 @@ use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
 use std::path::Path;
 
-/// Reads a measured bundle and answers the report as one JSON object. `progress`: called with a fraction and a sentence.
+/// Reads a measured bundle and returns the report as one JSON object. `progress`: called with a fraction and a sentence.
 /// `peers`: tables of another simulator's scores, for pose trajectories.
 #[pyfunction]
 #[pyo3(signature = (measured, house=None, progress=None, peers=Vec::new()))]
@@ -51,14 +51,14 @@ pub(crate) fn calibrate(
     raised.map_or(report, Err)
 }
 
-/// Writes a small measured bundle with a hidden effect and answers what was hidden.
+/// Writes a small measured bundle with a hidden effect and returns that effect.
 #[pyfunction]
 #[pyo3(signature = (folder, seed=0))]
 pub(crate) fn calibration_example(py: Python<'_>, folder: &str, seed: u64) -> PyResult<String> {
     py.engine(|| Ok::<_, PyFault>(dwell_calibration::example::write(Path::new(folder), seed)?))
 }
 
-/// Reads and checks a measured bundle; answers how many episodes it has.
+/// Reads and checks a measured bundle; returns its number of episodes.
 #[pyfunction]
 pub(crate) fn check_measured(py: Python<'_>, measured: &str) -> PyResult<usize> {
     py.engine(|| Ok::<_, PyFault>(dwell_calibration::check(Path::new(measured))?.1))

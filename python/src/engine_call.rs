@@ -43,7 +43,7 @@ impl EngineCall for Python<'_> {
         let hears_signals = fork_safety::is_main_thread(self);
         let call = fork_safety::EngineCallGuard::begin(self);
         let outcome = self.detach(|| {
-            // What a panic leaves half done is never looked at again: the object that raised is poisoned by its mutex.
+            // Values that a panic leaves half done are never used again: the object that raised is poisoned by its mutex.
             let outcome = catch_unwind(AssertUnwindSafe(|| {
                 let outcome = if hears_signals {
                     interrupt::interruptible(ask, work)
@@ -58,7 +58,7 @@ impl EngineCall for Python<'_> {
             if matches!(outcome, Ok(Err(PyFault::Interrupted))) {
                 tracing::debug!("a call was stopped before its work was done");
             }
-            // Before the GIL is asked for: who forks holds it, and waits for calls to end.
+            // Before the GIL is acquired: a forking thread holds it, and waits for calls to end.
             drop(call);
             outcome
         });
@@ -68,7 +68,7 @@ impl EngineCall for Python<'_> {
         match (raised, outcome) {
             // A panic goes first: the object is lost.
             (_, Err(panic)) => Err(panics::exception(self, panic.as_ref())),
-            // What was done is lost, too, as with any call that a signal ends.
+            // The result is lost, too, as with any call that a signal ends.
             (Some(raised), _) => Err(raised),
             (None, Ok(Ok(value))) => Ok(value),
             (None, Ok(Err(PyFault::Interrupted))) => Err(PyKeyboardInterrupt::new_err(())),
@@ -77,7 +77,7 @@ impl EngineCall for Python<'_> {
     }
 }
 
-/// Lets handlers of signals and of logs run; whether one of a signal raised. They cannot call engines: the call that they
+/// Runs handlers of signals and of logs; returns whether one of a signal raised. They cannot call engines: the call that they
 /// run in may hold any lock.
 fn ask() -> bool {
     IS_ASKING.set(true);

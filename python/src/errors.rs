@@ -33,7 +33,7 @@ pub(crate) enum PyFault {
     Config(String),
     Usage(String),
     Measured(String),
-    /// The call was stopped: a handler of signals has raised, and that is what Python gets.
+    /// The call was stopped: a handler of signals has raised, and Python gets that exception.
     Interrupted,
 }
 

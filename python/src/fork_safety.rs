@@ -1,6 +1,6 @@
 //! Safety of `fork()`: the calls of engines that run, and the identity of Python's main thread.
 //!
-//! A child has one thread, the one that forked; locks that others held stay locked in it for ever. So a fork waits until
+//! A child has one thread, the one that forked; locks that other threads held stay locked in it for ever. So a fork waits until
 //! no other thread is in a call of the engines, and meanwhile no call begins. It holds the GIL from then on, and calls begin
 //! with the GIL: none can begin before the fork is done.
 
@@ -12,28 +12,28 @@ use std::time::{Duration, Instant};
 
 /// Longest time that a fork waits for other threads' calls.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Between looks at whether one can go on.
+/// Pause between checks whether to go on.
 const PAUSE: Duration = Duration::from_micros(500);
 
-/// Calls of engines in this process.
+/// Number of calls of engines in this process.
 static CALLS: AtomicUsize = AtomicUsize::new(0);
-/// Threads that are about to fork.
+/// Number of threads that are about to fork.
 static FORKS: AtomicUsize = AtomicUsize::new(0);
-/// Forks that lie between the first process and this one.
+/// Number of forks between the first process and this one.
 static GENERATION: AtomicU32 = AtomicU32::new(0);
 
 thread_local! {
-    /// Calls of this thread, one within the other.
+    /// Number of nested calls of this thread.
     static OWN: Cell<usize> = const { Cell::new(0) };
     /// `true` in the main thread, with its generation.
     static MAIN: Cell<Option<(u32, bool)>> = const { Cell::new(None) };
 }
 
-/// A call of an engine, as long as it lasts.
+/// The guard of a call of an engine.
 pub(crate) struct EngineCallGuard(());
 
 impl EngineCallGuard {
-    /// Begins a call, after those who are about to fork. A call within another does not wait: that one is waited for.
+    /// Begins a call, after pending forks. A call within another does not wait: a fork waits for that one.
     pub(crate) fn begin(py: Python<'_>) -> Self {
         while OWN.get() == 0 && FORKS.load(Ordering::SeqCst) > 0 {
             py.detach(|| std::thread::sleep(PAUSE));
@@ -59,7 +59,7 @@ pub(crate) fn is_main_thread(py: Python<'_>) -> bool {
     {
         return is_main;
     }
-    // Where threading cannot say, nobody is asked about signals.
+    // Where threading cannot say, no thread counts as the main one.
     let is_main = is_registered(py).unwrap_or(false);
     MAIN.set(Some((generation, is_main)));
     is_main
@@ -91,7 +91,7 @@ fn wait(py: Python<'_>) {
     }
 }
 
-/// Asks Python to call us around forks. Where there is no `fork`, there is nothing to ask.
+/// Registers the hooks around forks with Python. Without `fork` there are none.
 pub(crate) fn register(py: Python<'_>) -> PyResult<()> {
     let os = py.import("os")?;
     if !os.hasattr("register_at_fork")? {

@@ -143,7 +143,7 @@ impl PyHouse {
         })
     }
 
-    /// The name of the room around a point; nothing outside of every room.
+    /// The name of the room around a point; `None` outside of every room.
     fn room_at(&self, py: Python<'_>, point: [f32; 3]) -> PyResult<Option<String>> {
         py.engine(|| {
             let house = self.house();
@@ -157,7 +157,7 @@ impl PyHouse {
         py.engine(|| Ok::<_, PyFault>(self.house().is_outside(Vec3::from_array(point))))
     }
 
-    /// Returns how many rooms and objects there are.
+    /// Returns the number of rooms and objects.
     #[getter]
     fn counts(&self, py: Python<'_>) -> PyResult<(usize, usize)> {
         py.engine(|| Ok::<_, PyFault>((self.house().rooms.len(), self.house().objects.len())))
@@ -300,7 +300,7 @@ pub(crate) fn describe_level(
     })
 }
 
-/// Returns where an instruction leads, by the numbers of sensors and of the scene graph: ids of objects, rooms counted from 0.
+/// Returns the goal of an instruction, by the ids of sensors and of the scene graph: ids of objects, rooms counted from 0.
 fn goal(house: &House, goal: &InstructionGoal) -> Value {
     let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
     json!({

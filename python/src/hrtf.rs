@@ -74,7 +74,7 @@ impl PyHead {
         self.head.id().0
     }
 
-    /// Returns what was found in the measurement, as a JSON object; `null` for a sphere.
+    /// Returns the facts about the measurement, as a JSON object; `null` for a sphere.
     fn about_json(&self, py: Python<'_>) -> PyResult<String> {
         py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&self.head.about())?))
     }

@@ -4,7 +4,7 @@ use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use pyo3::prelude::*;
 
-/// Returns how deep arrays and objects are nested, and the most values and names that the text can hold.
+/// Returns the nesting depth of arrays and objects, and the largest number of values and names that the text can hold.
 #[pyfunction]
 pub(crate) fn json_extent(py: Python<'_>, text: &[u8]) -> PyResult<(usize, usize)> {
     py.engine(|| Ok::<_, PyFault>(extent(text)))

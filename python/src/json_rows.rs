@@ -2,7 +2,7 @@
 
 use dwell::SoundName;
 
-/// A thing that is put somewhere, as Python says it.
+/// A placement of a thing, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct BodyRow {
@@ -14,7 +14,7 @@ pub(crate) struct BodyRow {
     pub(crate) angular_rad_s: [f32; 3],
 }
 
-/// An agent that is put somewhere, as Python says it.
+/// A placement of an agent, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AgentRow {
@@ -27,7 +27,7 @@ pub(crate) struct AgentRow {
     pub(crate) wheel_rad_s: Option<[f32; 2]>,
 }
 
-/// A sound to play, as Python says it.
+/// A sound to play, as Python writes it.
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct SoundRow {

@@ -1,4 +1,4 @@
-//! The border to Python: conversions only. The typed package around it is `python/dwell`.
+//! The binding to Python: conversions only. The typed package around it is `python/dwell`.
 
 #![expect(
     clippy::needless_pass_by_value,

@@ -3,7 +3,7 @@
 //! An event of `tracing` in the module `dwell_houses::formats` is a record of the logger `dwell.houses.formats`. Engine
 //! threads never take the GIL for it: records wait in a queue until the engine call has it again, at the end of a call and,
 //! in long calls on the main thread, every 25 ms. The level of the logger `dwell` (or of the root, where it has none) says
-//! what is recorded at all; it is looked at when a call begins. Loggers below can only say less.
+//! decides what is recorded at all; it is read when a call begins. Loggers below can only record less.
 
 use crate::errors::printable;
 use pyo3::exceptions::PyException;
@@ -153,9 +153,9 @@ impl Subscriber for LogSubscriber {
     fn exit(&self, _: &Id) {}
 }
 
-/// Takes events from now on.
+/// Installs the subscriber.
 pub(crate) fn install() {
-    // Fails only where this extension has one already: then that is it.
+    // Fails only where this extension has one already: then that one stays.
     let _ = tracing::subscriber::set_global_default(LogSubscriber);
 }
 
@@ -172,7 +172,7 @@ fn loggers(py: Python<'_>) -> Option<&'static (Py<PyAny>, Py<PyAny>)> {
     Some(LOGGERS.get_or_init(py, || both))
 }
 
-/// Looks at the level that is wanted.
+/// Reads the level that is wanted.
 pub(crate) fn set_level(py: Python<'_>) {
     let Some((own, root)) = loggers(py) else {
         return;
@@ -188,8 +188,8 @@ pub(crate) fn set_level(py: Python<'_>) {
     }
 }
 
-/// Gives what waits to Python. Returns what is no fault of a handler of logs but ends the program: Ctrl-C, which comes while
-/// Python code runs, and so while that of `logging` does.
+/// Delivers the waiting records to Python. Returns an exception that is no fault of a handler of logs but ends the program: Ctrl-C, which
+/// may come while Python code runs, that of `logging` included.
 pub(crate) fn deliver(py: Python<'_>) -> Option<PyErr> {
     if !IS_WAITING.swap(false, Ordering::Acquire) {
         return None;

@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 /// Largest distance of a point from a walkable place, m.
 const NEAR_M: f32 = 0.5;
-/// The most samples at a time.
+/// Largest number of samples at a time.
 const MOST_SAMPLES: usize = 10_000_000;
 
 /// The navigation grid of a house as it stands at one moment.
@@ -27,7 +27,7 @@ pub(crate) struct PyNavigation {
     moment: Mutex<GridAtState>,
 }
 
-/// A house as it stands: the grid, which others may have too until this one follows something.
+/// A house as it stands: the grid, which is shared until this one follows a change.
 struct GridAtState {
     grid: Arc<NavGrid>,
     /// The state of the house; `None`: as the house starts.
@@ -35,13 +35,13 @@ struct GridAtState {
 }
 
 impl PyNavigation {
-    /// Of a house as it starts: every house keeps the grids of its latest walkers.
+    /// The grid of a house as it starts: every house keeps the grids of its latest walkers.
     fn of_start(engines: &Engines, config_json: &str) -> Result<Self, PyFault> {
         let grid = engines.grid(&serde_json::from_str(config_json)?)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
-    /// Of a house as it stands in a state.
+    /// The grid of a house in a state.
     pub(crate) fn build(
         house: &Arc<House>,
         state: &State,
@@ -59,18 +59,18 @@ impl PyNavigation {
         }
     }
 
-    /// Follows what has moved; returns how many columns were looked at again.
+    /// Updates the grid; returns the number of rebuilt columns.
     pub(crate) fn follow(&self, state: &State) -> Result<usize, PyFault> {
         let mut moment = self.moment()?;
         interrupt::uninterruptible(|| {
-            // A grid that others have, too, is theirs.
+            // A shared grid is copied first.
             let rebuilt = Arc::make_mut(&mut moment.grid).update(&self.house, state)?;
             moment.state = Some(state.clone());
             Ok(rebuilt.rechecked)
         })
     }
 
-    /// The grid for one call, which no signal ends half-way.
+    /// Locks the grid for one call, which no signal ends half-way.
     fn with<T>(&self, work: impl FnOnce(&NavGrid) -> T) -> Result<T, PyFault> {
         let moment = self.moment()?;
         Ok(interrupt::uninterruptible(|| work(&moment.grid)))
@@ -113,7 +113,7 @@ impl PyNavigation {
         })
     }
 
-    /// Returns where everything stands, as the constructor takes it; `None`: as the house starts.
+    /// Returns the state of the house, as the constructor takes it; `None`: as the house starts.
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
         let bytes = py.engine(|| {
             let moment = self.moment()?;

@@ -1,4 +1,4 @@
-//! A panic that tests ask for; no wheel has it.
+//! A deliberate panic for tests; no wheel has it.
 
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;

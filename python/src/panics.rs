@@ -1,6 +1,6 @@
-//! Panics: bugs of the engines, that reach Python as `EngineBug` and nothing else.
+//! Panics: bugs of the engines that reach Python as `EngineBug`.
 //!
-//! The hook prints nothing. The exception says what and where; printing would say it twice, and tear the output of whoever
+//! The hook prints nothing. The exception has message and place; printing would repeat them, and tear the output of a caller that
 //! catches it. The backtrace goes to the log `dwell.python.bugs`, level debug, where `RUST_BACKTRACE=1` asks for one.
 
 use crate::errors::EngineBug;
@@ -9,9 +9,9 @@ use std::any::Any;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::sync::{Mutex, PoisonError};
 
-/// The latest panics, what they said and where they stood: a panic of a pool's thread loses its place on the way.
+/// The latest panics with message and place: a panic of a pool's thread loses its place on the way.
 static PLACES: Mutex<Vec<(String, String)>> = Mutex::new(Vec::new());
-/// As many as can be under way at once, generously.
+/// Largest number of places: generously as many as can be under way at once.
 const MOST_PLACES: usize = 16;
 
 fn text(panic: &(dyn Any + Send)) -> String {
@@ -20,7 +20,7 @@ fn text(panic: &(dyn Any + Send)) -> String {
         .unwrap_or_else(|| "it left no message".to_owned())
 }
 
-/// Takes the place of std's hook in this extension; that of other extensions stays.
+/// Replaces std's hook in this extension; those of other extensions stay.
 pub(crate) fn install_hook() {
     std::panic::set_hook(Box::new(|info| {
         let text = text(info.payload());

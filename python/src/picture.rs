@@ -1,4 +1,4 @@
-//! One picture of a world, as Python asks for it.
+//! One picture of a world, as Python requests it.
 
 use crate::errors::PyFault;
 use dwell::sensors::{ImageSettings, Observation, ObservationData};
@@ -12,7 +12,7 @@ use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::prelude::*;
 use serde::Deserialize;
 
-/// A picture that is asked for.
+/// A requested picture.
 #[derive(Deserialize)]
 #[serde(default, deny_unknown_fields)]
 struct PictureSettings {
@@ -76,7 +76,7 @@ impl Default for PictureSettings {
     }
 }
 
-/// Returns what the sensors called `channels` give for the view that `view_json` describes.
+/// Returns the observations of the sensors called `channels` for the view that `view_json` describes.
 pub(crate) fn render(
     world: &World,
     view_json: &str,
@@ -96,7 +96,7 @@ pub(crate) fn render(
                 .agent
                 .filter(|agent| (*agent as usize) < world.state().agents.len())
                 .map(|agent| world.state().camera_fov_deg(AgentId(agent)));
-            // Away from an agent's eyes a camera has the right angle that they have where nothing else is said.
+            // A camera away from an agent's eyes has their default right angle.
             let fov_deg = fov_deg.or(agents).unwrap_or(90.0);
             Camera::from_fov(own.width, own.height, fov_deg)?
         }
@@ -124,7 +124,7 @@ pub(crate) fn array(py: Python<'_>, observation: Observation) -> PyResult<Bound<
     })
 }
 
-/// Returns where the camera stands.
+/// Returns the mount of the camera.
 fn place(world: &World, settings: &PictureSettings) -> Result<CameraMount, PyFault> {
     let own = &settings.camera;
     let mount = camera_mount(own.position_m, [own.yaw_deg, own.pitch_deg, own.roll_deg]);

@@ -8,14 +8,14 @@ use dwell_scene::parallel::Threads;
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// An environment that waits for its place in a batch: there its house is another from then on.
+/// An environment that waits for its place in a batch: its house becomes that place's.
 #[pyclass(name = "PreparedEnv", module = "dwell._native", frozen)]
 pub(crate) struct PyPreparedEnv {
     env: Mutex<Option<Env>>,
 }
 
 impl PyPreparedEnv {
-    /// The environment, once.
+    /// Takes the environment, once.
     pub(crate) fn take(&self) -> Result<Env, PyFault> {
         let mut env = self.env.lock().unwrap_or_else(PoisonError::into_inner);
         let refuse = || PyFault::Usage("this environment has its place already".to_owned());

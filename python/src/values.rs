@@ -1,4 +1,4 @@
-//! Values of Python as the engines read them, and back: mappings, lists, text and numbers, without JSON text in between.
+//! Values of Python for the engines, and back: mappings, lists, text and numbers, without JSON text in between.
 
 use crate::errors::{PyFault, to_python};
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ impl<'py> FromPyObject<'_, 'py> for Data {
 }
 
 impl Data {
-    /// Reads what the engine takes.
+    /// Reads the engine's type.
     pub(crate) fn read<T: DeserializeOwned>(self) -> Result<T, PyFault> {
         Ok(serde_json::from_value(self.0)?)
     }

@@ -41,7 +41,7 @@ enum WorldSource {
 }
 
 impl PyWorld {
-    /// Changes the world: wholly, whatever signals arrive. A panic on the way leaves it poisoned.
+    /// Changes the world: completely, whatever signals arrive. A panic on the way leaves it poisoned.
     pub(crate) fn with<T: Send>(
         &self,
         py: Python<'_>,
@@ -50,7 +50,7 @@ impl PyWorld {
         py.engine(|| self.reach(|running| interrupt::uninterruptible(|| work(running))))
     }
 
-    /// Changes the world in one stroke at the end of what may take its time: a signal before it leaves the world as it was.
+    /// Changes the world at the end of a long preparation: a signal during it leaves the world as it was.
     fn prepare<T: Send>(
         &self,
         py: Python<'_>,
@@ -60,7 +60,7 @@ impl PyWorld {
         py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
     }
 
-    /// Looks at the world, which may take its time: a signal ends it, and the world is as it was.
+    /// Reads the world, which may take its time: a signal ends it, and the world is as it was.
     pub(crate) fn look<T: Send>(
         &self,
         py: Python<'_>,
@@ -69,7 +69,7 @@ impl PyWorld {
         py.engine(|| self.reach(|running| interrupt::catch_interrupt(|| work(running))?))
     }
 
-    /// The world for one call, without the GIL.
+    /// Locks the world for one call, without the GIL.
     fn reach<T>(
         &self,
         work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault>,
@@ -126,7 +126,7 @@ impl PyWorld {
         })
     }
 
-    /// The world of environment `env` of a batch, which both go on to use.
+    /// The world of environment `env` of a batch, shared with it.
     #[staticmethod]
     fn of_env(py: Python<'_>, batch: Py<PyBatch>, env: usize) -> PyResult<Self> {
         batch
@@ -562,7 +562,7 @@ impl PyWorld {
     }
 
     fn restore(&self, py: Python<'_>, snapshot: &[u8]) -> PyResult<()> {
-        // Whoever waits for a step of another thread would undo it.
+        // A caller that waits for a step of another thread would undo it.
         if let WorldSource::Own(world) = &self.source
             && let Err(TryLockError::WouldBlock) = world.try_lock()
         {

@@ -1,4 +1,4 @@
-//! A running world, and how Python names what is in it.
+//! A running world, and Python's names for its contents.
 
 use crate::errors::PyFault;
 use dwell::{ShortestPathFollower, StepSizes, World};
@@ -9,7 +9,7 @@ use serde_json::json;
 /// Number of names that an error lists, the nearest first.
 const NAMES: usize = 12;
 
-/// A guide, and the bits of the goal that it leads to.
+/// A guide, and the bits of its goal.
 pub(crate) type ActiveGuide = Option<([u32; 3], ShortestPathFollower)>;
 
 /// The world that a `World` of Python works on: one of its own, or that of an environment.

@@ -67,7 +67,7 @@ impl RoomDoorway {
     }
 }
 
-/// Returns whether somebody at `eye` sees the sky, or looks past the building towards `out`: houses have shafts and corridors that
+/// Returns whether the sky is visible from `eye`, or the open beyond the building towards `out`: houses have shafts and corridors that
 /// are no rooms of theirs.
 fn is_open_air(rays: &RayScene, eye: Vec3, out: Vec3) -> bool {
     let free = |direction: Vec3| {

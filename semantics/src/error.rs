@@ -12,12 +12,12 @@ pub enum SemanticsError {
         /// The known names.
         known: Vec<&'static str>,
     },
-    /// A house in which nothing of the wanted kind can be asked for.
+    /// A house that offers nothing of the wanted kind.
     #[error("house {house:?} offers no instruction of kind {kind}: {why}")]
     NoInstruction {
         /// The house's name.
         house: String,
-        /// The kind wanted.
+        /// The wanted kind.
         kind: &'static str,
         /// The missing part.
         why: &'static str,

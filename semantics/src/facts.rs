@@ -108,7 +108,7 @@ impl ObjectFacts {
         }
     }
 
-    /// The adjective of what it is mostly made of; `None` when nothing prevails, or when the kind of thing says it
+    /// The adjective of its main substance; `None` when none prevails, or when the kind of thing implies it
     /// already.
     pub fn material_word(&self) -> Option<&'static str> {
         let (substance, share) = self.substances.first()?;
@@ -164,7 +164,7 @@ impl ObjectFacts {
         self.category.is_some_and(|row| names.contains(&row.name))
     }
 
-    /// Returns whether a speaker may call it `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
+    /// Returns whether it may be called `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
     /// coffee table).
     pub fn is_called(&self, noun: &str) -> bool {
         let matches = |name: &str| {

@@ -120,7 +120,7 @@ fn in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
     front
 }
 
-/// Everything that can be said about the scene, as data; with a viewer, left and right too, of the 1,000 things nearest before
+/// The whole scene as data; with a viewer, left and right too, of the 1,000 things nearest before
 /// it.
 ///
 /// Relations are those between objects, between an object and a structure piece it rests or hangs on, and `in_room`.

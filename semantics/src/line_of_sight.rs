@@ -1,4 +1,4 @@
-//! Lines of sight from somebody to a thing.
+//! Lines of sight from a viewer to a thing.
 
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::ObjectId;

@@ -1,10 +1,10 @@
-//! Things by what they are called.
+//! An index of things by their nouns.
 
 use crate::facts::ObjectFacts;
 use dwell_scene::{IdVec, ObjectId};
 use std::collections::BTreeMap;
 
-/// Things that are called alike in every way.
+/// Things with the same nouns.
 #[derive(Debug)]
 struct NounClass {
     /// One of them, for its words.
@@ -13,7 +13,7 @@ struct NounClass {
     things: Vec<ObjectId>,
 }
 
-/// The things of a house by their nouns, so that words are compared once for a kind of thing, not for each of them.
+/// The things of a house by their nouns, so that words are compared once for a kind, not for each thing.
 #[derive(Debug, Default)]
 pub(crate) struct NounIndex {
     all: Vec<NounClass>,

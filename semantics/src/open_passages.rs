@@ -1,4 +1,4 @@
-//! Ways between rooms that no door closes.
+//! Passages between rooms that no door closes.
 
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
@@ -11,11 +11,11 @@ const STEP_M: f32 = 0.1;
 /// Distance within the room at which a try begins, and beyond its border at which it ends, m: walls are thinner.
 const BEFORE_M: f32 = 0.1;
 const BEYOND_M: f32 = 0.5;
-/// Heights above the floor at which nothing may stand in the way, m; the middle one tells the room beyond.
+/// Heights above the floor at which nothing may block the passage, m; the middle one determines the room beyond.
 const HEIGHTS_M: [f32; 3] = [0.5, 1.1, 1.75];
-/// The least width of a passage, m: somebody walks through.
+/// Smallest width of a passage through which one can walk, m.
 const LEAST_M: f32 = 0.6;
-/// A place this close to a door's box belongs to the door, m.
+/// Distance from a door's box within which a place belongs to the door, m.
 const DOORWAY_M: f32 = 0.15;
 
 /// For each room the rooms that open passages lead to, rising; the relation is symmetric.
@@ -40,7 +40,7 @@ pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<Roo
     found
 }
 
-/// Returns how much of the border of `room` is open to each other room, m.
+/// Returns the length of the border of `room` that is open to each other room, m.
 fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32> {
     let house = rays.house();
     let mut open = BTreeMap::new();

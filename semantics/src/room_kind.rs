@@ -18,7 +18,7 @@ pub struct RoomCategory {
     pub synonyms: Vec<&'static str>,
     /// True if it has walls all round.
     pub indoor: bool,
-    /// The word before it that says where one is: "in" the kitchen, "on" the balcony.
+    /// The preposition of place: "in" the kitchen, "on" the balcony.
     pub preposition: &'static str,
 }
 
@@ -65,7 +65,7 @@ impl RoomCategories {
         &self.rows
     }
 
-    /// The kind that a word means: identifier, spoken word, synonym or label of a file; case and underscores do not
+    /// The kind of a word: identifier, spoken word, synonym or label of a file; case and underscores do not
     /// matter.
     pub fn get(&self, word: &str) -> Option<&RoomCategory> {
         self.by_word.get(&key(word)).map(|index| &self.rows[*index])
@@ -81,7 +81,7 @@ pub fn room_kinds() -> &'static RoomCategories {
     &TABLE
 }
 
-/// The word before a room called `noun` that says where one is; "in" for kinds outside the table.
+/// The preposition of place before a room called `noun`; "in" for kinds outside the table.
 pub fn preposition(noun: &str) -> &'static str {
     room_kinds().get(noun).map_or("in", |kind| kind.preposition)
 }

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 const POINTS: usize = 256;
 /// Number of them from which its walls are looked at.
 const LOOKS: usize = 12;
-/// In how many directions from each.
+/// Number of directions from each.
 const DIRECTIONS: usize = 48;
 
 /// The lasting facts about a room.
@@ -109,12 +109,12 @@ impl RoomProperties {
         }
     }
 
-    /// Returns where somebody in it is: "in the kitchen", "on the second balcony".
+    /// Returns the phrase of place in it: "in the kitchen", "on the second balcony".
     pub fn place(&self) -> String {
         format!("{} the {}", preposition(&self.noun), self.label)
     }
 
-    /// Returns whether a speaker may call it `name`.
+    /// Returns whether it may be called `name`.
     pub fn is_called(&self, name: &str) -> bool {
         self.names.iter().any(|known| known == name) || self.label == name
     }
@@ -200,9 +200,9 @@ fn shares(patches: &mut [SurfacePatch]) {
     }
 }
 
-/// The materials of the walls that somebody in the room sees, by share of the directions to the side.
+/// The visible wall materials of a room, by share of the horizontal directions.
 ///
-/// Walls have two shells and rooms may overlap, so what belongs to a room is not what shows in it.
+/// Walls have two shells and rooms may overlap, so a room's own surfaces are not those seen in it.
 fn visible_wall_areas(
     rays: &RayScene,
     paints: &IdVec<MaterialId, MaterialColors>,

@@ -1,4 +1,4 @@
-//! The entry point: a house, and what can be said about it.
+//! The entry point: a house with its semantics.
 
 use crate::color::{MaterialColors, paints};
 use crate::doorways::RoomDoorway;
@@ -15,7 +15,7 @@ use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Everything about a house that stays true in every state. Make it once and share it.
+/// State-independent semantics of a house. Make it once and share it.
 #[derive(Debug)]
 pub struct Semantics {
     house: Arc<House>,
@@ -30,7 +30,7 @@ pub struct Semantics {
 }
 
 impl Semantics {
-    /// Gathers the lasting facts of `house`.
+    /// Computes the facts of `house`.
     pub fn new(house: &Arc<House>) -> Self {
         let state = State::new(house);
         let paints = paints(house);
@@ -81,22 +81,22 @@ impl Semantics {
         &self.house
     }
 
-    /// Returns what is always true of an object.
+    /// Returns the state-independent facts about an object.
     pub fn facts(&self, object: ObjectId) -> &ObjectFacts {
         &self.facts[object]
     }
 
-    /// Returns what is always true of a room.
+    /// Returns the state-independent facts about a room.
     pub fn room(&self, room: RoomId) -> &RoomProperties {
         &self.rooms[room]
     }
 
-    /// Returns where a door or archway leads; `None` for other things.
+    /// Returns the rooms that a door or archway connects; `None` for other things.
     pub fn doorway(&self, door: ObjectId) -> Option<&RoomDoorway> {
         self.doorways.get(&door)
     }
 
-    /// The doors and archways with where they lead, rising.
+    /// The doors and archways with their rooms, rising.
     pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &RoomDoorway)> {
         self.doorways.iter().map(|(door, doorway)| (*door, doorway))
     }

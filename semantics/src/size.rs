@@ -5,7 +5,7 @@ use dwell_scene::math;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Returns whether a box says nothing about the size of such things: doors swing, cloth is folded, and what is built in has the size
+/// Returns whether a box says nothing about the size of such things: doors swing, cloth is folded, and built-in things have the size
 /// of its room.
 fn has_no_usual_size(row: &SemanticCategory) -> bool {
     let classes = ["door", "curtain", "blinds", "towel", "clothes", "counter"];
@@ -36,8 +36,8 @@ pub enum SizeClass {
 }
 
 impl SizeClass {
-    /// The size of a box of `extents_m` beside the usual one of `row`; [`SizeClass::Normal`] for an unknown category
-    /// and for what folds, swings or is built in.
+    /// The size of a box of `extents_m` relative to the usual one of `row`; [`SizeClass::Normal`] for an unknown category
+    /// and for things that fold, swing or are built in.
     pub fn of(extents_m: Vec3, row: Option<&SemanticCategory>) -> Self {
         let Some(row) = row.filter(|row| !has_no_usual_size(row)) else {
             return Self::Normal;

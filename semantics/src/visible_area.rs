@@ -22,10 +22,10 @@ const LEAST_HITS: usize = 12;
 /// Number of other boxes beyond which a thing that lies in them lies in a heap.
 const MOST_AROUND: usize = 64;
 
-/// For each object the area that shows of each of its materials, summed over the sides, m²; nothing for what is hidden, as a
-/// plate in a cupboard is, and for what lies in a heap: in the boxes of more than 64 others. `bounds`: the box of each object.
+/// For each object the visible area of each of its materials, summed over the sides, m²; nothing for hidden things, such as a
+/// plate in a cupboard, and for things in a heap: in the boxes of more than 64 others. `bounds`: the box of each object.
 ///
-/// Walls behind things, and other things before them, hide what they hide in the house: the back of a cupboard counts for
+/// Walls behind things, and other things before them, occlude as in the house: the back of a cupboard counts for
 /// nothing.
 pub(crate) fn visible_surface_areas(
     rays: &RayScene,
@@ -36,7 +36,7 @@ pub(crate) fn visible_surface_areas(
     Threads::resolve(None)
         .map(ids.len(), |k| {
             let own = &bounds[ids[k]];
-            // Each ray would meet all the others.
+            // Each ray would hit all the others.
             let middle = Aabb::new(own.center(), own.center());
             let others = tree.nearest(&middle, MOST_AROUND + 1, |other| other != k);
             if others.len() > MOST_AROUND {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Facts worth printing, and findings that must be mended.
+/// Notes, and findings that must be fixed.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub(crate) struct CheckOutcome {
     /// Printed, never a failure.

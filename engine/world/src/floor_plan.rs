@@ -51,7 +51,7 @@ pub struct PlanDoor {
     pub open: [f32; 2],
 }
 
-/// Returns what a plan of a storey says; neither rooms nor doors for a storey that the house does not have.
+/// Returns the labels of a storey's plan; neither rooms nor doors for a storey that the house does not have.
 pub fn floor_plan(world: &World, level: LevelId) -> FloorPlan {
     let (house, state) = (world.house(), world.state());
     let here = || {
@@ -120,7 +120,7 @@ fn door(house: &House, state: &State, joint: &Articulation) -> PlanDoor {
     }
 }
 
-/// Of many places of a room the one that is furthest from its edges, (x, z), m.
+/// The point of a room's floor, of many, that is furthest from its edges, (x, z), m.
 fn place(house: &House, id: RoomId) -> Vec2 {
     let room = &house.rooms[id];
     let outline = outline(room);
@@ -135,7 +135,7 @@ fn place(house: &House, id: RoomId) -> Vec2 {
     best.map_or(Vec2::new(middle.x, middle.z), |p| Vec2::new(p.x, p.z))
 }
 
-/// Edges of the footprint's triangles that no two of them share.
+/// The edges of the footprint's triangles that no two of them share.
 fn outline(room: &Room) -> Vec<[Vec2; 2]> {
     let edges = room
         .footprint
@@ -150,7 +150,7 @@ fn outline(room: &Room) -> Vec<[Vec2; 2]> {
     edges.iter().filter(alone).copied().collect()
 }
 
-/// From a point to a line between two others.
+/// The distance from a point to a line between two others.
 fn distance(p: Vec2, [a, b]: [Vec2; 2]) -> f32 {
     let along = b - a;
     let part = (p - a).dot(along) / along.length_squared().max(1e-12);

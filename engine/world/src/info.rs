@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Counts, rooms and categories of a house as one JSON object. `report`: what its reader had to say.
+/// Counts, rooms and categories of a house as one JSON object. `report`: the report of its reader.
 pub fn info(engines: &Engines, report: &Value) -> Value {
     let house = engines.house();
     let mut categories: BTreeMap<&str, usize> = BTreeMap::new();
@@ -82,7 +82,7 @@ pub struct RoomViewpoint {
 /// Directions around, and rays across and down, by which views are compared.
 const TURNS: u8 = 16;
 const RAYS: [usize; 2] = [11, 7];
-/// At most so many places a room are compared.
+/// Largest number of places a room that are compared.
 const PLACES: usize = 48;
 
 /// A good view of every room: of walkable places and directions, the one from which most is seen from furthest.
@@ -154,7 +154,7 @@ fn viewpoint(rays: &RayScene, inside: &[Vec3], id: RoomId, eye_m: f32) -> RoomVi
     }
 }
 
-/// Returns how much a view shows of a room: the mean logarithm of distance to what is in it, and how many things there are.
+/// Returns the score of a view of a room: the mean logarithm of the distance to its contents, and the number of its things.
 fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
     let [across, down] = RAYS;
     let mut seen: Vec<i32> = Vec::new();
@@ -169,7 +169,7 @@ fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
                 continue;
             };
             let point = ray.at(hit.distance_m - 0.05);
-            // What lies beyond a door or window counts no more than the opening itself.
+            // Points beyond a door or window count no more than the opening itself.
             let inside = rays.house().room_at(point) == Some(room);
             sum += ln(hit.distance_m.clamp(0.1, if inside { 12.0 } else { 1.5 }));
             if inside {

@@ -4,7 +4,7 @@ use crate::error::WorldError;
 use dwell_scene::law::ParamInfo;
 use dwell_scene::{Address, House, LawInfo, LawSpec, Parameter, SceneError, State};
 
-/// All laws that some engine knows.
+/// All laws of all engines.
 pub fn all() -> impl Iterator<Item = &'static LawInfo> {
     dwell_physics::laws::all()
         .iter()
@@ -80,7 +80,7 @@ pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldEr
             let mut spec = spec.clone();
             let target = spec.target.as_deref();
             spec.target = target.map(|target| LawSpec::canonical_target(house, info, target));
-            // One spelling for each law: what is default is not written, as when it is set by its address.
+            // One spelling for each law: defaults are not written, as when it is set by its address.
             spec.params.retain(|name, value| {
                 let of = |param: &&ParamInfo| param.name == name;
                 let param = info.params.iter().find(of);
@@ -92,7 +92,7 @@ pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldEr
     Ok(installed)
 }
 
-/// The start of a house under laws and parameters (values by address), for engines that work without a world. Nobody is in it.
+/// The initial state of a house under laws and parameters (values by address), for engines that work without a world. Nobody is in it.
 ///
 /// # Errors
 /// As [`install`], and [`WorldError::Scene`] for an address that names nothing or a value out of range.
@@ -111,7 +111,7 @@ pub fn start<'a>(
     Ok(state)
 }
 
-/// Returns what stands at any address: a law's, or one of the scene.
+/// Returns the parameter at any address: a law's, or one of the scene.
 ///
 /// # Errors
 /// [`SceneError::Address`] says which word is wrong and what is allowed there.
@@ -127,7 +127,7 @@ pub(crate) fn parameter(
     }
 }
 
-/// Sets what stands at any addresses: all of it, or nothing.
+/// Sets parameters at any addresses: all of them, or none.
 ///
 /// # Errors
 /// As [`parameter`], for a value out of range beside the others, and for a parameter that is there twice.

@@ -61,7 +61,7 @@ pub use sensor_requests::{Picture, Requests, Results, ViewRequest};
 pub use sound::{PlayRequest, SoundName, SoundPlace, SoundState, usual_level_db};
 pub use world::World;
 
-/// Returns where a camera is against the eyes that carry it: position in m, then yaw, pitch and roll in degrees.
+/// Returns the pose of a camera relative to the eyes that carry it: position in m, then yaw, pitch and roll in degrees.
 pub fn camera_mount(position_m: [f32; 3], angles_deg: [f32; 3]) -> dwell_scene::Pose {
     sensors::mount(position_m, angles_deg)
 }

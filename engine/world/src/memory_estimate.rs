@@ -16,7 +16,7 @@ const BODY_BYTES: u64 = 9 << 10;
 const PIECE_BYTES: u64 = 768;
 /// Memory of a sample of an agent's window of sound, with the echoes and filters on their way to it, bytes.
 const SAMPLE_BYTES: u64 = 256;
-/// From here on the system is asked whether a picture fits, bytes.
+/// Size of a picture from which on the system is asked whether it fits, bytes.
 const PICTURE_BYTES_ASKED_ABOUT: u64 = 64 << 20;
 
 /// The memory of one environment beside what it shares with others over its house, bytes: rather more than it comes to need where
@@ -24,7 +24,7 @@ const PICTURE_BYTES_ASKED_ABOUT: u64 = 64 << 20;
 struct MemoryEstimate {
     world: u64,
     pictures: u64,
-    /// The caller's array, and a copy for who keeps it.
+    /// The caller's array, and a copy for a caller that keeps it.
     observations: u64,
 }
 
@@ -85,7 +85,7 @@ fn observation_bytes(spec: &SensorSpec) -> u64 {
     spec.len() as u64 * bytes
 }
 
-/// Refuses a picture with its observations where the memory that is free cannot hold them. Nothing is refused where nobody says
+/// Refuses a picture with its observations that the free memory cannot hold. Nothing is refused where the system does not say
 /// how much is free.
 ///
 /// # Errors
@@ -123,8 +123,8 @@ fn mib(bytes: u64) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// Refuses `count` environments like `env` where the memory that is free cannot hold them. Nothing is refused where nobody
-/// says how much is free.
+/// Refuses `count` environments like `env` that the free memory cannot hold. Nothing is refused where the system does not
+/// say how much is free.
 ///
 /// # Errors
 /// [`WorldError::Config`] with what one takes, what is free, and how many there could be.
@@ -161,7 +161,7 @@ fn check_against(need: &MemoryEstimate, count: usize, free: u64) -> Result<(), W
     })
 }
 
-/// Returns what this process may still take: of the machine, of its group's limit and of its own; `None` where nobody says.
+/// Returns the memory that this process may still take: of the machine, of its group's limit and of its own; `None` where unknown.
 fn free_bytes() -> Option<u64> {
     let of_machine = kibibytes("/proc/meminfo", "MemAvailable:");
     [of_machine, of_group(), of_process()]
@@ -178,7 +178,7 @@ fn kibibytes(file: &str, name: &str) -> Option<u64> {
     Some(count << 10)
 }
 
-/// Of the limit on addresses (`ulimit -v`).
+/// The free memory under the limit on addresses (`ulimit -v`).
 fn of_process() -> Option<u64> {
     let limits = read_to_string("/proc/self/limits").ok()?;
     let most = limits
@@ -188,7 +188,7 @@ fn of_process() -> Option<u64> {
     Some(most.saturating_sub(kibibytes("/proc/self/status", "VmSize:")?))
 }
 
-/// Of the limits of the process's control groups, of either version.
+/// The free memory under the limits of the process's control groups, of either version.
 fn of_group() -> Option<u64> {
     let groups = read_to_string("/proc/self/cgroup").ok()?;
     let rooms = groups.lines().filter_map(|line| {
@@ -217,7 +217,7 @@ fn room_of_group(folder: &Path, most: &str, used: &str) -> Option<u64> {
     let number =
         |name: &str| -> Option<u64> { read_to_string(folder.join(name)).ok()?.trim().parse().ok() };
     let most = number(most)?;
-    // Files that were read and are kept are given up for whoever needs the room.
+    // The system's cache of files is given up when memory is needed.
     let stat = read_to_string(folder.join("memory.stat")).unwrap_or_default();
     let kept = stat
         .lines()

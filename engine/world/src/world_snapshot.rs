@@ -26,7 +26,7 @@ struct SnapshotHeader {
 }
 
 impl World {
-    /// The whole world as bytes: state, physics with its contact caches, sound queues, the key of the episode and what has moved in the last
+    /// The whole world as bytes: state, physics with its contact caches, sound queues, the key of the episode and the motion of the last
     /// step; packed.
     ///
     /// # Panics

@@ -43,7 +43,7 @@ impl Oklab {
         (l * l + a * a + b * b).sqrt()
     }
 
-    /// Returns how far from grey, 0 to about 0.33.
+    /// Returns the distance from grey, 0 to about 0.33.
     pub fn chroma(self) -> f32 {
         (self.a * self.a + self.b * self.b).sqrt()
     }

@@ -12,7 +12,7 @@ pub const MENTION_SHARE: f32 = 0.2;
 const SHADE: f32 = 0.15;
 /// Share of an image from which one sort of colour is that of the whole.
 const DOMINANT_SHARE: f32 = 0.6;
-/// About how many pixels stand for an image.
+/// Approximate number of pixels by which an image is sampled.
 const PIXELS: usize = 1024;
 /// Number of times that the middle of a sort is moved to the mean of its shades.
 const ROUNDS: usize = 4;

@@ -28,7 +28,7 @@ pub(super) struct MountedObject {
 }
 
 impl MountKind {
-    /// Of several: "on the walls", "at the windows".
+    /// The places of several: "on the walls", "at the windows".
     fn places(self) -> &'static str {
         match self {
             Self::Wall => "on the walls",
@@ -39,7 +39,7 @@ impl MountKind {
 }
 
 impl MountedObject {
-    /// Returns how `thing` hangs, if it does.
+    /// Returns the mounted object if `thing` hangs.
     pub(super) fn of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Self> {
         let mount = mount_of(scene, thing)?;
         let hold = match mount {
@@ -63,7 +63,7 @@ impl MountedObject {
         })
     }
 
-    /// Returns whether its noun says it already: a wall lamp, a ceiling lamp.
+    /// Returns whether its noun implies it already: a wall lamp, a ceiling lamp.
     pub(super) fn is_in_noun(&self, scene: &SemanticScene<'_>) -> bool {
         let said = match self.hold {
             MountKind::Wall => "wall",
@@ -74,7 +74,7 @@ impl MountedObject {
         words.any(|word| word == said)
     }
 
-    /// Returns where it hangs, after its name: "on the wall", "at the window"; empty where its noun says it.
+    /// Returns its place, after its name: "on the wall", "at the window"; empty where its noun implies it.
     pub(super) fn place(&self, scene: &SemanticScene<'_>) -> String {
         match self.hold {
             _ if self.is_in_noun(scene) => String::new(),
@@ -123,7 +123,7 @@ pub(super) fn clauses(scene: &SemanticScene<'_>, hanging: &[MountedObject]) -> V
     clauses
 }
 
-/// Returns whether two mounts are one to the eye: the same, or pieces of one wall between its windows.
+/// Returns whether two mounts look like one: the same, or pieces of one wall between its windows.
 fn is_one(scene: &SemanticScene<'_>, one: Term, other: Term) -> bool {
     let (Term::Structure(p), Term::Structure(q)) = (one, other) else {
         return one == other;

@@ -11,7 +11,7 @@ use dwell_scene::{ObjectId, RoomId};
 const OPEN: f32 = 0.5;
 const CLOSED: f32 = 0.02;
 
-/// The adjectives of a thing by what they say: size, openness, colour, substance.
+/// The adjectives of a thing: size, openness, colour, substance.
 pub(super) type Adjectives = [Option<String>; 4];
 
 pub(super) fn adjectives(scene: &SemanticScene<'_>, object: ObjectId) -> Adjectives {
@@ -24,7 +24,7 @@ pub(super) fn adjectives(scene: &SemanticScene<'_>, object: ObjectId) -> Adjecti
             .and_then(|openness| match openness {
                 o if o > OPEN => Some("open"),
                 o if o > CLOSED => Some("half-open"),
-                // A cupboard is closed as a rule; of a door one wants to know.
+                // A cupboard is closed as a rule; a door's state is always of interest.
                 _ => facts.is_opening().then_some("closed"),
             });
     let material = facts.material_word();
@@ -51,7 +51,7 @@ pub(super) fn phrase(scene: &SemanticScene<'_>, object: ObjectId) -> String {
     described(&adjectives(scene, object), &scene.facts(object).noun)
 }
 
-/// Returns how many things in a room may be called as `object` is; as if there were several outside of all rooms.
+/// Returns the number of things in a room that may be called as `object` is; as if there were several outside of all rooms.
 pub(super) fn alike(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
     let noun = &scene.facts(object).noun;
     room.map_or(2, |room| {
@@ -88,7 +88,7 @@ fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Opt
     (name != "next_to" || volume(largest) > 0.3 * volume(object)).then_some(largest)
 }
 
-/// Between what a door stands: " from the kitchen to the outside"; `None` when that is not known, and for other things.
+/// The rooms that a door connects: " from the kitchen to the outside"; `None` when that is not known, and for other things.
 fn between(scene: &SemanticScene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<String> {
     let doorway = scene.semantics.doorway(door)?;
     let the = |room: RoomId| format!("the {}", scene.semantics.room(room).label);
@@ -102,7 +102,7 @@ fn between(scene: &SemanticScene<'_>, door: ObjectId, room: Option<RoomId>) -> O
     }
 }
 
-/// Returns where it is beside something else: " on the table"; empty when nothing is near.
+/// Returns its place beside something else: " on the table"; empty when nothing is near.
 fn place(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
     for (name, words) in [("in", "in"), ("on", "on")] {
         if let Some(other) = first_related(scene, object, name) {

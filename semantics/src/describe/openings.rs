@@ -9,7 +9,7 @@ use dwell_scene::RoomId;
 enum DoorDestination {
     Rooms(Vec<RoomId>),
     Outside,
-    /// Within the room, or to what the house does not tell.
+    /// Within the room, or to a place that the house does not name.
     Elsewhere,
 }
 
@@ -59,7 +59,7 @@ fn doors_of<'a>(scene: &SemanticScene<'a>, room: RoomId) -> Vec<DoorGroup<'a>> {
     groups
 }
 
-/// "two doors to the hall and the kitchen", "a door to the outside", "another door": by noun, then by where they lead.
+/// "two doors to the hall and the kitchen", "a door to the outside", "another door": by noun, then by destination.
 fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
     let groups = doors_of(scene, room);
     let mut nouns: Vec<(&str, &str)> = Vec::new();
@@ -72,7 +72,7 @@ fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
     for (noun, plural) in nouns {
         let said = texts.len();
         let of = || groups.iter().filter(|group| group.noun == noun);
-        // One door to each of several rooms is told in one breath; two to one room would blur which leads where.
+        // One door to each of several rooms is described in one phrase; two to one room would blur which leads where.
         let mut single: Vec<RoomId> = Vec::new();
         for group in of() {
             match &group.way {
@@ -114,7 +114,7 @@ fn door_texts(scene: &SemanticScene<'_>, room: RoomId) -> Vec<String> {
     texts
 }
 
-/// Returns what the room opens to: "It has two windows, a door to the hall and an open passage to the kitchen."
+/// Returns the openings of the room: "It has two windows, a door to the hall and an open passage to the kitchen."
 pub(super) fn openings(scene: &SemanticScene<'_>, room: RoomId) -> Option<String> {
     let windows = scene.windows_in(room);
     let mut parts = Vec::new();

@@ -1,4 +1,4 @@
-//! The description of what somebody sees.
+//! The description of a view.
 
 use super::contents::grouped;
 use crate::english::{capitalized, list};

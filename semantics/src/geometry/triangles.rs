@@ -31,7 +31,7 @@ pub(crate) fn object_triangles_near(
     reach: &Aabb,
     mut visit: impl FnMut([Vec3; 3]),
 ) {
-    // Wider than what is lost in rounding.
+    // Wider by more than rounding.
     let wider = |bounds: Aabb| {
         let furthest = bounds.min.abs().max(bounds.max.abs()).max_element();
         bounds.grown(1e-5 * furthest)
@@ -41,7 +41,7 @@ pub(crate) fn object_triangles_near(
         let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
         let mesh_from_world = world_from_mesh.inverse();
         let reach = wider(wider(reach.grown(1e-3)).transformed(&mesh_from_world));
-        // Of a flattened mesh there is no way back.
+        // The transform of a flattened mesh has no inverse.
         let all = !mesh_from_world.is_finite() || reach.is_empty();
         let mesh = &house.meshes[part.mesh];
         for triangle in 0..mesh.triangles.len() {

@@ -1,4 +1,4 @@
-//! An instruction, bound to what it means.
+//! An instruction with its goal.
 
 use crate::error::SemanticsError;
 use crate::line_of_sight::is_in_line_of_sight;
@@ -39,7 +39,7 @@ impl InstructionKind {
         }
     }
 
-    /// Wordings; `{}` stands for what is meant, with its article.
+    /// Wordings; `{}` stands for the target's description, with its article.
     pub(crate) fn wordings(self) -> &'static [&'static str] {
         match self {
             Self::GoToRoom => &[
@@ -109,7 +109,7 @@ impl Instruction {
         }
     }
 
-    /// The same instruction in the wording that `choice` picks.
+    /// The same instruction in the wording of index `choice`.
     pub(super) fn reworded(&self, choice: u64) -> Self {
         let wordings = self.kind.wordings();
         let wording = wordings[(choice % wordings.len() as u64) as usize];
@@ -151,7 +151,7 @@ impl Instruction {
         };
         let found = |object: &ObjectId| {
             let extent = scene.extent(*object);
-            // A thing on another storey is not near, however straight above it one stands; a lamp under the ceiling is.
+            // A thing on another storey is not near, even straight above or below; a lamp under the ceiling is.
             let room = scene.room_of_agent(agent);
             let ceiling = room.map_or(f32::MIN, |room| scene.house().rooms[room].ceiling_y);
             let overhead = ceiling.max(body.position.y + body.body.height_m + 1.0);
@@ -168,7 +168,7 @@ impl Instruction {
         }
     }
 
-    /// As [`Self::verify`] for an agent that says it is done: [`InstructionProgress::Continue`] becomes [`InstructionProgress::Failure`].
+    /// As [`Self::verify`] for an agent that stops: [`InstructionProgress::Continue`] becomes [`InstructionProgress::Failure`].
     pub fn verify_at_stop(
         &self,
         scene: &SemanticScene<'_>,

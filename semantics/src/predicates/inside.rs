@@ -4,7 +4,7 @@ use super::{Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::{Aabb, House, ObjectId};
 
-/// In how many things a thing is at most.
+/// Largest number of things that a thing is in.
 const MOST_AROUND: usize = 32;
 /// Largest distance beside a container's box of the middle of its content, m: more than its brim.
 const BESIDE_M: f32 = 0.025;
@@ -15,14 +15,14 @@ const BESIDE_M: f32 = 0.025;
 pub(super) struct Inside;
 
 impl SemanticScene<'_> {
-    /// Returns what the object is in, rising; at most 32 things.
+    /// Returns the containers of the object, rising; at most 32.
     pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
         let around = &self.cache(object).around;
         around.get_or_init(|| containers(self, object))
     }
 }
 
-/// Returns what `thing` is in, rising.
+/// Returns the containers of `thing`, rising.
 fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {

@@ -4,14 +4,14 @@ use super::{Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::ObjectId;
 
-/// The least difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
+/// Smallest difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
 const LEAST_TANGENT: f32 = 0.035;
-/// The least depth of what is in front of a viewer, m.
+/// Smallest depth in front of a viewer, m.
 const LEAST_DEPTH_M: f32 = 0.05;
-/// The largest tangent that is still in front: 75 degrees to the side.
+/// Largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
 
-/// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
+/// Returns the image of a thing's middle in the viewer's picture: x over depth, growing to the right; `None` when it is not in
 /// front of the viewer.
 pub(super) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
     let point = viewer.upright_from_world(scene.center(term)?);

@@ -1,4 +1,4 @@
-//! Relations: the one engine that is used for saying and for checking.
+//! Relations, used both to describe and to verify.
 //!
 //! To add one: a file here that implements [`Predicate`], and a line in [`all`].
 
@@ -48,15 +48,15 @@ pub trait Predicate: Sync {
     /// The words between subject and object: "the cup is **on** the table".
     fn words(&self) -> &'static str;
 
-    /// Returns what always holds of it.
+    /// Returns the properties that always hold of it.
     fn properties(&self) -> RelationProperties;
 
-    /// Returns whether it means anything only from somebody's point of view.
+    /// Returns whether it depends on a viewer.
     fn needs_viewer(&self) -> bool {
         false
     }
 
-    /// Returns whether it holds. `false` for kinds of things it says nothing about, and without the viewer it needs.
+    /// Returns whether it holds. `false` for kinds of things outside its domain, and without the viewer that it needs.
     fn holds(
         &self,
         scene: &SemanticScene<'_>,
@@ -65,7 +65,7 @@ pub trait Predicate: Sync {
         viewer: Option<&Viewer>,
     ) -> bool;
 
-    /// Everything that `subject` has it to without a viewer, each once: what [`Self::holds`] says of all terms, without asking
+    /// All terms to which `subject` has it without a viewer, each once: those for which [`Self::holds`] is true, without a test
     /// for each.
     fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term>;
 }

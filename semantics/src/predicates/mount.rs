@@ -64,7 +64,7 @@ pub(super) fn hangs_despite(
     above || (fixed && !MAY_STAND.contains(&row.name) && (flat || !MAY_LEAN.contains(&row.name)))
 }
 
-/// The pieces of the building at which a thing may hang, rising.
+/// The pieces of the building on which a thing may hang, rising.
 fn pieces_at(scene: &SemanticScene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
     let reach = scene.extent(thing).bounds.grown(WALL_GAP_M);
     let pieces = scene.semantics.structure_at(&reach);
@@ -123,7 +123,7 @@ pub(super) fn hangs_on(scene: &SemanticScene<'_>, thing: ObjectId, mount: Term) 
     near && scene.holder(thing).is_none() && scene.supports(thing).is_empty()
 }
 
-/// All that `thing` hangs on: windows, then pieces of the building, each rising.
+/// All mounts of `thing`: windows, then pieces of the building, each rising.
 pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
     if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
         return Vec::new();
@@ -140,7 +140,7 @@ pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
         .collect()
 }
 
-/// Returns what `thing` hangs on: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
+/// Returns the mount of `thing`: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
 /// and windows are part of their walls and hang on nothing.
 pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
     if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {

@@ -14,27 +14,27 @@ const NEIGHBOUR_GAP_M: f32 = 0.5;
 /// than 128 things are so near, those about the middle count, and only if it is so both ways.
 pub(super) struct NextTo;
 
-/// Returns how much of their heights two boxes share, m, and how much that must be.
+/// Returns the overlap of two boxes' heights, m, and the overlap that is needed.
 fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
     let shared = p.max.y.min(q.max.y) - p.min.y.max(q.min.y);
     (shared, 0.5 * p.size().y.min(q.size().y))
 }
 
 impl SemanticScene<'_> {
-    /// Returns what may be next to the object, rising; at most [`MOST_NEAR`] things.
+    /// Returns the candidates next to the object, rising; at most [`MOST_NEAR`] things.
     pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
         let near = &self.cache(object).near;
         near.get_or_init(|| neighbour_candidates(self, object))
     }
 
-    /// Returns what is next to the object, rising.
+    /// Returns the neighbours of the object, rising.
     pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
         let beside = &self.cache(object).beside;
         beside.get_or_init(|| neighbours(self, object))
     }
 }
 
-/// Returns what may be next to `object`, rising.
+/// Returns the candidates next to `object`, rising.
 fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
     scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
@@ -43,7 +43,7 @@ fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<Obje
     })
 }
 
-/// Returns what is next to `object`, rising.
+/// Returns the neighbours of `object`, rising.
 fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
     let holds = |other: &ObjectId| {
@@ -54,7 +54,7 @@ fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     near.filter(holds).collect()
 }
 
-/// Returns whether `other` is among what may be next to `object`, where that is more than counts.
+/// Returns whether `other` is among the candidates next to `object`, where these are more than count.
 fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
     let near = scene.neighbour_candidates(object);
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()

@@ -1,4 +1,4 @@
-//! Support: what a thing rests on.
+//! Support: the carriers of a thing.
 
 use super::mount::hangs_despite;
 use crate::geometry::{height_under, object_triangles_near, structure_triangles};
@@ -16,7 +16,7 @@ const UNDERSIDE_M: f32 = 0.005;
 /// The share of a sole that something must carry to count: a board across two chairs rests on both.
 pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
 
-/// For every point of the sole the highest surface within [`REST_GAP_M`] of it, and whose it is.
+/// A search for the highest surface within [`REST_GAP_M`] of every point of the sole, and its owner.
 struct SupportSearch {
     /// Around the sole, grown by [`REST_GAP_M`].
     reach: Aabb,
@@ -50,14 +50,14 @@ impl SupportSearch {
 }
 
 impl SemanticScene<'_> {
-    /// Returns what the object rests on, the largest share first.
+    /// Returns the carriers of the object, the largest share first.
     pub fn supports(&self, object: ObjectId) -> &[SurfaceSupport] {
         let supports = &self.cache(object).supports;
         supports.get_or_init(|| supports_of(self, object))
     }
 }
 
-/// Returns what `object` rests on, the largest share first; empty when it is held, hangs or floats.
+/// Returns the carriers of `object`, the largest share first; empty when it is held, hangs or floats.
 ///
 /// Each point of its sole counts for the highest surface that lies within 3 cm of it and is flatter than 60 degrees, of
 /// whatever object or structure piece. Nothing carries a curtain that touches a desk, or a picture just above a sofa: they

@@ -11,12 +11,12 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Relations that a landmark may stand in, the most telling first.
+/// Relations to landmarks, the most informative first.
 pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
-/// Things between looks at whether they are still wanted.
+/// Things between checks for cancellation.
 const THINGS_PER_CHECK: usize = 64;
 
-/// At most `most` of what all lists have, which are rising; shorter lists are faster.
+/// The common elements of all lists, which are rising, at most `most`; shorter lists are faster.
 pub(super) fn common(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
     let Some((shortest, list)) = lists.iter().enumerate().min_by_key(|(_, list)| list.len()) else {
         return Vec::new();
@@ -68,7 +68,7 @@ impl DistractorSet {
         }
     }
 
-    /// Returns how many of them each room holds, where it holds some.
+    /// Returns the number of them in each room, where there are some.
     pub(crate) fn in_rooms(&self) -> &BTreeMap<RoomId, usize> {
         &self.in_rooms
     }
@@ -100,7 +100,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that a description with their noun fits, its relation left aside; rising.
+    /// Those that a description with their noun fits, without regard to its relation; rising.
     pub(super) fn matching(
         &self,
         scene: &SemanticScene<'_>,
@@ -150,7 +150,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that have a telling relation to something that its landmark fits; rising.
+    /// Those that have an informative relation to something that its landmark fits; rising.
     pub(super) fn with_landmark(
         &self,
         scene: &SemanticScene<'_>,

@@ -1,4 +1,4 @@
-//! A description of a thing, what it means, and how it sounds.
+//! Referring expressions: their meaning and their text.
 
 use crate::english::{qualified, with_article};
 use crate::facts::ObjectFacts;
@@ -11,8 +11,8 @@ use dwell_scene::interrupt;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
-/// A description of an object by its properties. [`ReferringExpression::matches`] says what it means, [`ReferringExpression::text`] how it
-/// sounds; both rest on the same predicates.
+/// A description of an object by its properties. [`ReferringExpression::matches`] gives its meaning, [`ReferringExpression::text`] its
+/// text; both rest on the same predicates.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferringExpression {
     /// Spoken noun.

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<ReferringExpression> {
     let facts = scene.facts(target);
     let noun = ReferringExpression::noun(&facts.noun);
-    // What no colour prevails on is not told apart by one.
+    // A thing without a prevailing colour is not identified by one.
     let spoken: &[_] = if facts.spoken_colors().is_empty() {
         &[]
     } else {
@@ -56,7 +56,7 @@ fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<ReferringEx
     found
 }
 
-/// The relations in which `target` stands to other things, each named by its noun and at most one adjective; each once.
+/// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
 fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
     let mut found: Vec<Relation> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
@@ -100,7 +100,7 @@ fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
 /// After the incremental algorithm of R. Dale and E. Reiter, Cognitive Science 19, 233 (1995); here every candidate is
 /// checked against all objects, so that a result is unique by construction.
 pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<ReferringExpression> {
-    // All candidates share the noun, so only what it may call can fit them.
+    // All candidates share the noun, so only things that it may name can fit them.
     let facts = scene.facts(target);
     let alike = scene.distractors(&facts.noun);
     let unique = |expression: &ReferringExpression| *alike.matching(scene, expression) == [target];

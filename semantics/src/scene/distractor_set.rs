@@ -6,7 +6,7 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Something that a description says of a thing beside its noun.
+/// A trait of a thing that a description can name beside its noun.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Attribute {
     Color(String),
@@ -25,19 +25,19 @@ pub(crate) struct LandmarkQuery {
 
 /// Rising.
 pub(crate) type ObjectList = Rc<[ObjectId]>;
-/// Things with what they stand in a relation to, by things.
+/// Pairs of things and their relata, by things.
 pub(crate) type RelatedPairs = Vec<(ObjectId, ObjectId)>;
 
-/// The things that may be called by one noun. Who has a trait is listed once for each trait, so that a description costs no look
+/// The things that may be called by one noun. Things with a trait are listed once for each trait, so that a description need not look
 /// at all of them.
 pub(crate) struct DistractorSet {
-    /// Rising.
+    /// Things, rising.
     pub(crate) things: ObjectList,
     pub(crate) in_rooms: BTreeMap<RoomId, usize>,
     pub(crate) having: OnceCell<BTreeMap<Attribute, ObjectList>>,
     /// Those that have some traits together.
     pub(crate) having_all: RefCell<BTreeMap<Vec<Attribute>, ObjectList>>,
-    /// By predicate and the kind of what it leads to.
+    /// Pairs by predicate and the kind of the relatum.
     pub(crate) pairs: OnceCell<BTreeMap<(&'static str, u32), RelatedPairs>>,
     pub(crate) marked: RefCell<BTreeMap<LandmarkQuery, ObjectList>>,
 }

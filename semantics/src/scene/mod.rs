@@ -1,4 +1,4 @@
-//! A house in one state, as predicates see it.
+//! A house in one state, as predicates read it.
 
 mod distractor_set;
 mod object_cache;
@@ -28,7 +28,7 @@ use std::rc::Rc;
 /// middle count.
 pub(crate) const MOST_NEAR: usize = 128;
 
-/// Something that a predicate speaks about.
+/// A term of a predicate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
@@ -63,7 +63,7 @@ impl Term {
     }
 }
 
-/// Somebody who looks: left and right are meant from here.
+/// A viewer, from which left and right are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Viewer {
     /// A camera's pose: it looks along -Z, +X is right.
@@ -90,7 +90,7 @@ impl Viewer {
     }
 }
 
-/// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
+/// A house in one state, with the measurements so far. Cheap to make: everything is measured at first use.
 pub struct SemanticScene<'a> {
     /// The state-independent facts.
     pub semantics: &'a Semantics,
@@ -100,7 +100,7 @@ pub struct SemanticScene<'a> {
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
     windows: OnceCell<IdVec<RoomId, usize>>,
-    /// By noun.
+    /// Distractor sets by noun.
     alike: RefCell<BTreeMap<String, Rc<DistractorSet>>>,
 }
 
@@ -123,12 +123,12 @@ impl<'a> SemanticScene<'a> {
         self.semantics.house()
     }
 
-    /// Returns what is always true of an object.
+    /// Returns the state-independent facts about an object.
     pub fn facts(&self, object: ObjectId) -> &'a ObjectFacts {
         self.semantics.facts(object)
     }
 
-    /// Returns whether every part of the object stands where the house puts it.
+    /// Returns whether every part of the object is in its initial pose.
     pub fn at_rest(&self, object: ObjectId) -> bool {
         let house = self.house();
         house.objects[object]
@@ -136,7 +136,7 @@ impl<'a> SemanticScene<'a> {
             .all(|part| self.state.part_pose[part] == house.parts[part].world_from_part)
     }
 
-    /// Returns where the object is.
+    /// Returns the object's extent.
     pub fn extent(&self, object: ObjectId) -> &Extent {
         if self.at_rest(object) {
             return self.semantics.rest_extent(object);
@@ -145,7 +145,7 @@ impl<'a> SemanticScene<'a> {
         extent.get_or_init(|| Extent::measure(self.house(), self.state, object))
     }
 
-    /// At most `most` things whose boxes share a point with `reach` and that `counts` wants, rising; of more than that those
+    /// At most `most` things whose boxes share a point with `reach` and for which `counts` is true, rising; of more than that those
     /// about its middle.
     pub(crate) fn within(
         &self,
@@ -170,7 +170,7 @@ impl<'a> SemanticScene<'a> {
         &self.known[object]
     }
 
-    /// Returns whether people say of things that they lie on it, never in it: a book between the arms of a sofa lies on the sofa.
+    /// Returns whether things lie on it, never in it, in everyday speech: a book between the arms of a sofa lies on the sofa.
     pub(crate) fn is_lain_upon(&self, object: ObjectId) -> bool {
         let seats = ["chair", "sofa", "bed"];
         let row = self.facts(object).category;
@@ -179,12 +179,12 @@ impl<'a> SemanticScene<'a> {
             && !places.any(|place| place.holding == ReceptacleKind::In)
     }
 
-    /// Returns who holds the object.
+    /// Returns the agent that holds the object.
     pub fn holder(&self, object: ObjectId) -> Option<AgentId> {
         self.state.held_by.get(object).copied().flatten()
     }
 
-    /// The room an object is in: of its holder, else the one around the middle of its box (the smallest where rooms
+    /// The room of an object: that of its holder, else the one around the middle of its box (the smallest where rooms
     /// overlap), else, while it stands where the house puts it, the one that the house's file names. `None` outside.
     pub fn room_of(&self, object: ObjectId) -> Option<RoomId> {
         let room = &self.known[object].room;
@@ -224,7 +224,7 @@ impl<'a> SemanticScene<'a> {
         &rooms[room]
     }
 
-    /// Returns how many windows a room has.
+    /// Returns the number of windows of a room.
     pub(crate) fn windows_in(&self, room: RoomId) -> usize {
         let rooms = self.windows.get_or_init(|| {
             let mut rooms = IdVec::filled(0, self.house().rooms.len());
@@ -238,7 +238,7 @@ impl<'a> SemanticScene<'a> {
         rooms[room]
     }
 
-    /// The things that may be called by the nouns that were asked for so far.
+    /// The things that may be called by the nouns that were looked up so far.
     pub(crate) fn distractor_cache(&self) -> &RefCell<BTreeMap<String, Rc<DistractorSet>>> {
         &self.alike
     }
@@ -262,7 +262,7 @@ impl<'a> SemanticScene<'a> {
 }
 
 impl Semantics {
-    /// The house in `state`, ready for questions.
+    /// The scene of the house in `state`.
     pub fn scene<'a>(&'a self, state: &'a State) -> SemanticScene<'a> {
         SemanticScene::new(self, state)
     }

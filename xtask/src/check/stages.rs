@@ -8,7 +8,7 @@ pub(crate) struct Stage {
     pub program: PathBuf,
     pub args: Vec<String>,
     pub env: Vec<(&'static str, &'static str)>,
-    /// A file without which the program would find nothing to complain about.
+    /// A file without which the program would have nothing to check.
     pub needs: Option<&'static str>,
 }
 

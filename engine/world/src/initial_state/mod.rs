@@ -11,8 +11,8 @@ use dwell_scene::{Address, AgentStart, AgentState, House, State};
 use glam::Vec3;
 use std::sync::{Arc, OnceLock};
 
-/// The first moment of a world: nothing overlaps, things have come to rest where that was asked for, doors are shut, agents stand
-/// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to one.
+/// The initial state of a world: nothing overlaps, things have come to rest where that was requested, doors are shut, agents stand
+/// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to it.
 #[derive(Debug)]
 pub(crate) struct InitialWorld {
     pub(crate) state: State,
@@ -22,7 +22,7 @@ pub(crate) struct InitialWorld {
 }
 
 impl InitialWorld {
-    /// Returns what snapshots are packed beside, made when the first one asks.
+    /// Returns the bytes that snapshots are packed beside, made at first use.
     pub(crate) fn base(&self, model: &Arc<PhysicsModel>, config: &WorldConfig) -> &SnapshotBase {
         self.base.get_or_init(|| SnapshotBase::of(model, config))
     }

@@ -21,7 +21,7 @@ pub(crate) struct SnapshotParts {
     pub(crate) past: MotionHistory,
 }
 
-/// The bytes of worlds' common beginning.
+/// The bytes of the common initial state of worlds.
 #[derive(Debug)]
 pub(crate) struct SnapshotBase {
     pub(crate) bytes: Vec<u8>,
@@ -37,7 +37,7 @@ impl SnapshotBase {
             renderer: dwell_render::BackEnd::Cpu,
             ..config.clone()
         };
-        // Bodies that only the world's own parameters make small enough have no such beginning: theirs has no bytes.
+        // Bodies that only the world's own parameters make small enough have no such base: it is empty.
         let start = InitialWorld::new(model, &plain);
         let bytes = start.map_or_else(
             |_| Vec::new(),

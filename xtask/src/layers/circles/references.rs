@@ -32,7 +32,7 @@ const ITEMS: &[&str] = &[
     "fn", "struct", "enum", "union", "trait", "type", "const", "static", "mod",
 ];
 
-/// Returns what `text`, the file of `module`, refers to, or the line that is no Rust.
+/// Returns the references of `text`, the file of `module`, or the line that is no Rust.
 pub(super) fn of_file(text: &str, module: &[String]) -> Result<FileReferences, (usize, String)> {
     let stream = TokenStream::from_str(text)
         .map_err(|error| (error.span().start().line, error.to_string()))?;
