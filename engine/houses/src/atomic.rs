@@ -1,4 +1,4 @@
-//! Files and folders that are either there whole or not at all.
+//! Atomic writes: files and folders that are either there whole or not at all.
 
 use std::fs;
 use std::path::Path;
@@ -14,7 +14,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), HousesError> {
     file::write(path, bytes).map_err(HousesError::io(path))
 }
 
-/// Fills a folder under another name and moves it into place. An old folder there is replaced when `is_ours` says so. A
+/// Fills a folder under another name and moves it into place. An old folder there is replaced if `is_ours` is true for it. A
 /// link is followed to the folder it leads to.
 ///
 /// # Errors
@@ -47,7 +47,7 @@ pub(crate) fn write_folder(
     let old = aside.path().join("old");
     fs::rename(&place, &old).map_err(refused)?;
     fs::rename(draft.path(), &place).map_err(|source| {
-        // The error that matters is the first one.
+        // The first error is the one that matters.
         let _ = fs::rename(&old, &place);
         refused(source)
     })

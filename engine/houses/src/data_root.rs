@@ -67,13 +67,13 @@ impl DataRoot {
         Ok(parts.join("/"))
     }
 
-    /// Returns whether something exists at `path`, inside the root. What is no regular file is refused when it is read, by a
-    /// sentence that says so.
+    /// Returns whether something exists at `path`, inside the root. Anything but a regular file is refused when it is read, with a
+    /// message that says so.
     pub fn exists(&self, path: &str) -> bool {
         self.folder.join(path).exists()
     }
 
-    /// The names of what lies in the folder at `path`, in order; the first 100,000 that the system gives.
+    /// The names in the folder at `path`, in order; the first 100,000 that the system gives.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`] when a link leads out of the root, [`HousesError::Io`] when it is no folder.
@@ -116,7 +116,7 @@ impl DataRoot {
         read_capped(&full, path, max_bytes)
     }
 
-    /// Reads the file that the user named, which may be a link to anywhere; what it refers to is bounded by [`Self::read`].
+    /// Reads the file that the user named, which may be a link to anywhere; files that it refers to are bounded by [`Self::read`].
     ///
     /// # Errors
     /// [`HousesError::TooLarge`] above `max_bytes`, [`HousesError::Io`] when the system refuses.
@@ -125,7 +125,7 @@ impl DataRoot {
     }
 }
 
-/// A file that the user named, and the folder that bounds what it refers to.
+/// A file that the user named, and the folder that bounds its references.
 pub(crate) struct UserFile {
     pub(crate) root: DataRoot,
     /// The file's name in that folder.
@@ -149,8 +149,7 @@ impl UserFile {
     }
 }
 
-/// Returns whether a file is JSON by its name and holds one word of each list: enough to tell formats apart, before anything is read in
-/// earnest.
+/// Returns whether a file is JSON by its name and holds one word of each list: enough to tell formats apart, before anything is parsed.
 pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
     let is_json = path
         .extension()
@@ -168,7 +167,7 @@ pub(crate) fn is_json_with(path: &Path, lists: &[&[&str]]) -> bool {
     lists.iter().all(|words| words.iter().any(holds))
 }
 
-/// Reads a regular file of at most `max_bytes`; `name` stands in the error.
+/// Reads a regular file of at most `max_bytes`; `name` is its name in errors.
 ///
 /// # Errors
 /// [`HousesError::TooLarge`] and [`HousesError::Io`].

@@ -26,7 +26,7 @@ pub enum HousesError {
         /// The names that exist.
         known: Vec<String>,
     },
-    /// A form of writing that does not exist.
+    /// An export format that does not exist.
     #[error("form is {name:?}; allowed are {known:?}")]
     UnknownForm {
         /// The name as given.
@@ -34,7 +34,7 @@ pub enum HousesError {
         /// The names that exist.
         known: Vec<&'static str>,
     },
-    /// A field of a spec for generated houses that cannot be.
+    /// An impossible field of a spec for generated houses.
     #[error("{field}: found {found}; possible: {possible}")]
     Spec {
         /// The field.
@@ -72,7 +72,7 @@ pub enum HousesError {
         /// The largest number read.
         allowed: u64,
     },
-    /// The text or the bytes are not what the format asks for.
+    /// Text or bytes that are not valid in the format.
     #[error("{at}: {message}")]
     Syntax {
         /// The file and place.

@@ -1,4 +1,4 @@
-//! The list of formats that rest on no other, and the one function that opens a house by a list.
+//! The list of formats that rest on no other, and the function that opens a house by a list.
 
 use std::path::Path;
 use std::time::Instant;
@@ -10,7 +10,7 @@ use crate::error::HousesError;
 use crate::opened::Opened;
 use crate::report::LoadReport;
 
-/// A way to get a house.
+/// A format of houses.
 #[derive(Clone, Copy)]
 pub struct Format {
     /// The format's name.
@@ -128,7 +128,7 @@ pub(crate) fn open_by(formats: &[Format], house: &str, threads: Threads) -> Open
     let start = Instant::now();
     let name = house;
     let (house, report) = (format.open)(house, threads)?;
-    // The report is the caller's; here is only that there is one.
+    // The report is the caller's; here only its existence is logged.
     if let Some(first) = report.warnings().first() {
         tracing::info!(house = name, warnings = report.len(), %first, "house opened with damage");
     }
@@ -151,6 +151,6 @@ fn refuse_irregular(path: &Path) -> Result<(), HousesError> {
     if std::fs::metadata(path).map_or(true, is_known) {
         return Ok(());
     }
-    // Opens nothing: what it is stands in the error.
+    // Opens nothing: the error says what it is.
     read_capped(path, "", 0).map(|_| ())
 }

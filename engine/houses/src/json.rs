@@ -1,4 +1,4 @@
-//! JSON as people save it.
+//! JSON with the byte order marks of editors.
 
 use serde::de::DeserializeOwned;
 
@@ -36,7 +36,7 @@ mod tests {
         assert_eq!(from_slice::<Vec<u8>>(b"\xef\xbb\xbf[1]").unwrap(), [1]);
         let told = |text: &[u8]| from_slice::<Vec<u8>>(text).unwrap_err().to_string();
         assert_eq!(told(b"\xef\xbb\xbf[\n1"), told(b"[\n1"));
-        // One mark is none of the text; a second one is.
+        // One mark is no part of the text; a second one is.
         assert!(from_slice::<Vec<u8>>(b"\xef\xbb\xbf\xef\xbb\xbf[1]").is_err());
     }
 }

@@ -1,4 +1,4 @@
-//! The names that somebody who wrote an unknown one may have meant.
+//! Suggestions for unknown names.
 
 /// Letters of a name that are compared; longer ones are cut.
 const COMPARED: usize = 64;
@@ -24,7 +24,7 @@ pub(crate) fn within(name: &str, known: &str, letters: usize) -> bool {
     known.chars().count() > 2 * letters && distance(name, known) <= letters
 }
 
-/// Returns how many letters must be written, struck or changed to make one name of the other (V. I. Levenshtein, 1966).
+/// Returns the edit distance of two names (V. I. Levenshtein, 1966).
 fn distance(a: &str, b: &str) -> usize {
     let letters = |text: &str| -> Vec<char> {
         let lower = text.chars().flat_map(char::to_lowercase);

@@ -1,4 +1,4 @@
-//! Robots by themselves: which reader a file is for.
+//! Robots by themselves: the choice of the reader by the file.
 
 use std::path::Path;
 

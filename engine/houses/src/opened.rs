@@ -4,5 +4,5 @@ use crate::error::HousesError;
 use crate::report::LoadReport;
 use dwell_scene::House;
 
-/// A house and the damage that was survived on the way to it.
+/// A house with the report of its survived damage.
 pub type Opened = Result<(House, LoadReport), HousesError>;

@@ -2,7 +2,7 @@
 
 use std::fmt::Display;
 
-/// Types of Rust as readers name them, and what they stand for in a file.
+/// Names of Rust's types in readers' messages, and their meanings in a file.
 const TYPES: [(&[&str], &str); 7] = [
     (&["f32", "f64"], "a number"),
     (
@@ -25,7 +25,7 @@ const KINDS: [(&str, &str); 5] = [
 ];
 const EXPECTED: &str = "expected ";
 
-/// The sentence of an error, with what was expected in people's words.
+/// The sentence of an error, with the expected value in plain words.
 pub fn plain_parse_error(error: impl Display) -> String {
     let text = error.to_string();
     let mut told = String::new();
@@ -40,7 +40,7 @@ pub fn plain_parse_error(error: impl Display) -> String {
     told + rest
 }
 
-/// The words for what a text begins with, and how long that is.
+/// The words for the beginning of a text, and its length.
 fn type_in_words(text: &str) -> Option<(&'static str, usize)> {
     let ends =
         |length: usize| !text[length..].starts_with(|c: char| c.is_alphanumeric() || c == '_');

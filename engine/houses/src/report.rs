@@ -69,7 +69,7 @@ impl fmt::Display for FileLocation {
     }
 }
 
-/// One warning: where, what, how often.
+/// One warning: place, kind, count.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Warning {
     /// The first place it was seen.
@@ -96,7 +96,7 @@ impl fmt::Display for Warning {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LoadReport {
     warnings: Vec<Warning>,
-    /// Warnings beyond the ten thousand that are kept.
+    /// Number of warnings beyond the ten thousand that are kept.
     not_kept: u64,
     #[serde(skip)]
     index: BTreeMap<(String, WarningKind), usize>,
@@ -141,7 +141,7 @@ impl LoadReport {
         self.not_kept += other.not_kept;
     }
 
-    /// Takes out the warnings for which `keep` does not hold.
+    /// Removes the warnings for which `keep` does not hold.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Warning) -> bool) {
         let kept = std::mem::take(self);
         self.not_kept = kept.not_kept;
@@ -155,22 +155,22 @@ impl LoadReport {
         &self.warnings
     }
 
-    /// Returns how many distinct warnings there are.
+    /// Returns the number of distinct warnings.
     pub fn len(&self) -> usize {
         self.warnings.len()
     }
 
-    /// Returns whether nothing was wrong.
+    /// Returns whether there are no warnings.
     pub fn is_empty(&self) -> bool {
         self.warnings.is_empty() && self.not_kept == 0
     }
 
-    /// Returns how many warnings were counted but not kept.
+    /// Returns the number of warnings that were counted but not kept.
     pub fn not_kept(&self) -> u64 {
         self.not_kept
     }
 
-    /// Returns how often damage happened for which `is` holds.
+    /// Returns the number of occurrences of damage for which `is` holds.
     pub fn count(&self, is: impl Fn(&WarningKind) -> bool) -> u64 {
         self.warnings
             .iter()
@@ -179,7 +179,7 @@ impl LoadReport {
             .sum()
     }
 
-    /// The names our tables do not know, with how often they are used.
+    /// The unmapped names, with their number of uses.
     pub fn unmapped(&self) -> impl Iterator<Item = (UnmappedKind, &str, u64)> {
         self.warnings.iter().filter_map(|w| match &w.damage {
             WarningKind::Unmapped { what, name } => Some((*what, name.as_str(), w.count)),

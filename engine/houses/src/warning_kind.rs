@@ -1,4 +1,4 @@
-//! Damage that was survived, by kind.
+//! Kinds of survived damage.
 
 use std::fmt;
 
@@ -11,22 +11,22 @@ use serde::{Deserialize, Serialize};
 #[serde(tag = "kind", rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum WarningKind {
-    /// Something that a generated house should have had and has not.
+    /// Something that a generated house should have had but does not.
     #[error("given up: {what}")]
     GivenUp {
         /// The omitted thing.
         what: String,
     },
-    /// A thing that was put outside of every room; it stays there.
+    /// A thing outside of every room; it stays there.
     #[error("stands outside of every room")]
     OutsideRooms,
-    /// A thing that was put into another one; it stays there, and physics pushes them apart.
+    /// A thing inside of another one; it stays there, and physics pushes them apart.
     #[error("stands in {other:?}")]
     Overlap {
         /// The other thing.
         other: String,
     },
-    /// A thing that was put into a wall, or through it; it stays there.
+    /// A thing in a wall, or through it; it stays there.
     #[error("reaches into a wall")]
     InWall,
     /// A mesh file that does not exist; the thing has no shape from it.
@@ -52,7 +52,7 @@ pub enum WarningKind {
     /// A texture that does not exist; the plain colour is used.
     #[error("texture {path:?} does not exist; the plain colour is used")]
     MissingTexture {
-        /// Relative to the data root, or the name an override asked for.
+        /// Relative to the data root, or the name in an override.
         path: String,
     },
     /// A texture that could not be decoded; the plain colour is used.
@@ -63,7 +63,7 @@ pub enum WarningKind {
         /// The reason.
         reason: String,
     },
-    /// An image that ends too early; what is missing of it is grey.
+    /// An image that ends too early; the missing part is grey.
     #[error("texture {path:?} ends too early; what is missing of it is grey")]
     CutTexture {
         /// Relative to the data root.
@@ -130,7 +130,7 @@ pub enum WarningKind {
         /// The consequence.
         consequence: String,
     },
-    /// A matrix that places nothing.
+    /// A matrix without a valid pose.
     #[error("no usable transform ({reason}); the node is left out")]
     BadTransform {
         /// The reason.
@@ -205,7 +205,7 @@ pub enum WarningKind {
         /// The path as written.
         path: String,
     },
-    /// A metadata table that is not there.
+    /// A missing metadata table.
     #[error("table {path:?} does not exist; {consequence}")]
     MissingTable {
         /// Relative to the data root.
@@ -235,7 +235,7 @@ pub enum WarningKind {
         /// The name.
         name: String,
     },
-    /// Something the source cannot state exactly, or that we hold in a simpler form.
+    /// Something that the source cannot state exactly, or that we hold in a simpler form.
     #[error("{what}")]
     Simplified {
         /// The simplified feature, and its replacement.

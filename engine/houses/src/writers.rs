@@ -1,4 +1,4 @@
-//! Forms in which houses are written: the list of them.
+//! The list of export formats.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,15 +8,15 @@ use dwell_scene::House;
 use crate::error::HousesError;
 use crate::export_loss::ExportLoss;
 
-/// A form in which houses are written.
+/// An export format.
 pub struct HouseWriter {
-    /// The form's name.
+    /// The format's name.
     pub name: &'static str,
-    /// Writes a house at a path and says what the form does not hold.
+    /// Writes a house at a path and returns the losses.
     pub write: fn(&House, &Path) -> WriteResult,
-    /// Writes a house under a name below `house/` of a folder of many, which share what they can; returns where it is.
+    /// Writes a house under a name below `house/` of a folder of many, which share files; returns its path.
     pub write_into: fn(&House, &Path, &str) -> FolderWriteResult,
-    /// Writes what stands once in a folder of many: after the last house, or again at any time.
+    /// Writes the common files in a folder of many: after the last house, or again at any time.
     pub finish: fn(&Path) -> Result<(), HousesError>,
 }
 
@@ -26,7 +26,7 @@ pub type WriteResult = Result<Vec<ExportLoss>, HousesError>;
 /// The path of a written house, and the losses of the export.
 pub type FolderWriteResult = Result<(PathBuf, Vec<ExportLoss>), HousesError>;
 
-/// All forms. A new one is one entry here.
+/// All export formats. A new one is one entry here.
 pub fn writers() -> &'static [HouseWriter] {
     &[
         HouseWriter {
@@ -57,7 +57,7 @@ pub fn writers() -> &'static [HouseWriter] {
     ]
 }
 
-/// The form of a name.
+/// The format of a name.
 ///
 /// # Errors
 /// [`HousesError::UnknownForm`] lists what there is.

@@ -1,4 +1,4 @@
-//! XML text into a document, bounded: the parser calls itself for every nested element, and takes memory for every node.
+//! Bounded parsing of XML: the parser calls itself for every nested element, and takes memory for every node.
 
 use dwell_scene::interrupt;
 use roxmltree::{Document, ParsingOptions};
@@ -85,7 +85,7 @@ fn check(text: &str, at: &FileLocation) -> Result<(), HousesError> {
 /// The text between `<` and `>`; `>` in quotes ends nothing.
 #[derive(Default)]
 struct Tag {
-    /// Its bytes; none for a tag without an end.
+    /// Its length in bytes; `None` for a tag without an end.
     length: Option<usize>,
     attributes: u64,
     /// Those of its attributes that declare a namespace.

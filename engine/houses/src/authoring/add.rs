@@ -26,12 +26,12 @@ use crate::formats::{FORMATS, open_by};
 use crate::import::{CategoryRow, category, convex_pieces};
 use crate::name_suggestions::nearest;
 
-/// Longest edge and volume of what a hand can take, m and m³.
+/// Longest edge and volume of things that a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);
-/// Mean density of a thing of which nothing is known, over the box around it, kg/m³.
+/// Mean density of an unknown thing, over the box around it, kg/m³.
 const USUAL_DENSITY_KG_M3: f32 = 300.0;
 
-/// Adds an object; gives back its id.
+/// Adds an object; returns its id.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for what does not exist or cannot be; what readers of files say.
@@ -122,7 +122,7 @@ pub fn kinds() -> BTreeMap<&'static str, &'static str> {
     entries.map(|entry| (entry.kind, entry.category)).collect()
 }
 
-/// Returns who asks for a cup is offered what is one: mugs; then what is spelled alike.
+/// Returns the error for an unknown kind, which offers the kinds of that category (for a cup: mugs), then those of similar spelling.
 fn unknown_kind(kind: &str) -> HousesError {
     let kinds = kinds();
     let is_one = kinds.iter().filter(|(_, category)| **category == kind);

@@ -14,7 +14,7 @@ use crate::report::FileLocation;
 /// Largest distance from a room's floor of a place that counts as in the room, m.
 const ROOM_M: f32 = 0.5;
 
-/// Sets where an agent starts.
+/// Sets the start pose of an agent.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for a room that does not exist, holds no place to stand or does not hold `at`, neither place nor room,

@@ -20,7 +20,7 @@ use crate::import::room_kind;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// The most edits that are made at once.
+/// Largest number of edits that are made at once.
 const MAX_EDITS: usize = 10_000;
 
 /// A house with edits made in it, one after another. Meshes, textures and materials are shared with `house`. Adding never
@@ -106,13 +106,13 @@ fn put(before: &House, after: &House, edits: &[Edit]) -> Vec<ObjectId> {
     new.map(|(id, _)| id).collect()
 }
 
-/// Returns whether a thing is where no room is, in a house that has rooms.
+/// Returns whether a thing lies outside of all rooms, in a house that has rooms.
 fn is_outside(house: &House, state: &State, id: ObjectId) -> bool {
     let bounds = house.object_bounds(state, id);
     !house.rooms.is_empty() && !bounds.is_empty() && house.room_at(bounds.center()).is_none()
 }
 
-/// A house that is being edited, and what was read for it.
+/// A house that is being edited, and the files that were read for it.
 pub(super) struct EditSession<'a> {
     pub(super) data: HouseData,
     pub(super) files: &'a FileAccess,
@@ -178,7 +178,7 @@ impl<'a> EditSession<'a> {
         }
     }
 
-    /// Takes out what edits in a row have named, all at once.
+    /// Removes the objects that edits in a row have named, all at once.
     fn flush_removals(&mut self) {
         if !self.removed.is_empty() {
             remove_objects::remove(&mut self.data, &self.removed);
@@ -203,7 +203,7 @@ impl<'a> EditSession<'a> {
         House::new(self.data.clone()).map_err(HousesError::scene(&FileLocation::file("edits")))
     }
 
-    /// An object, and what stands on it or lies in it where that goes with it.
+    /// An object, and the objects that move with it.
     fn group(
         &mut self,
         id: ObjectId,

@@ -1,4 +1,4 @@
-//! Objects of one house into the tables of another: meshes and textures are shared, equal materials too.
+//! Copies of objects of one house into the tables of another: meshes and textures are shared, equal materials too.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use dwell_scene::{
 
 use super::sound_file;
 
-/// Puts copies of `objects` behind those of `into` and gives back their ids. Storey and room are left for the caller to say.
+/// Appends copies of `objects` to `into` and returns their ids. Storey and room are left to the caller.
 pub(super) fn graft(into: &mut HouseData, from: &HouseData, objects: &[ObjectId]) -> Vec<ObjectId> {
     let mut graft = ObjectCopier {
         into,
@@ -125,7 +125,7 @@ pub(super) fn material_of(
     mut material: Material,
 ) -> MaterialId {
     let base = material.name.clone();
-    // Numbers by which the same name is told apart already.
+    // Numbers by which equal names are distinguished already.
     let number_of = |name: &str| -> Option<u64> {
         match name.strip_prefix(&base)? {
             "" => Some(1),

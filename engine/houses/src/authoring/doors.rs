@@ -8,7 +8,7 @@ use super::edit_errors::{fault, unknown, within};
 use super::edits::SetDoor;
 use crate::error::HousesError;
 
-/// Sets the start of one of an object's `joints`, or of all that open.
+/// Sets the initial opening of one of an object's `joints`, or of all that open.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an object that has nothing that opens.

@@ -7,10 +7,10 @@ use dwell_scene::material::{Substance, library};
 use crate::error::HousesError;
 use crate::name_suggestions::nearest;
 
-/// Names that are offered in place of an unknown one.
+/// Largest number of names that are offered in place of an unknown one.
 pub(super) const OFFERED: usize = 6;
 
-/// A field that cannot be.
+/// The error of an impossible field.
 pub(super) fn fault(
     field: impl Display,
     found: impl Display,
@@ -23,7 +23,7 @@ pub(super) fn fault(
     }
 }
 
-/// The same error, its field inside of `place`.
+/// Prefixes the error's field with `place`.
 pub(super) fn inside(place: impl Display) -> impl FnOnce(HousesError) -> HousesError {
     move |error| match error {
         HousesError::Spec {
@@ -35,7 +35,7 @@ pub(super) fn inside(place: impl Display) -> impl FnOnce(HousesError) -> HousesE
     }
 }
 
-/// A name that nothing has; offers the nearest of those that exist.
+/// The error of an unknown name; offers the nearest of those that exist.
 pub(super) fn unknown<'a>(
     field: impl Display,
     name: &str,
@@ -56,7 +56,7 @@ pub(super) fn unknown<'a>(
     fault(field, format_args!("{name:?}"), possible)
 }
 
-/// A number within `[low, high]`.
+/// Checks a number within `[low, high]`.
 pub(super) fn within(
     field: &str,
     value: f32,
@@ -73,7 +73,7 @@ pub(super) fn within(
     ))
 }
 
-/// A place of the scene, m.
+/// Checks a position in the scene, m.
 pub(super) fn point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesError> {
     let near = |x: &f32| x.abs() <= 32_768.0;
     if value.iter().all(near) {
@@ -87,7 +87,7 @@ pub(super) fn point(field: &str, value: [f32; 3]) -> Result<glam::Vec3, HousesEr
     ))
 }
 
-/// A row of the materials table.
+/// Looks up a row of the materials table.
 pub(super) fn substance(field: &str, name: &str) -> Result<&'static Substance, HousesError> {
     let known = || library().iter().map(|substance| substance.name.as_str());
     library()

@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 pub enum Edit {
     /// Adds an object.
     Add(AddObject),
-    /// Takes an object out.
+    /// Removes an object.
     Remove(RemoveObject),
-    /// Puts an object elsewhere.
+    /// Moves an object.
     Move(MoveObject),
-    /// Makes a surface of something else, or gives it another colour.
+    /// Changes the substance or the colour of a surface.
     ReMaterial(ChangeMaterial),
     /// Adds a source of sound.
     AddEmitter(AddEmitter),
@@ -21,18 +21,18 @@ pub enum Edit {
     AddLamp(AddLamp),
     /// Adds a robot.
     AddRobot(AddRobot),
-    /// Says where an agent starts.
+    /// Sets the start pose of an agent.
     AgentStart(SetAgentStart),
-    /// Sets how far a door, drawer or lid is open at the start.
+    /// Sets the initial opening of a door, drawer or lid.
     SetDoor(SetDoor),
-    /// Says what an object is.
+    /// Sets attributes of an object.
     Describe(SetAttributes),
-    /// Gives another name.
+    /// Renames something.
     Rename(Rename),
 }
 
 impl Edit {
-    /// Returns what it is called in JSON.
+    /// Returns its name in JSON.
     pub(super) fn word(&self) -> &'static str {
         match self {
             Self::Add(_) => "add",
@@ -77,18 +77,18 @@ pub struct AddObject {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum ObjectSource {
-    /// A thing of the catalogue that generated houses are furnished from.
+    /// A model of the catalogue that generated houses are furnished from.
     Catalogue {
         /// `"sofa"`, `"dining_chair"`, ...
         kind: String,
         /// The style; `None`: one for training, drawn by the seed.
         #[serde(default)]
         style: Option<String>,
-        /// Draws size and colours.
+        /// The seed of size and colours.
         #[serde(default)]
         seed: u64,
     },
-    /// A mesh file: `.glb`, `.gltf` or `.obj`, all of it one rigid thing.
+    /// A mesh file: `.glb`, `.gltf` or `.obj`, all of it one rigid object.
     File {
         /// The file; in a plan file, a path below the folder of the plan.
         path: String,
@@ -135,7 +135,7 @@ pub enum UpAxis {
 pub struct Placement {
     /// Target position of its anchor, m.
     pub at: Option<[f32; 3]>,
-    /// The object on whose upper side it goes: at `at`, whose height then does not count, else in the middle.
+    /// The object on whose upper side it is placed: at `at`, whose height then does not count, else in the middle.
     pub on: Option<String>,
     /// Heading, degrees to the left; `None`: unchanged.
     pub yaw_deg: Option<f32>,
@@ -188,7 +188,7 @@ pub struct SurfaceStyle {
     pub srgb: Option<[u8; 3]>,
     /// The fraction of light that does not pass, 0 to 1.
     pub opacity: Option<f32>,
-    /// As in glTF 2.0, 0 to 1.
+    /// Roughness as in glTF 2.0, 0 to 1.
     pub roughness: Option<f32>,
     /// Another substance keeps colour, image, opacity and roughness.
     pub keep_look: bool,
@@ -215,7 +215,7 @@ pub struct SoundSpec {
     pub start_s: f32,
 }
 
-/// Takes an object out.
+/// Removes an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RemoveObject {
@@ -226,7 +226,7 @@ pub struct RemoveObject {
     pub with_things: bool,
 }
 
-/// Puts an object elsewhere.
+/// Moves an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MoveObject {
@@ -250,7 +250,7 @@ const fn yes() -> bool {
     true
 }
 
-/// Makes surfaces of something else.
+/// Changes the substance or the colour of surfaces.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ChangeMaterial {
@@ -303,7 +303,7 @@ pub enum RoomSide {
 pub struct AddEmitter {
     /// The sound that it emits.
     pub sound: SoundSpec,
-    /// The object that sounds, from its middle; it starts switched on.
+    /// The object that emits it, from its middle; it starts switched on.
     #[serde(default)]
     pub object: Option<String>,
     /// A place in the house, m: a small disc is put right below it.
@@ -318,7 +318,7 @@ pub struct AddEmitter {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AddLamp {
-    /// The object that shines, from its middle; `None`: a new lamp.
+    /// The object that emits light, from its middle; `None`: a new lamp.
     #[serde(default)]
     pub object: Option<String>,
     /// The kind of the new lamp in the catalogue.
@@ -369,7 +369,7 @@ pub struct AddRobot {
     pub fixed_base: Option<bool>,
 }
 
-/// Says where an agent starts.
+/// Sets the start pose of an agent.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SetAgentStart {
@@ -383,7 +383,7 @@ pub struct SetAgentStart {
     pub agent: Option<u32>,
 }
 
-/// Sets how far something is open at the start.
+/// Sets the initial opening of something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetDoor {
@@ -396,7 +396,7 @@ pub struct SetDoor {
     pub joint: Option<String>,
 }
 
-/// Says what an object is.
+/// Sets attributes of an object.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetAttributes {

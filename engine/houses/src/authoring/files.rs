@@ -17,7 +17,7 @@ pub enum FileAccess {
 }
 
 impl FileAccess {
-    /// The path that a name means.
+    /// The path of a name.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`].
@@ -41,7 +41,7 @@ impl FileAccess {
         Ok(full)
     }
 
-    /// The HOUSE that a string means: paths as of [`FileAccess::path`]; no plan rests on another plan.
+    /// The HOUSE of a string: paths as of [`FileAccess::path`]; no plan rests on another plan.
     ///
     /// # Errors
     /// [`HousesError::PathLeavesRoot`], and [`HousesError::Spec`] for a plan.

@@ -17,7 +17,7 @@ use super::edits::{AddEmitter, AddLamp, Placement, SoundSpec};
 use super::sound_file;
 use crate::error::HousesError;
 
-/// Edge and height of the disc below a source of sound at a place, and how far below it lies, m.
+/// Edge and height of the disc below a source of sound at a place, and its distance below, m.
 const DISC_M: [f32; 3] = [0.06, 0.02, 0.01];
 /// Colour of lamps, linear: about 3,000 K.
 const WARM_WHITE: [f32; 3] = [1.0, 0.86, 0.68];

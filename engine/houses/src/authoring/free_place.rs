@@ -14,7 +14,7 @@ const EVEN_M: f32 = 0.01;
 const INSET: f32 = 0.1;
 /// Clearance between objects, m.
 const APART_M: f32 = 0.01;
-/// More than that.
+/// Horizontal clearance beyond which nothing is in the way, m.
 const REACH_M: f32 = 0.1;
 
 /// The surfaces of an object.
@@ -41,12 +41,12 @@ pub(super) struct PlacementSearch<'a> {
     bounds: Aabb,
     /// The thing's box around its anchor, m.
     around: &'a Aabb,
-    /// Boxes of what else may be in the way, m.
+    /// Boxes of other objects that may be in the way, m.
     others: Vec<Aabb>,
 }
 
 impl<'a> PlacementSearch<'a> {
-    /// On `carrier`, for `thing`, which has the box `around` its anchor; `boxes`: those around all objects, m.
+    /// A search on `carrier` for `thing`, which has the box `around` its anchor; `boxes`: those around all objects, m.
     pub(super) fn on(
         data: &HouseData,
         boxes: &[Aabb],
@@ -55,14 +55,14 @@ impl<'a> PlacementSearch<'a> {
         around: &'a Aabb,
     ) -> Self {
         let bounds = boxes[carrier.index()];
-        // Whatever the thing may reach with its anchor over the carrier.
+        // The box that the thing may reach with its anchor over the carrier.
         let reach = Aabb {
             min: bounds.min + around.min - REACH_M,
             max: bounds.max + around.max + REACH_M,
         };
         let others = data.objects.ids().zip(boxes);
         let others = others.filter(|(id, b)| *id != carrier && *id != thing && !b.is_empty());
-        // A building is around all that stands in it.
+        // A building contains all that stands in it.
         let others = others.filter(|(_, b)| b.intersects(&reach) && !b.encloses(&bounds));
         Self {
             top: SupportSurface::of(data, carrier),
@@ -72,14 +72,14 @@ impl<'a> PlacementSearch<'a> {
         }
     }
 
-    /// The free place nearest to the carrier's middle where the thing stands on even ground; for what is larger than all even ground,
+    /// The free place nearest to the carrier's middle where the thing stands on even ground; for one that is larger than all even ground,
     /// the one nearest where its middle is carried.
     pub(super) fn find(&self) -> Option<Vec3> {
         let even = self.places().find(|place| self.is_even(*place));
         even.or_else(|| self.places().next())
     }
 
-    /// Returns where the thing meets nothing, the nearest to the carrier's middle first.
+    /// Returns the places without overlap, the nearest to the carrier's middle first.
     fn places(&self) -> impl Iterator<Item = Vec3> {
         let (middle, size) = (self.bounds.center(), self.bounds.size());
         let step = |size: f32| (size / MOST_STEPS).max(STEP_M);
@@ -104,7 +104,7 @@ impl<'a> PlacementSearch<'a> {
             min: place + self.around.min,
             max: place + self.around.max,
         };
-        // It touches what it stands on.
+        // It touches its carrier.
         let low = Vec3::new(own.min.x - APART_M, own.min.y + 1e-3, own.min.z - APART_M);
         let high = Vec3::new(own.max.x + APART_M, own.max.y, own.max.z + APART_M);
         let mut others = self.others.iter();

@@ -43,12 +43,12 @@ const fn quarter() -> f32 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HingeAxis {
-    /// To the side: lids and flaps.
+    /// Horizontal, along x: lids and flaps.
     X,
-    /// Up: doors.
+    /// Vertical: doors.
     #[default]
     Y,
-    /// To the front or the back: lids and flaps.
+    /// Horizontal, along z: lids and flaps.
     Z,
 }
 
@@ -98,7 +98,7 @@ impl BoxSide {
     }
 }
 
-/// Hangs an object of one rigid part on a hinge; it stays where it is.
+/// Attaches an object of one rigid part to a hinge; it stays where it is.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an object of several parts, a hinge without place or with two, on a side that its axis runs
@@ -141,7 +141,7 @@ pub(super) fn hang(
         let possible = "another angle than `closed_deg`";
         return Err(fault("hinge.open_deg", hinge.open_deg, possible));
     }
-    // What moves has a mass and convex pieces, as anything loose.
+    // A moving part has a mass and convex pieces, as any movable object.
     let traits = ObjectAttributes {
         mobility: Some(Mobility::Movable),
         ..ObjectAttributes::default()

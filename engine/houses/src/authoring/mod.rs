@@ -1,7 +1,7 @@
-//! Houses made and changed by people: a building from a plan, edits of any house, and maps of foreign names.
+//! Authoring of houses: a building from a plan, edits of any house, and maps of foreign names.
 //!
-//! Everything here is plain data first ([`HousePlan`], [`Edit`], [`NameMapping`]), which Python, files and code share. What comes out is a
-//! checked [`House`](dwell_scene::House) that shares meshes, textures and materials with what it was made from.
+//! Everything here is plain data first ([`HousePlan`], [`Edit`], [`NameMapping`]), which Python, files and code share. The result is a
+//! checked [`House`](dwell_scene::House) that shares meshes, textures and materials with its source.
 //! `docs/authoring.md` is the tutorial.
 
 mod add;

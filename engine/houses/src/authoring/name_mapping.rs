@@ -1,4 +1,4 @@
-//! A map file: what foreign names of materials, nodes and rooms mean. TOML; `docs/authoring.md` lists its fields.
+//! Map files: the meanings of foreign names of materials, nodes and rooms. TOML; `docs/authoring.md` lists the fields.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::{self, Write as _};
@@ -22,7 +22,7 @@ use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// The most patterns, and letters of one.
+/// Largest number of patterns, and of letters of one.
 const MOST: [usize; 2] = [20_000, 256];
 /// Largest gap between a thing and its support, m.
 const GAP_M: f32 = 0.03;
@@ -78,9 +78,9 @@ pub struct NodeMapping {
     pub density_kg_m3: Option<f32>,
     /// True if a hand can take it.
     pub pickable: Option<bool>,
-    /// It is no object but a piece of the building.
+    /// The kind of structure, for a piece of the building instead of an object.
     pub structure: Option<StructureKind>,
-    /// It opens about this hinge; a thing that nobody knows is a door then.
+    /// The hinge about which it opens; an unknown object counts as a door then.
     pub hinge: Option<NodeHinge>,
 }
 
@@ -127,7 +127,7 @@ word_or_table!(
 );
 
 impl NameMapping {
-    /// Reads a map from TOML; `at` stands in errors.
+    /// Reads a map from TOML; `at` is the place in errors.
     ///
     /// # Errors
     /// [`HousesError::Syntax`] for what is no such TOML, [`HousesError::TooLarge`].
@@ -159,7 +159,7 @@ impl NameMapping {
         }
     }
 
-    /// Refuses numbers that are none, also in rows that no name of the house fits.
+    /// Refuses invalid numbers, also in rows that no name of the house fits.
     fn check_numbers(&self, at: &FileLocation) -> Result<(), HousesError> {
         let materials = self
             .materials
@@ -207,7 +207,7 @@ impl NameMapping {
         Self::parse(text, &at)
     }
 
-    /// The house with its foreign names understood; what the map explains leaves the report.
+    /// The house with its foreign names mapped; names that the map explains leave the report.
     ///
     /// # Errors
     /// [`HousesError::Spec`] names the pattern and the field, what was found and what is possible; [`HousesError::Scene`].
@@ -385,7 +385,7 @@ fn letters(text: &str) -> Vec<char> {
 /// Returns whether a name fits a pattern: `*` stands for any letters, `?` for one.
 fn fits(pattern: &[char], name: &[char]) -> bool {
     let (mut p, mut n) = (0, 0);
-    // After the last star: where the pattern goes on, and what of the name the star has taken.
+    // After the last star: the position in the pattern, and the part of the name that the star has taken.
     let mut star: Option<(usize, usize)> = None;
     while n < name.len() {
         match pattern.get(p) {
@@ -409,7 +409,7 @@ fn fits(pattern: &[char], name: &[char]) -> bool {
     pattern[p..].iter().all(|c| *c == '*')
 }
 
-/// Movable, for a thing of which nothing was known, whose category moves, and which stands on something.
+/// Movable, for an unknown object whose category moves, and which stands on something.
 fn usual_mobility(data: &HouseData, id: ObjectId, unknown: bool, name: &str) -> Option<Mobility> {
     let object = &data.objects[id];
     let row = category([name])?;
@@ -436,7 +436,7 @@ fn stands(data: &HouseData, id: ObjectId) -> bool {
             })
 }
 
-/// Makes a piece of the building of an object; the object is left for the caller to take out.
+/// Turns an object into a piece of the building; the object is left for the caller to remove.
 fn becomes_structure(
     data: &mut HouseData,
     id: ObjectId,
@@ -468,7 +468,7 @@ fn becomes_structure(
     Ok(())
 }
 
-/// A map file with everything that stayed unmapped, to be filled in; as it is, it changes nothing.
+/// A map file with all unmapped names, to be filled in; as it is, it changes nothing.
 pub fn map_template(house: &str, names: &UnmappedNames) -> String {
     let mut text = format!(
         "# What the names of {} mean: `dwell info HOUSE --map FILE`. Patterns may hold * and ?. docs/authoring.md lists the fields.\n",

@@ -10,19 +10,19 @@ use super::place::world_box;
 #[derive(Default)]
 pub(super) struct ObjectIndex {
     ids: BTreeMap<String, ObjectId>,
-    /// By base: names with lower numbers are taken.
+    /// The next number of each base: names with lower numbers are taken.
     numbers: BTreeMap<String, u64>,
-    /// Of the first objects. Shape (object,).
+    /// Boxes of the first objects. Shape (object,).
     boxes: Vec<Aabb>,
     /// Objects whose boxes are out of date.
     moved: BTreeSet<ObjectId>,
     joints: BTreeMap<ObjectId, Vec<JointId>>,
-    /// Objects and joints that were taken in.
+    /// Numbers of objects and joints that are indexed.
     counted: [usize; 2],
 }
 
 impl ObjectIndex {
-    /// Takes in what has been added.
+    /// Adds the new objects and joints.
     pub(super) fn follow(&mut self, data: &HouseData) {
         let [objects, joints] = self.counted;
         let new = data.objects.as_slice().iter().enumerate().skip(objects);
@@ -37,17 +37,17 @@ impl ObjectIndex {
         self.counted = [data.objects.len(), data.joints.len()];
     }
 
-    /// Begins anew: names or numbers of objects have changed.
+    /// Clears the index: names or numbers of objects have changed.
     pub(super) fn forget(&mut self) {
         *self = Self::default();
     }
 
-    /// Some objects stand elsewhere or have another form.
+    /// Marks objects that have moved or have another form.
     pub(super) fn moved(&mut self, ids: impl IntoIterator<Item = ObjectId>) {
         self.moved.extend(ids);
     }
 
-    /// The object of a name, of those that were there when the edit began.
+    /// The object of a name, of those that existed when the edit began.
     pub(super) fn find(&self, name: &str) -> Option<ObjectId> {
         self.ids.get(name).copied()
     }

@@ -1,4 +1,4 @@
-//! A plan: what a house is made of, as plain data and as a file `NAME.plan.json`.
+//! Plans of houses, as plain data and as files `NAME.plan.json`.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ use crate::report::{FileLocation, LoadReport};
 const FORMAT: &str = "dwell-plan";
 /// The version that is written and read.
 const VERSION: u32 = 1;
-/// The end of a plan file's name.
+/// Ending of a plan file's name.
 const ENDING: &str = ".plan.json";
 
 /// The plan of a house: a building or another house, and edits, one after another.
@@ -34,7 +34,7 @@ pub struct HousePlan {
     pub format: String,
     /// 1.
     pub version: u32,
-    /// The house's name; empty: that of the file or of the house it rests on.
+    /// The house's name; empty: that of the file or of the house that it is based on.
     pub name: String,
     /// A HOUSE that is edited.
     pub house: Option<String>,
@@ -85,7 +85,7 @@ fn several_in_one(text: &[u8], at: &FileLocation) -> Option<HousesError> {
 }
 
 impl HousePlan {
-    /// Reads a plan from JSON; `at` stands in errors.
+    /// Reads a plan from JSON; `at` is the place in errors.
     ///
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
@@ -110,7 +110,7 @@ impl HousePlan {
     }
 }
 
-/// Makes the house of a plan.
+/// Builds the house of a plan.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names storey and room, or the edit, and the field, what was found and what is possible; otherwise

@@ -11,11 +11,12 @@ use super::place::{points, triangles, world_box};
 
 /// Smallest penetration depth that is reported, m: less counts as touch.
 const DEEP_M: f32 = 0.01;
-/// Points of a thing that are looked at, at most.
+/// Largest number of points of a thing that are tested.
 const LOOKED_AT: usize = 64;
 /// Largest number of things with which one is compared.
 const MOST_COMPARED: usize = 32;
-/// Ways out: what is inside is left through a surface an odd number of times on each of them. Askew, so that they meet no edge.
+/// Directions of test rays: a point inside is left through a surface an odd number of times on each of them. Askew, so that they meet no
+/// edge.
 const WAYS: [Vec3; 6] = [
     Vec3::new(0.98, 0.13, 0.15),
     Vec3::new(-0.97, 0.17, -0.16),
@@ -25,8 +26,8 @@ const WAYS: [Vec3; 6] = [
     Vec3::new(-0.13, 0.15, -0.98),
 ];
 
-/// The things that any of `put` is in, or that are in it: pairs, the one that was put first. Of more than 32 things in whose boxes one
-/// reaches, it is compared with those about its middle.
+/// The overlaps of any of `put` with other things: pairs, the added or moved one first. A thing whose box reaches into more than 32 others
+/// is compared with those about its middle.
 pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, ObjectId)> {
     let data = house.data();
     let boxes = data.objects.ids().map(|id| {
@@ -37,7 +38,7 @@ pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, Object
     let bounds = |id: ObjectId| tree.get(id.index()).copied().unwrap_or_default();
     let mut found = Vec::new();
     let mut compared: BTreeSet<[ObjectId; 2]> = BTreeSet::new();
-    // What came later was put into what was there.
+    // Later things were put into earlier ones.
     for one in put.iter().rev() {
         let own = bounds(*one);
         let others = tree.nearest(&own, MOST_COMPARED, |other| {
@@ -46,7 +47,7 @@ pub(super) fn overlaps(house: &House, put: &[ObjectId]) -> Vec<(ObjectId, Object
             let deep = Vec3::splat(DEEP_M);
             let near =
                 own.min.cmplt(theirs.max - deep).all() && own.max.cmpgt(theirs.min + deep).all();
-            // A building is around what stands in it.
+            // A building contains all that stands in it.
             let structure = || theirs.encloses(&own) && is_around_rooms(house, &theirs);
             other != *one && near && !structure()
         });
@@ -91,7 +92,7 @@ fn any_inside(house: &House, one: ObjectId, other: ObjectId) -> bool {
     })
 }
 
-/// Returns how many triangles a ray meets.
+/// Returns the number of triangles that a ray meets.
 ///
 /// # Source
 /// T. Moeller, B. Trumbore, *Fast, minimum storage ray/triangle intersection*, J. Graphics Tools 2(1), 21 (1997).
@@ -112,7 +113,7 @@ fn crossings(triangles: &[[Vec3; 3]], from: Vec3, way: Vec3) -> usize {
     triangles.iter().filter(meets).count()
 }
 
-/// Returns whether a corner of what a thing stands on is in no room, though its middle is: in a wall, or through it.
+/// Returns whether a corner of a thing's footprint lies in no room, though its middle does: in a wall, or through it.
 pub(super) fn reaches_into_a_wall(house: &House, object: ObjectId) -> bool {
     let bounds = world_box(house.data(), object);
     let middle = bounds.center();

@@ -21,7 +21,7 @@ const ROOM_M: f32 = 0.3;
 /// Largest number of pairs that are compared to find what moves with an object.
 const MOST_PAIRS: usize = 10_000;
 
-/// The boxes that physics and eyes know of a part, as points in the world.
+/// The corners of a part's boxes for physics and rendering, in the world.
 pub(super) fn points(data: &HouseData, part: PartId) -> impl Iterator<Item = Vec3> {
     let part = &data.parts[part];
     let map = part.world_from_part.to_affine() * part.part_from_mesh;
@@ -46,17 +46,17 @@ pub(super) fn world_box(data: &HouseData, object: ObjectId) -> Aabb {
     Aabb::from_points(parts.flat_map(|part| points(data, part)))
 }
 
-/// A turn about the vertical.
+/// A rotation about the vertical.
 fn upright(yaw_rad: f32) -> Quat {
     space::rotation_from_yaw_pitch(yaw_rad, 0.0)
 }
 
-/// Returns where a pose faces, rad.
+/// Returns the heading of a pose, rad.
 fn yaw_of(pose: &Pose) -> f32 {
     space::yaw_from_forward(pose.rotation * Vec3::NEG_Z)
 }
 
-/// A point of an object, seen from its root as if that faced -Z.
+/// An anchor of an object, in the frame of its root as if that faced -Z.
 fn anchor(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     let root = data.parts[data.objects[object].first_part].world_from_part;
     let back = upright(-yaw_of(&root));
@@ -77,13 +77,13 @@ fn anchor(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     }
 }
 
-/// Returns where an object's anchor is, m.
+/// Returns the position of an object's anchor, m.
 pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor) -> Vec3 {
     let root = data.parts[data.objects[object].first_part].world_from_part;
     root.position + upright(yaw_of(&root)) * anchor(data, object, which)
 }
 
-/// Shifts and turns objects, each part and each joint that hangs on the house.
+/// Moves objects, each part and each joint that hangs on the house.
 pub(super) fn carry(desk: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
     desk.object_index.moved(objects.iter().copied());
     for object in objects {
@@ -102,7 +102,7 @@ pub(super) fn carry(desk: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, ch
     }
 }
 
-/// The movement that puts an object's anchor somewhere and turns it there; what `placing` leaves open stays.
+/// The movement that puts an object's anchor at a place with a heading; values that `placing` leaves open stay.
 pub(super) fn movement(
     desk: &mut EditSession<'_>,
     object: ObjectId,
@@ -119,7 +119,7 @@ pub(super) fn movement(
         None => old_yaw,
     };
     let old = root.position + upright(old_yaw) * own;
-    // An exact turn by nothing, so that what does not turn keeps its bits.
+    // An exact identity rotation, so that unrotated objects keep their bits.
     let turn = if placing.yaw_deg.is_some() {
         upright(yaw - old_yaw)
     } else {
@@ -134,7 +134,7 @@ pub(super) fn movement(
     Ok(Pose::new(target - turn * old, turn))
 }
 
-/// Returns where the anchor goes; `None`: it stays. `around`: the box of the thing around its anchor as it will be turned, m.
+/// Returns the target of the anchor; `None`: it stays. `around`: the box of the thing around its anchor after the rotation, m.
 fn target(
     desk: &mut EditSession<'_>,
     object: ObjectId,
@@ -183,7 +183,7 @@ fn target(
     Ok(Some(Vec3::new(x, top, z)))
 }
 
-/// The height of a triangle on an upright line that meets it.
+/// The height of a triangle on a vertical line that meets it.
 pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
     let flat = |p: Vec3| Vec2::new(p.x, p.z);
     let (u, v, w) = (flat(b) - flat(a), flat(c) - flat(a), xz - flat(a));
@@ -196,7 +196,7 @@ pub(super) fn height_over([a, b, c]: [Vec3; 3], xz: Vec2) -> Option<f32> {
     meets.then_some(a.y + s * (b.y - a.y) + t * (c.y - a.y))
 }
 
-/// An object and what stands on it or lies in it, directly or on one another. `boxes`: those around all objects, m.
+/// An object and all that stands on it or lies in it, directly or on one another. `boxes`: those around all objects, m.
 ///
 /// # Errors
 /// [`HousesError::Spec`] where more than 10,000 pairs of things lie in each other's boxes.
@@ -261,7 +261,7 @@ fn touches(data: &HouseData, carrier: ObjectId, own: &Aabb) -> bool {
     })
 }
 
-/// Returns whether an object has a surface at about this height on an upright line.
+/// Returns whether an object has a surface at about this height on a vertical line.
 fn surface_near(data: &HouseData, object: ObjectId, xz: Vec2, height_m: f32) -> bool {
     let mut heights = triangles(data, object)
         .into_iter()

@@ -1,4 +1,4 @@
-//! Objects out of the tables of a house, with everything that only they used.
+//! Removal of objects from the tables of a house, with everything that only they used.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use dwell_scene::{
     HouseData, Id, IdVec, JointId, MaterialId, MeshId, ObjectId, PartId, SoundFileId, TextureId,
 };
 
-/// New ids of a table from which some entries are taken: `None` for those.
+/// New ids of a table from which entries are removed: `None` for those.
 struct IndexRemap(Vec<Option<u32>>);
 
 impl IndexRemap {
@@ -25,7 +25,7 @@ impl IndexRemap {
         self.0.get(index).copied().flatten().is_some()
     }
 
-    /// The new id; what is gone has none, and nothing that stays asks for it.
+    /// The new id; removed entries have none, and nothing that stays refers to them.
     fn renumbered<I: Id>(&self, id: I) -> I {
         let new = self.0.get(id.index()).copied().flatten();
         I::from_index(new.unwrap_or_default() as usize)
@@ -37,7 +37,7 @@ impl IndexRemap {
     }
 }
 
-/// Takes objects out. Those behind them move up; meshes, materials and textures that only they used go too.
+/// Removes objects. Those behind them move up; meshes, materials and textures that only they used are removed too.
 pub(super) fn remove(data: &mut HouseData, removed: &BTreeSet<ObjectId>) {
     let before = UsedAssets::of(data, |object| removed.contains(&object), false);
     let objects = IndexRemap::of(data.objects.len(), |k| {
@@ -90,7 +90,7 @@ fn sound_files(data: &HouseData) -> BTreeSet<SoundFileId> {
     emitters.filter_map(|emitter| emitter.sound_file).collect()
 }
 
-/// Takes out the sound files that were named before (`once`) and are not any more.
+/// Removes the sound files that were named before (`once`) and are not any more.
 fn drop_sounds(data: &mut HouseData, once: &BTreeSet<SoundFileId>) {
     let now = sound_files(data);
     let kept = IndexRemap::of(data.sound_files.len(), |k| {
@@ -103,7 +103,7 @@ fn drop_sounds(data: &mut HouseData, once: &BTreeSet<SoundFileId>) {
     }
 }
 
-/// Takes out what was used before (`once`) and is not any more.
+/// Removes entries that were used before (`once`) and are not any more.
 fn drop_unused(data: &mut HouseData, once: &UsedAssets) {
     let now = UsedAssets::of(data, |_| true, true);
     let unused = |once: &BTreeSet<u32>, now: &BTreeSet<u32>, k: usize| {

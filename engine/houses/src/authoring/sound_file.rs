@@ -1,4 +1,4 @@
-//! Sound files of the user's own. The house carries them as they are; what plays them decodes them.
+//! Sound files of the user. The house carries them as they are; playback decodes them.
 
 use std::sync::Arc;
 

@@ -18,7 +18,7 @@ use crate::error::HousesError;
 
 /// Distance in front of a face at which the room is looked up, m.
 const BEFORE_M: f32 = 0.02;
-/// The cosine from which on a face is level.
+/// Cosine from which on a face is level.
 const LEVEL: f32 = 0.7;
 
 /// The room of a name.
@@ -34,7 +34,7 @@ pub(super) fn room(data: &HouseData, field: &str, name: &str) -> Result<RoomId, 
     })
 }
 
-/// Makes surfaces of something else.
+/// Changes the look of surfaces.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for surfaces, substances or numbers that are not there.
@@ -81,7 +81,7 @@ pub(super) fn change_material(
     }
 }
 
-/// Changes a material wherever it is; its name stays.
+/// Changes a material everywhere; its name stays.
 ///
 /// # Errors
 /// [`HousesError::Spec`] for an unknown substance or a number out of range.
@@ -139,7 +139,7 @@ fn changed(old: &Material, look: &SurfaceStyle) -> Result<Material, HousesError>
     Err(fault("substance", "nothing", possible))
 }
 
-/// Returns what materials become.
+/// Returns the new materials of old ones.
 fn repainted(
     data: &mut HouseData,
     old: &[MaterialId],
@@ -226,7 +226,7 @@ fn paint_room(
         return Err(fault("of.room.side", found, "a side that the building has"));
     }
     remove_objects::drop_materials(data, &materials);
-    // One after the other: each that goes moves those behind it.
+    // One after the other: each removal moves those behind it.
     meshes.sort_unstable_by(|a, b| b.cmp(a));
     for mesh in meshes {
         remove_objects::drop_mesh(data, mesh);

@@ -1,4 +1,4 @@
-//! Foreign names that nothing is known of, with how much of the house they are.
+//! Unmapped foreign names, with their share of the house.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::report::LoadReport;
 use crate::warning_kind::UnmappedKind;
 
-/// A name.
+/// An unmapped name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnmappedName {
     /// The name, as in the file.
@@ -19,11 +19,11 @@ pub struct UnmappedName {
     pub count: usize,
     /// The area of those surfaces, of the objects' surfaces, or of the floors, m².
     pub area_m2: f64,
-    /// The substance that surfaces were taken for; empty for others.
+    /// The substance that surfaces count as; empty for others.
     pub taken_for: String,
 }
 
-/// Names that nothing is known of, those with the largest area first.
+/// The unmapped names, those with the largest area first.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct UnmappedNames {
     /// Materials, by their image where they have one.
@@ -34,8 +34,8 @@ pub struct UnmappedNames {
     pub rooms: Vec<UnmappedName>,
 }
 
-/// Returns what stayed unmapped of a house: materials of the default substance and those that its reader reported, objects without a
-/// category, and rooms that nobody has a word for.
+/// Returns the unmapped names of a house: materials of the default substance and those that its reader reported, objects without a
+/// category, and rooms without a known word.
 pub fn unmapped(house: &House, report: &LoadReport) -> UnmappedNames {
     let reported = |what: UnmappedKind| {
         let names = report.unmapped().filter(move |(kind, _, _)| *kind == what);

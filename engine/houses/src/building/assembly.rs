@@ -1,4 +1,4 @@
-//! Puts models into the tables of a house.
+//! Assembly of models into the tables of a house.
 
 use crate::import::{UniqueNames, category};
 use dwell_furniture::finishes::Finish;
@@ -24,7 +24,7 @@ const HINGE_DAMPING: f32 = 0.4;
 /// Viscous damping of slides, N·s/m.
 const SLIDE_DAMPING: f32 = 8.0;
 
-/// A model that the house knows.
+/// A model that is part of the house.
 #[derive(Clone, Debug)]
 pub(crate) struct ModelInstances {
     pub(crate) model: Arc<Model>,
@@ -40,14 +40,14 @@ pub(crate) struct HouseAssembly {
     pub(crate) level: LevelId,
     patterns: Vec<TexturePattern>,
     finishes: Vec<(Finish, MaterialId)>,
-    /// By the address of their models, which they keep alive.
+    /// Models by address, which they keep alive.
     kinds: BTreeMap<usize, ModelInstances>,
     material_names: UniqueNames,
     object_names: UniqueNames,
 }
 
 impl HouseAssembly {
-    /// An empty house without a storey; `source` names what makes it and its version.
+    /// An empty house without a storey; `source` names its maker and its version.
     pub(crate) fn new(name: &str, source: &str) -> Self {
         let mut assembly = Self::default();
         name.clone_into(&mut assembly.data.name);
@@ -55,7 +55,7 @@ impl HouseAssembly {
         assembly
     }
 
-    /// Adds a storey above the others; what is added from now on stands on it.
+    /// Adds a storey above the others; later pieces stand on it.
     pub(crate) fn storey(&mut self) {
         let name = self.data.levels.len().to_string();
         let bounds = Aabb::EMPTY;
@@ -84,7 +84,7 @@ impl HouseAssembly {
         id
     }
 
-    /// Makes a model known; a shared model is one kind.
+    /// Adds a model; a shared model is one kind.
     pub(crate) fn kind(&mut self, model: impl Into<Arc<Model>>) -> ModelInstances {
         let model = model.into();
         let address = Arc::as_ptr(&model) as usize;

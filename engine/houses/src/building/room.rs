@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3};
 
 /// Height of rooms, m.
 pub(crate) const CEILING_M: f32 = 2.6;
-/// Strips of floor that are narrower come of rounding, m.
+/// Width below which strips of floor come of rounding, m.
 const THIN_M: f32 = 1e-3;
 
 /// A rectangle of the plan: x from, z from, x to, z to, m.
@@ -88,7 +88,7 @@ impl ShellRoom {
         let [below, above] = &self.slabs;
         let top = self.floor_m + self.storey_m + above.thick_m;
         let hung_m = self.storey_m - self.ceiling_m;
-        // What lies above a hung ceiling nobody sees.
+        // A part above a hung ceiling is hidden.
         let (kind, word) = if self.hung.is_empty() {
             (StructureKind::Ceiling, "ceiling")
         } else {

@@ -24,9 +24,9 @@ pub(crate) struct StairFlights {
     pub(crate) climb: [i32; 2],
     /// True if the first flight is at the right, seen along it, instead of at the left.
     pub(crate) mirrored: bool,
-    /// Of both flights together, m.
+    /// Width of both flights together, m.
     pub(crate) width_m: f32,
-    /// From the front edge to the landing's far end, m.
+    /// Depth from the front edge to the landing's far end, m.
     pub(crate) depth_m: f32,
 }
 

@@ -21,7 +21,7 @@ pub(crate) enum WallAxis {
 /// A hole in a wall.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallOpening {
-    /// From and to along the wall: world x or z, m.
+    /// Ends along the wall: world x or z, m.
     pub(crate) along: [f32; 2],
     /// Lower and upper edge above the floor, m.
     pub(crate) up: [f32; 2],
@@ -39,7 +39,7 @@ pub(crate) struct ShellWall {
     pub(crate) along: WallAxis,
     pub(crate) front: FinishBands,
     pub(crate) back: FinishBands,
-    /// Ends, top and the insides of openings.
+    /// The finish of ends, top and the insides of openings.
     pub(crate) edge: Finish,
     pub(crate) openings: Vec<WallOpening>,
 }
@@ -79,7 +79,7 @@ impl ShellWall {
             .any(|hole| within(along, hole.along) && within(up, hole.up))
     }
 
-    /// Returns where the back and the front stand across the wall.
+    /// Returns the positions of back and front across the wall.
     fn depth(&self) -> [f32; 2] {
         let [x0, z0, x1, z1] = self.rect;
         if self.along == WallAxis::X {

@@ -1,4 +1,4 @@
-//! Turns about the vertical.
+//! Rotations about the vertical.
 
 use dwell_furniture::shapes::turn;
 use glam::{Quat, Vec3};

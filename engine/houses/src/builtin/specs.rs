@@ -10,7 +10,7 @@ pub(super) struct BuiltinHouse {
     pub(super) spec: fn() -> HouseSpec,
 }
 
-/// Built-in houses. Their seeds gave houses of which nothing had to be given up.
+/// Built-in houses. Their seeds gave houses without omissions.
 pub(super) const FIXED: &[BuiltinHouse] = &[
     BuiltinHouse {
         name: "apartment",
@@ -43,7 +43,7 @@ fn of_style(home: HomeKind, storeys: usize, style: &str) -> HouseSpec {
     }
 }
 
-/// Six rooms with the hallway, and much in them: what examples, tests and the demo walk through.
+/// Six rooms with the hallway, and much in them: the house of examples, tests and the demo.
 fn apartment() -> HouseSpec {
     HouseSpec {
         area_m2: Some(96.0),
@@ -62,7 +62,7 @@ fn apartment() -> HouseSpec {
 }
 
 impl BuiltinHouse {
-    /// The house, under its own name; `None` when the generator no longer makes it, which tests would tell.
+    /// The house, under its own name; `None` when the generator no longer makes it, which tests would notice.
     pub(super) fn build(&self) -> Option<House> {
         let made = generate(self.seed, &(self.spec)()).and_then(|generated| {
             let mut data = generated.house.data().clone();

@@ -1,9 +1,9 @@
 //! Houses from a seed: floor plan, building, furniture, small things, by rules that builders and people follow.
 //!
 //! Stages, each with plain data in and out and its own random stream, so that a change in one does not reshuffle another:
-//! `room_program` (which rooms, how large), `plan` (where they lie), `openings` (doors and windows), `shell` (the building),
+//! `room_program` (rooms and their sizes), `plan` (their layout), `openings` (doors and windows), `shell` (the building),
 //! `furnish` (furniture, lamps and small things).
-//! Tries are bounded everywhere; what was given up is in the [`GenerateReport`].
+//! Tries are bounded everywhere; omissions are in the [`GenerateReport`].
 
 mod furnish;
 mod openings;
@@ -57,7 +57,7 @@ pub struct GenerateReport {
     pub given_up: Vec<String>,
 }
 
-/// Makes the house of a seed.
+/// Generates the house of a seed.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names a field, what was found, and what is possible.
@@ -69,7 +69,7 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<GeneratedHouse, HousesErr
     let key = RandomKey::root(seed).child("house");
     let style = style(spec, key.child("style"));
     let mut best: Option<FurnishedPlan> = None;
-    // Where a room cannot be reached whatever is left out, another plan is drawn.
+    // Where a room stays unreachable with any furniture left out, another plan is drawn.
     for round in 0..HOUSES {
         let paper = furnished_plan(spec, style, key.child("house").child(round))?;
         let lost = |paper: &FurnishedPlan| paper.unreached.len();
@@ -111,15 +111,15 @@ pub fn generate(seed: u64, spec: &HouseSpec) -> Result<GeneratedHouse, HousesErr
     Ok(GeneratedHouse { house, report })
 }
 
-/// Houses that are drawn at most until every room is reached.
+/// Largest number of houses that are drawn until every room is reached.
 const HOUSES: u64 = 4;
 
-/// A furnished house on paper.
+/// A furnished plan.
 struct FurnishedPlan {
     key: RandomKey,
     draft: UnfurnishedPlan,
     furnished: Vec<Vec<furnish::RoomFurniture>>,
-    /// Rooms that nobody can enter.
+    /// Unreachable rooms.
     unreached: Vec<reachability::RoomIndex>,
 }
 
@@ -186,7 +186,7 @@ pub(crate) fn open(house: &str) -> Opened {
     Ok((generated.house, report))
 }
 
-/// The spec that `field=value&field=value` says, as far as it can be for any seed.
+/// The spec of `field=value&field=value`, checked as far as possible for any seed.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names the field, what was found, and what is possible.
@@ -208,7 +208,7 @@ pub(crate) fn spec_of(fields: &str) -> Result<HouseSpec, HousesError> {
     Ok(spec)
 }
 
-/// The spec that fields say; an error names the first that cannot be read.
+/// The spec of some fields; an error names the first that cannot be read.
 fn parsed(fields: serde_json::Map<String, serde_json::Value>) -> Result<HouseSpec, HousesError> {
     let read = |fields: serde_json::Map<_, _>| serde_json::from_value::<HouseSpec>(fields.into());
     for (name, value) in &fields {
@@ -226,18 +226,18 @@ fn parsed(fields: serde_json::Map<String, serde_json::Value>) -> Result<HouseSpe
     })
 }
 
-/// Shares of the furniture that a room can do without, one after the other until it is reached.
+/// Shares of the optional furniture of a room, tried in turn until it is reached.
 const SHARES: [f32; 3] = [0.6, 0.3, 0.0];
 
-/// Programmes that are drawn at most until one has a plan.
+/// Largest number of programmes that are drawn until one has a plan.
 const PROGRAMMES: u64 = 8;
 
-/// A house on paper.
+/// A plan before it is furnished.
 struct UnfurnishedPlan {
     programme: RoomProgram,
     plan: GeneratedPlan,
     holes: Vec<Vec<WallHole>>,
-    /// Doors that stand in the way of others.
+    /// Number of doors that block others.
     tight: usize,
 }
 
@@ -259,7 +259,7 @@ impl UnfurnishedPlan {
     }
 }
 
-/// The first draft in which no door stands in the way of another, or the best of a few.
+/// The first draft in which no door blocks another, or the best of a few.
 fn draft(spec: &HouseSpec, key: RandomKey) -> Result<UnfurnishedPlan, HousesError> {
     let mut best: Option<UnfurnishedPlan> = None;
     let mut last = None;

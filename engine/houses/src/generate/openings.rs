@@ -1,4 +1,4 @@
-//! Doors where builders put them, and windows by what a room is for.
+//! Doors where builders put them, and windows by the use of a room.
 //!
 //! A door stands beside a corner of the room into which it swings, its hinges at that corner, so that the open leaf lies
 //! against the wall. No two leaves meet, and no open leaf stands before another door.
@@ -166,7 +166,7 @@ pub(crate) fn overlap(a: &ZoneXz, b: &ZoneXz) -> bool {
     a[0] < b[2] - 1e-4 && b[0] < a[2] - 1e-4 && a[1] < b[3] - 1e-4 && b[1] < a[3] - 1e-4
 }
 
-/// The holes of every storey; the second is the number of doors that stand in each other's way all the same.
+/// The holes of every storey; the second is the number of doors that block each other all the same.
 pub(crate) fn openings(plan: &GeneratedPlan, key: RandomKey) -> (Vec<Vec<WallHole>>, usize) {
     let mut tight = 0;
     let all = plan.storeys.iter().enumerate().map(|(k, storey)| {
@@ -188,10 +188,10 @@ pub(crate) fn openings(plan: &GeneratedPlan, key: RandomKey) -> (Vec<Vec<WallHol
     (all.collect(), tight)
 }
 
-/// Deals that are tried for doors that leave each other alone.
+/// Number of draws for doors that do not block each other.
 const DEALS: usize = 24;
 
-/// The doors of a storey; the second is the number of those that stand in the way of others all the same.
+/// The doors of a storey; the second is the number of those that block others all the same.
 fn doors(
     storey: &GeneratedStorey,
     runs: &[RoomBoundary],
@@ -201,7 +201,7 @@ fn doors(
     let mut best: Option<(Vec<WallHole>, usize)> = None;
     for _ in 0..DEALS {
         let mut dealt = deal(storey, runs, stairs.map(|stairs| stairs.area), stream);
-        // Where no two doors meet, an open leaf may still shut the way to a room.
+        // Where no two doors meet, an open leaf may still block the way to a room.
         if dealt.1 == 0 {
             dealt.1 = unreached_when_empty(storey, &dealt.0, stairs);
         }

@@ -3,7 +3,7 @@
 //! [`NavGrid`](dwell_scene::navigation::NavGrid) takes.
 //!
 //! Stricter than a `NavGrid` of cells of 10 cm for a walker of 0.2 m radius: where a square of half of 0.3 m passes, such a
-//! grid has a cell free of what the square is free of. So what counts as reached here is reached there; tests hold it.
+//! grid has a cell free of what the square is free of. So a room that counts as reached here is reached there; tests hold it.
 
 use super::furnish::{RoomFurniture, stands_in_the_way, zone};
 use super::openings::{HoleContents, WallHole, ZoneXz};
@@ -13,14 +13,14 @@ use super::shell::free_floor;
 
 /// Edge of a cell, m.
 const CELL_M: f32 = 0.05;
-/// Cells around one that must be free, too. With half of the cell itself 0.325 m, which leaves 0.3 m where a wall's face
+/// Number of cells around one that must be free, too. With half of the cell itself 0.325 m, which leaves 0.3 m where a wall's face
 /// lies within a cell.
 const CLEAR: usize = 6;
-/// Taken off doorways on both sides for their frames, m.
+/// Width of the frames on both sides of doorways, m.
 const FRAME_M: f32 = 0.06;
 /// Depth by which sills of windows stand out, m.
 const SILL_M: f32 = 0.04;
-/// From the first step of stairs to where one stands before it, m.
+/// Distance from the first step of stairs to the place before it, m.
 const BEFORE_STAIRS_M: f32 = 0.45;
 /// No room's floor.
 const WALL: u16 = u16::MAX;
@@ -30,7 +30,7 @@ const DOORWAY: u16 = u16::MAX - 1;
 /// A room of a plan: its storey and its place there.
 pub(super) type RoomIndex = (usize, usize);
 
-/// The rooms that a walker cannot reach who opens doors: those of which less than half of the walkable floor hangs together
+/// The rooms that a walker that opens doors cannot reach: those of which less than half of the walkable floor is connected
 /// with the largest walkable floor of the storey. A storey from which one cannot get to the stairs has lost its hallway.
 pub(super) fn unreached(
     plan: &GeneratedPlan,
@@ -69,7 +69,7 @@ pub(super) fn unreached(
     all
 }
 
-/// Returns how many rooms of a storey are not reached while nothing stands in them.
+/// Returns the number of rooms of a storey that are unreachable while they are empty.
 pub(super) fn unreached_when_empty(
     storey: &GeneratedStorey,
     holes: &[WallHole],
@@ -79,7 +79,7 @@ pub(super) fn unreached_when_empty(
     reached.into_iter().filter(|reached| !reached).count()
 }
 
-/// Returns where one stands before the flights that start or end on a storey.
+/// Returns the places before the flights that start or end on a storey.
 fn stairs_at(stairs: &StairwellPlan, level: usize, storeys: usize) -> Vec<[f32; 2]> {
     let [x0, z0, x1, z1] = stairs.area.map(metres);
     let size = [x1 - x0, z1 - z0];
@@ -184,7 +184,7 @@ impl OccupancyMap {
         from.min(to)..to
     }
 
-    /// Calls `each` for the cells whose middle lies in a zone.
+    /// Calls `each` for the cells whose centre lies in a zone.
     fn centres(&mut self, zone: &ZoneXz, mut each: impl FnMut(&mut Self, usize)) {
         let at = |value: f32, axis: usize| (value - self.corner[axis]) / CELL_M + 0.5;
         let columns = self.range(at(zone[0], 0), at(zone[2], 0), 0);
@@ -207,9 +207,9 @@ impl OccupancyMap {
         }
     }
 
-    /// Returns where one can stand: all cells around are floor and free.
+    /// Returns the walkable cells: those with all cells around them floor and free.
     fn walkable(&self) -> Vec<bool> {
-        // How many cells in a row (then in a column) up to here are free without a break.
+        // Number of free cells in a row (then in a column) up to here without a break.
         let free = |cell: usize| self.room[cell] != WALL && !self.blocked[cell];
         let wide = 2 * CLEAR + 1;
         let mut across = vec![false; self.room.len()];
@@ -290,7 +290,7 @@ impl OccupancyMap {
         counts.into_iter().map(is_reached).collect()
     }
 
-    /// Returns whether one gets to within a step of a place.
+    /// Returns whether a reached cell lies within a step of a place.
     fn is_near(&self, [x, z]: [f32; 2], walk: &[CellReach]) -> bool {
         let near_m = 0.25;
         let at = |value: f32, axis: usize| (value - self.corner[axis]) / CELL_M;

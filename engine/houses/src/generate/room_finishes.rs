@@ -9,10 +9,10 @@ use dwell_scene::random::{RandomKey, RandomStream};
 
 /// Height of skirting boards, m.
 const SKIRTING_M: f32 = 0.08;
-/// Everything below the ceiling.
+/// Height above all bands: everything below the ceiling.
 pub(crate) const TOP_M: f32 = 10.0;
 
-/// The coverings of a room.
+/// The finishes of a room.
 #[derive(Clone, Debug)]
 pub(crate) struct RoomFinishes {
     pub(crate) floor: Finish,
@@ -31,12 +31,12 @@ fn paint(name: &'static str, srgb: Srgb) -> Finish {
     )
 }
 
-/// Returns what the insides of openings show.
+/// Returns the finish of the insides of openings.
 pub(crate) fn reveal() -> Finish {
     paint("reveal_white", [240, 238, 232])
 }
 
-/// The outside of the building.
+/// The finish of the outside of the building.
 pub(crate) fn facade(key: RandomKey) -> FinishBands {
     let mut draw = key.stream();
     let bricks = [
@@ -85,7 +85,7 @@ fn carpet(style: &Style, stream: &mut RandomStream) -> Finish {
     Finish::tiled("carpet", "carpet", "carpet", [wool, dark, [0; 3]], 0.6)
 }
 
-/// The coverings of a room, by what it is for.
+/// The finishes of a room, by its use.
 pub(crate) fn look(kind: GeneratedRoomKind, style: &Style, key: RandomKey) -> RoomFinishes {
     use GeneratedRoomKind::{
         Balcony, Bathroom, Bedroom, BoilerRoom, ChildRoom, Gym, Kitchen, Lobby, Office, Storage,

@@ -8,7 +8,7 @@ use GeneratedRoomKind::{
 };
 use dwell_scene::random::{RandomKey, RandomStream};
 
-/// A room that is wanted.
+/// A required room.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RoomRequirement {
     pub(crate) kind: GeneratedRoomKind,
@@ -19,13 +19,13 @@ pub(crate) struct RoomRequirement {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RoomProgram {
     pub(crate) home: HomeKind,
-    /// From the ground up; hallways and what lies outside are not among them.
+    /// Rooms of the storeys from the ground up, without hallways and outdoor rooms.
     pub(crate) storeys: Vec<Vec<RoomRequirement>>,
     /// A balcony or terrace.
     pub(crate) outside: Option<GeneratedRoomKind>,
 }
 
-/// Draws what the spec leaves open.
+/// Draws the values that the spec leaves open.
 pub(crate) fn programme(spec: &HouseSpec, key: RandomKey) -> RoomProgram {
     let mut draw = key.stream();
     let home = home(spec, &mut draw);
@@ -85,14 +85,14 @@ fn home(spec: &HouseSpec, draw: &mut RandomStream) -> HomeKind {
     spec.home.unwrap_or(fitting)
 }
 
-/// The rooms that such a home usually has, and what lies outside.
+/// The rooms that such a home usually has, and the outdoor one.
 fn usual(
     home: HomeKind,
     spec: &HouseSpec,
     draw: &mut RandomStream,
 ) -> (Vec<Vec<GeneratedRoomKind>>, Option<GeneratedRoomKind>) {
     let mut maybe = |chance: f32| draw.uniform_f32() < chance;
-    // A small area leaves out what a home can do without.
+    // A small area leaves out optional rooms.
     let area = spec.area_m2.unwrap_or(match home {
         HomeKind::Studio => 34.0,
         HomeKind::Apartment => 85.0,

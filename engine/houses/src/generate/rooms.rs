@@ -69,9 +69,9 @@ pub(crate) struct RoomRequirements {
     pub(crate) name: &'static str,
     /// Everyday names of its kind, the most fitting first.
     pub(crate) words: &'static [&'static str],
-    /// The least, the usual and the largest floor, m².
+    /// The smallest, the usual and the largest floor, m².
     pub(crate) area_m2: [f32; 3],
-    /// Between the middles of its walls, m.
+    /// Smallest width between the middles of its walls, m.
     pub(crate) least_width_m: f32,
     pub(crate) windows: WindowStyle,
     /// The storey that it is usually on when there are several: 0 the ground, 1 above.

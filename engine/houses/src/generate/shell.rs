@@ -30,7 +30,7 @@ const FLOOR_SLAB_M: f32 = 0.2;
 /// From one storey's floor to the next one's, m.
 pub(crate) const STOREY_M: f32 = CEILING_M + CEILING_SLAB_M + FLOOR_SLAB_M;
 
-/// The building's parts that later stages ask for.
+/// The building, for later stages.
 pub(crate) struct BuildingShell {
     /// The ids of the rooms, by storey.
     pub(crate) rooms: Vec<Vec<RoomId>>,
@@ -62,7 +62,7 @@ pub(crate) struct ShellBuilder<'a> {
     pub(crate) key: RandomKey,
 }
 
-/// Half of the thickness of what stands between a room and its neighbour, m; 0 where nothing does.
+/// Half of the thickness of the wall between a room and its neighbour, m; 0 where there is none.
 pub(crate) fn half_wall(storey: &GeneratedStorey, room: usize, other: Option<usize>) -> f32 {
     let outside = |room: usize| storey.rooms[room].kind.is_outside();
     match other {
@@ -497,7 +497,7 @@ impl ShellBuilder<'_> {
     }
 }
 
-/// Returns whether a stretch parts a balcony from the open air.
+/// Returns whether a stretch separates a balcony from the open air.
 fn is_railing(storey: &GeneratedStorey, run: &RoomBoundary) -> bool {
     let outside = |room: &GeneratedRoom| room.kind.is_outside();
     match run.sides {
@@ -516,8 +516,8 @@ fn thickness(storey: &GeneratedStorey, run: &RoomBoundary) -> f32 {
     }
 }
 
-/// Returns how far a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
-/// a gap and without lying in each other: what goes straight on goes through, and at a corner the wall along z does.
+/// Returns the length by which a wall reaches beyond (or, below 0, ends before) the crossing at one of its ends, so that walls meet without
+/// a gap and without overlap: a straight wall goes through, and at a corner the wall along z does.
 fn reach(storey: &GeneratedStorey, runs: &[RoomBoundary], run: &RoomBoundary, end: bool) -> f32 {
     let at = if end { run.to } else { run.from };
     let here = |other: &&RoomBoundary| {
@@ -562,7 +562,7 @@ fn reach(storey: &GeneratedStorey, runs: &[RoomBoundary], run: &RoomBoundary, en
     }
 }
 
-/// The leaf of the way in.
+/// The leaf of the entrance.
 fn entrance_leaf(style: &Style) -> Finish {
     Finish {
         name: "entrance_door",

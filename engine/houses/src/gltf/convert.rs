@@ -119,12 +119,12 @@ pub(super) fn convert(
     })
 }
 
-/// Vertices and indices so far.
+/// Numbers of vertices and indices so far.
 #[derive(Default)]
 struct VertexWriter(u64);
 
 impl VertexWriter {
-    /// Takes those of a mesh.
+    /// Counts those of a mesh.
     ///
     /// # Errors
     /// A sentence when they are more than what is left of [`MAX_CORNERS_SHOWN`].
@@ -141,7 +141,7 @@ impl VertexWriter {
         Ok(())
     }
 
-    /// Takes those that a primitive names.
+    /// Counts those that a primitive names.
     ///
     /// # Errors
     /// That of [`Self::take`].
@@ -200,7 +200,7 @@ fn merge(
             materials.push(*material);
             continue;
         }
-        // Mixed primitives keep what each has: flat normals and no place on the image for those that lack them.
+        // Mixed primitives keep their attributes: flat normals and no place on the image for those that lack them.
         fill(&mut part, &merged);
         if merged.normals.is_empty() && !part.normals.is_empty() {
             merged = with_flat_normals(&merged);

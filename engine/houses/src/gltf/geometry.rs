@@ -13,7 +13,7 @@ use crate::import::decode;
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{FileLocation, LoadReport};
 
-/// A parsed GLB whose numbers and images are asked for one by one.
+/// A parsed GLB whose numbers and images are read one by one.
 pub(crate) struct ParsedGlb<'a> {
     json: Root,
     buffers: Buffers<'a>,
@@ -21,7 +21,7 @@ pub(crate) struct ParsedGlb<'a> {
 }
 
 impl<'a> ParsedGlb<'a> {
-    /// Parses the container; what `bytes` do not hold stands in `library`, in files named by their content.
+    /// Parses the container; bytes that it does not hold are in `library`, in files named by their content.
     ///
     /// # Errors
     /// [`HousesError::Syntax`] when the bytes are no GLB or a file of the library is not what its name says,

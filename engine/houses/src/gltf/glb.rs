@@ -56,7 +56,7 @@ impl Default for BinaryChunk {
 }
 
 impl BinaryChunk {
-    /// Returns what `write` appends goes into the chunk, or `apart` into a file of its own in `folder`, named by its content.
+    /// Runs `write`, whose data go into the chunk, or, if `apart`, into a file of its own in `folder`, named by its content.
     pub(crate) fn part<T>(
         &mut self,
         folder: &str,
@@ -78,7 +78,7 @@ impl BinaryChunk {
         result
     }
 
-    /// A file beside the GLB, named by its content; returns its URI.
+    /// Adds a file beside the GLB, named by its content; returns its URI.
     pub(crate) fn beside(&mut self, folder: &str, ending: &str, bytes: Vec<u8>) -> String {
         let path = format!("{folder}/{}.{ending}", content_name(&bytes));
         let uri = format!("{TO_LIBRARY}{path}");
@@ -138,7 +138,7 @@ impl BinaryChunk {
         accessor
     }
 
-    /// The whole file, and those beside it: `document` gets the buffers, views and accessors.
+    /// Returns the whole file, and those beside it: `document` gets the buffers, views and accessors.
     ///
     /// # Errors
     /// A sentence when the file would exceed the format's 4 GiB.

@@ -32,7 +32,7 @@ pub(super) struct LampExtras {
     pub(super) sky: bool,
 }
 
-/// The light that a node carries, if it carries one that is read.
+/// The light that a node carries, if it is of a kind that is read.
 pub(super) fn lamp(
     json: &Root,
     node: &Node,

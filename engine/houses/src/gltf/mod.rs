@@ -37,7 +37,7 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 
 /// Opens a `.glb` or `.gltf` file. Every node with a mesh is a thing; names mean structure or a category.
 ///
-/// Points and spots of light hang on the nearest object. Animations, skins, cameras and directional lights are not read and
+/// Points and spots of light are attached to the nearest object. Animations, skins, cameras and directional lights are not read and
 /// reported. What `extras.dwell` says is read, so that a file of [`write`](write()) is the house that was written; where it breaks a
 /// rule of the scene it is reported, and objects and materials are read as in a file of anybody.
 ///
@@ -97,7 +97,7 @@ pub(crate) fn read_scene(
     read(bytes, root, name, true, threads, report)
 }
 
-/// `trusted`: whether what `extras` say of objects and materials counts.
+/// `trusted`: whether `extras` of objects and materials count.
 fn read(
     bytes: &[u8],
     root: &DataRoot,
@@ -122,7 +122,7 @@ fn read(
     convert::convert(&json, &buffers, root, name, trusted, threads, report)
 }
 
-/// Returns whether the asset is one of glTF 2: by the version that it asks of readers, else by its own.
+/// Checks that the asset is one of glTF 2: by the version that it requires of readers, else by its own.
 fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), HousesError> {
     let (field, found) = match &asset.min_version {
         Some(needed) => ("asset.minVersion", needed),
@@ -132,7 +132,7 @@ fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), H
         let minor: u32 = minor.parse().ok()?;
         Some((major.parse::<u32>().ok()?, minor))
     });
-    // Files of a later minor version can be read, unless they ask for it.
+    // Files of a later minor version can be read, unless they forbid it.
     let is_read = match numbers {
         Some((major, minor)) => major == 2 && (asset.min_version.is_none() || minor == 0),
         None => false,

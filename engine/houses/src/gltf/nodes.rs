@@ -1,4 +1,4 @@
-//! The node tree, flattened; and what `extras.dwell` of our own files says of it.
+//! The node tree, flattened, with `extras.dwell` of our own files.
 
 use ::gltf::json::{Index, Node, Root};
 use dwell_scene::{Sky, StructureKind};
@@ -26,7 +26,7 @@ pub(super) struct MeshNode {
     pub(super) part_of: Option<(usize, usize)>,
 }
 
-/// All that nodes say.
+/// The content of all nodes.
 #[derive(Default)]
 pub(super) struct NodeTree {
     pub(super) instances: Vec<MeshNode>,
@@ -35,7 +35,7 @@ pub(super) struct NodeTree {
     pub(super) rooms: Vec<NamedRoom>,
     pub(super) sky: Option<Sky>,
     pub(super) lamps: Vec<ImportedLamp>,
-    /// Objects of which the file says more than shapes and names.
+    /// Objects with more than shapes and names in the file.
     pub(super) objects: Vec<AnnotatedObject>,
 }
 
@@ -76,7 +76,7 @@ struct DwellNodeExtras {
     light_of: Option<String>,
 }
 
-/// A node on the way down.
+/// A node in the traversal.
 struct PendingNode {
     node: usize,
     world_from_parent: Affine3A,
@@ -85,7 +85,7 @@ struct PendingNode {
     room: Option<usize>,
     /// True for a part of an object.
     of_object: bool,
-    /// The object, as a position in [`NodeTree::objects`], when it says all that one needs.
+    /// The object, as a position in [`NodeTree::objects`], when it is complete.
     object: Option<usize>,
 }
 
@@ -264,7 +264,7 @@ pub(super) fn tree(
     found
 }
 
-/// Returns what a node says of an object or part; what cannot be read is reported and counts for nothing.
+/// Returns the annotations of an object or part in a node; unreadable ones are reported and ignored.
 fn given<T: DeserializeOwned>(
     node: &Node,
     at: &FileLocation,
@@ -283,7 +283,7 @@ fn given<T: DeserializeOwned>(
         .ok()
 }
 
-/// Returns what a node says of itself in our words; nothing where `extras` are not ours.
+/// Returns a node's annotations; `None` where `extras` are not ours.
 fn known(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
     let Some(text) = node.extras.as_ref().map(|extras| extras.get()) else {
         return DwellNodeExtras::default();

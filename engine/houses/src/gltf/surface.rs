@@ -133,7 +133,7 @@ struct MaterialExtras {
     dwell: DwellMaterialExtras,
 }
 
-/// A material's `extras.dwell`: what it is beyond its looks.
+/// A material's `extras.dwell`: its properties beyond its look.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct DwellMaterialExtras {
@@ -166,7 +166,7 @@ impl DwellMaterialExtras {
         )
     }
 
-    /// Puts its numbers in place of those of the substance.
+    /// Replaces those of the substance by its numbers.
     fn refine(self, material: &mut Material) {
         fn set<T>(to: &mut T, value: Option<T>) {
             if let Some(value) = value {
@@ -186,7 +186,7 @@ impl DwellMaterialExtras {
     }
 }
 
-/// The materials of the file, and after them the one that primitives without a material show, if there are such.
+/// The materials of the file, and after them the one of primitives without a material, if there are such.
 pub(super) fn materials(
     json: &Root,
     images: &DecodedImages,
@@ -261,7 +261,7 @@ pub(super) fn materials(
             ..ImportedMaterial::plain(&name, substance)
         });
         looks.refine(id, |material| {
-            // The colour of the file goes before one that was rounded on the way.
+            // The colour of the file takes precedence over one that was rounded on the way.
             if trusted && said.is_some() {
                 material.base_color = [r, g, b].map(|c| c.clamp(0.0, 1.0));
             }

@@ -1,4 +1,4 @@
-//! Articulated objects: URDF files with a place.
+//! Articulated objects: URDF files with a pose.
 
 use dwell_scene::{Aabb, Mobility};
 use serde_json::Value;
@@ -87,7 +87,7 @@ impl HabitatReader<'_> {
             .counted(row.map_or(word, |row| row.name.as_str()));
         let (first_joint, object) = (self.data.joints.len(), self.data.objects.len());
         robot::add(&mut self.data, &robot, &unique, pose, fixed);
-        // What a robot's joint does not say: doors and drawers of furniture open towards their farther limit.
+        // Joints of a robot state no direction: doors and drawers of furniture open towards their farther limit.
         for joint in &mut self.data.joints.as_mut_slice()[first_joint..] {
             if let (Some([low, high]), None) = (joint.limits, &joint.mimic) {
                 joint.closed = 0.0_f32.clamp(low, high);

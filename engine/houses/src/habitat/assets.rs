@@ -14,7 +14,7 @@ use crate::limits::MAX_BUFFER_BYTES;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// A named piece of an asset, its place baked into the mesh.
+/// A named piece of an asset, its transform baked into the mesh.
 #[derive(Debug, Clone)]
 pub(super) struct AssetMesh {
     pub(super) name: String,
@@ -124,7 +124,7 @@ impl Assets {
         Some(pieces)
     }
 
-    /// The pieces of `whole`, the asset at `path`: its shape to collide with.
+    /// The pieces of `whole`, the asset at `path`: its collision shape.
     pub(super) fn whole_shape(
         &mut self,
         path: &str,
@@ -136,7 +136,7 @@ impl Assets {
         known.or_insert_with(shape).clone()
     }
 
-    /// The pieces of the asset at `path`, which the house does not hold: a shape to collide with. `None`, reported once, when
+    /// The pieces of the asset at `path`, which the house does not hold: a collision shape. `None`, reported once, when
     /// it cannot be read.
     pub(super) fn shape(
         &mut self,

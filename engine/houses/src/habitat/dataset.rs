@@ -124,7 +124,7 @@ impl Dataset {
         }
     }
 
-    /// Files that end in `ending` in the folders that `paths` names, by the name before the ending.
+    /// Files that end in `ending` in the folders of `paths`, by the name before the ending.
     fn files(
         &self,
         paths: &BTreeMap<String, Vec<String>>,
@@ -148,7 +148,7 @@ impl Dataset {
         found
     }
 
-    /// The folders that a pattern means: itself, or with `*` every folder of that place, and the place as well, whose files
+    /// The folders of a pattern: itself, or with `*` every folder of that place, and the place as well, whose files
     /// the star also matches.
     fn folders(&self, pattern: &str) -> Vec<String> {
         let Ok(clean) = DataRoot::resolve("", pattern) else {
@@ -175,7 +175,7 @@ impl Dataset {
         folders
     }
 
-    /// The template that `name` means: one of the data set's own, else the file whose path ends in it.
+    /// The template of `name`: one of the data set's own, else the file whose path ends in it.
     pub(super) fn template(
         &self,
         kind: TemplateKind,

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
-/// `NAME.scene_dataset_config.json`: which files the data set has.
+/// `NAME.scene_dataset_config.json`: the files of the data set.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct DatasetFile {
@@ -37,14 +37,14 @@ pub(super) struct InlineTemplate {
     pub(super) attributes: Map<String, Value>,
 }
 
-/// `NAME.scene_instance.json`: what stands where.
+/// `NAME.scene_instance.json`: the instances with their poses.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct SceneFile {
     pub(super) stage_instance: Value,
     pub(super) object_instances: Vec<Value>,
     pub(super) articulated_object_instances: Vec<Value>,
-    /// `"asset_local"` or `"COM"`; what counts for instances that do not say.
+    /// `"asset_local"` or `"COM"`; the default of instances that state none.
     pub(super) translation_origin: Option<String>,
     pub(super) default_lighting: Option<String>,
 }

@@ -104,7 +104,7 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     Ok((House::new(data).map_err(HousesError::scene(&at))?, report))
 }
 
-/// A scene on its way into a house.
+/// The conversion of a scene into a house.
 struct HabitatReader<'a> {
     dataset: Dataset,
     threads: Threads,

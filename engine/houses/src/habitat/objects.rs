@@ -50,7 +50,7 @@ impl HabitatReader<'_> {
             return;
         };
         let object_from_asset = Affine3A::from_scale(scale) * frame;
-        // Habitat moves an object's origin to its centre of mass; a place may count from there or from the asset's origin.
+        // Habitat moves an object's origin to its centre of mass; a translation may count from there or from the asset's origin.
         let origin = if self.counts_from_centre(instance) {
             let middle = asset.bounds.transformed(&object_from_asset).center();
             template
@@ -137,7 +137,7 @@ impl HabitatReader<'_> {
         });
     }
 
-    /// The collision asset's mesh in the render asset's place, where a template has one of its own.
+    /// The collision asset's mesh in the render asset's pose, where a template has one of its own.
     fn collision_shape(
         &mut self,
         found: &ResolvedTemplate,
@@ -155,7 +155,7 @@ impl HabitatReader<'_> {
         self.assets.shape(root, &path, threads, self.report)
     }
 
-    /// Returns whether the place of an instance is that of its centre of mass.
+    /// Returns whether the translation of an instance is that of its centre of mass.
     pub(super) fn counts_from_centre(&self, instance: &SceneInstance) -> bool {
         let own = instance.translation_origin.as_deref();
         own.or(self.origin.as_deref())

@@ -5,10 +5,10 @@ use glam::{Affine3A, Mat3, Quat, Vec3};
 
 use super::file::{SceneInstance, Template};
 
-/// Largest scale, and the inverse of the smallest: what is beyond is a mistake.
+/// Largest scale, and the inverse of the smallest: anything beyond is a mistake.
 const MAX_SCALE: f32 = 1e4;
 
-/// The pose that an instance states; `None` when it is not finite or turns by nothing.
+/// The pose that an instance states; `None` when it is not finite or its rotation is zero.
 pub(super) fn pose(instance: &SceneInstance) -> Option<Pose> {
     let [w, x, y, z] = instance.rotation;
     let rotation = Quat::from_xyzw(x, y, z, w);
@@ -27,8 +27,8 @@ pub(super) fn scale(instance: &SceneInstance) -> Option<Vec3> {
     scale.to_array().into_iter().all(usable).then_some(scale)
 }
 
-/// From an asset's own axes to the template's (+Y up, -Z front), with its scale; `None` when the template's directions are
-/// none or its scale is not usable.
+/// The transform from an asset's own axes to the template's (+Y up, -Z front), with its scale; `None` when the template's directions are
+/// invalid or its scale is not usable.
 pub(super) fn template_from_asset(template: &Template) -> Option<Affine3A> {
     let up = Vec3::from_array(template.up).try_normalize()?;
     let front = Vec3::from_array(template.front);

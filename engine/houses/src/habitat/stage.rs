@@ -1,4 +1,4 @@
-//! The stage into structure, and its rooms.
+//! Conversion of the stage into structure, and its rooms.
 
 use std::sync::Arc;
 
@@ -14,17 +14,17 @@ use crate::limits::{MAX_NODES, MAX_OUTLINE};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
-/// Floors further apart belong to different storeys, m.
+/// Distance from which on floors belong to different storeys, m.
 const STOREY_M: f32 = 1.5;
-/// A floor may lie this far from the height that its room states, m.
+/// Largest distance of a floor from the height that its room states, m.
 const FLOOR_M: f32 = 0.3;
 /// Cosine of the steepest slope that is a floor or a ceiling: 45 degrees.
 const FLAT: f32 = 0.707;
-/// Height of one bin when floors are looked for, m.
+/// Height of one bin of the histogram of floors, m.
 const BIN_M: f32 = 0.05;
-/// The least area of a floor, m².
+/// Smallest area of a floor, m².
 const FLOOR_AREA_M2: f64 = 1.0;
-/// Less room than this above a surface is none to stand in, m.
+/// Headroom below which a surface is no floor, m.
 const HEADROOM_M: f32 = 1.0;
 
 /// Rooms as the scene's semantic file has them; those that cannot be used are reported.
@@ -63,7 +63,7 @@ pub(super) fn regions(
     regions
 }
 
-/// Adds the pieces of the stage: by their names where these say wall, floor or ceiling, else by where their faces look.
+/// Adds the pieces of the stage: by their names if these mean wall, floor or ceiling, else by the orientation of their faces.
 pub(super) fn structure(
     data: &mut HouseData,
     pieces: &[AssetMesh],
@@ -113,7 +113,7 @@ pub(super) fn structure(
     }
 }
 
-/// Returns what a triangle of an unnamed piece belongs to.
+/// Returns the kind of structure of a triangle of an unnamed piece.
 fn faces(mesh: &Mesh, triangle: usize, floors: &[f32]) -> StructureKind {
     let [a, b, c] = mesh.corners(triangle);
     let up = (b - a).cross(c - a).normalize_or_zero().y;
@@ -127,7 +127,7 @@ fn faces(mesh: &Mesh, triangle: usize, floors: &[f32]) -> StructureKind {
     }
 }
 
-/// Heights at which much looks up and a person could stand, lowest first.
+/// Heights with much upward area and headroom for a person, lowest first.
 fn floor_heights<'a>(meshes: impl Iterator<Item = &'a Mesh> + Clone) -> Vec<f32> {
     let bounds = meshes
         .clone()

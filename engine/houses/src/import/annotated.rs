@@ -14,12 +14,12 @@ use serde::Deserialize;
 /// Largest remainder of a part's transform beside rotation and translation, per number: editors round.
 const ROUNDING: f32 = 1e-3;
 
-/// An object with all that its node says.
+/// An object with all annotations of its node.
 #[derive(Debug, Deserialize)]
 pub(crate) struct AnnotatedObject {
     #[serde(rename = "object")]
     pub(crate) name: String,
-    /// Its place among the objects of the house that was written.
+    /// Its position among the objects of the house that was written.
     #[serde(default)]
     pub(crate) index: u32,
     model: String,
@@ -34,7 +34,7 @@ pub(crate) struct AnnotatedObject {
     receptacles: Vec<AnnotatedReceptacle>,
     #[serde(default)]
     sounds: Vec<AnnotatedEmitter>,
-    /// Of nodes below its own.
+    /// The parts of nodes below its own.
     #[serde(skip)]
     pub(crate) lights: Vec<AnnotatedLight>,
     #[serde(skip)]
@@ -46,7 +46,7 @@ pub(crate) struct AnnotatedObject {
     pub(crate) room: Option<usize>,
 }
 
-/// A part with all that its node says.
+/// A part with all annotations of its node.
 #[derive(Debug, Deserialize)]
 pub(crate) struct AnnotatedPart {
     #[serde(rename = "part")]
@@ -123,7 +123,7 @@ struct AnnotatedEmitter {
     start_s: f32,
 }
 
-/// Returns what loops is the rule.
+/// Sounds loop by default.
 const fn yes() -> bool {
     true
 }
@@ -139,7 +139,7 @@ pub(crate) struct AnnotatedLight {
     attenuation: [f32; 3],
 }
 
-/// A part whose place is known.
+/// A part with its pose.
 struct PlacedPart {
     part: AnnotatedPart,
     world_from_part: Pose,
@@ -155,7 +155,7 @@ pub(super) struct ImportedObject {
 }
 
 impl AnnotatedPart {
-    /// Returns where it stands, and its mesh on it. A node that an editor moved or turned takes the part along; `None` when it was
+    /// Returns its pose, and its mesh on it. A node that an editor moved or rotated takes the part along; `None` when it was
     /// scaled, which joints, masses and collision shapes do not follow.
     fn place(&self) -> Option<(Pose, Affine3A)> {
         let was = self.world_from_part;
@@ -198,7 +198,7 @@ impl ImportedObject {
     /// The object with the looks of its parts, in order.
     ///
     /// # Errors
-    /// Its name, when what it says cannot be followed: see [`AnnotatedPart::place`].
+    /// Returns its name as the error when its annotations cannot be kept: see [`AnnotatedPart::place`].
     pub(super) fn new(
         mut object: AnnotatedObject,
         looks: Vec<Option<(Arc<Mesh>, Vec<MaterialId>)>>,
@@ -229,12 +229,12 @@ impl ImportedObject {
         &self.object.name
     }
 
-    /// Returns where it stood among the objects.
+    /// Returns its position among the objects.
     pub(super) fn order(&self) -> u32 {
         self.object.index
     }
 
-    /// The box around what it shows, m.
+    /// The box around its meshes, m.
     pub(super) fn bounds(&self) -> Aabb {
         let mut bounds = Aabb::EMPTY;
         for part in &self.parts {
@@ -245,7 +245,7 @@ impl ImportedObject {
         bounds
     }
 
-    /// The storey and the room that the file says.
+    /// The storey and the room in the file.
     pub(super) fn home(&self) -> (Option<usize>, Option<usize>) {
         (self.object.level, self.object.room)
     }
@@ -263,7 +263,7 @@ impl ImportedObject {
         let Self { object, parts } = self;
         let part_count = parts.len() as u32;
         let mut names: BTreeMap<String, usize> = BTreeMap::new();
-        // Where an editor took parts: the new place from the old one.
+        // The movements of parts by an editor: from the old pose to the new one.
         let mut moved: Vec<Option<Pose>> = Vec::new();
         for placed in parts {
             let (shape, materials) = placed.look.unwrap_or_default();
@@ -294,7 +294,7 @@ impl ImportedObject {
                 continue;
             };
             let parent = joint.parent.as_deref().and_then(part_named);
-            // Without a parent the frame stands in the world, and goes where the child was taken.
+            // Without a parent the joint frame is in the world, and moves with the child.
             let parent_from_joint = match (parent, moved[child]) {
                 (None, Some(new_from_old)) => new_from_old * joint.parent_from_joint,
                 _ => joint.parent_from_joint,

@@ -3,7 +3,7 @@
 use dwell_scene::{Aabb, Mesh};
 use glam::Vec3;
 
-/// Triangles that hang together.
+/// Connected triangles.
 #[derive(Debug, Clone)]
 pub(crate) struct Component {
     /// Indices of its triangles, rising.

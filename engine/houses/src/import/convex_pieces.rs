@@ -5,7 +5,7 @@ use glam::{Affine3A, Vec3};
 
 use super::components::{Component, components};
 
-/// Most convex pieces of one body.
+/// Largest number of convex pieces of one body.
 const MAX_PIECES: usize = 24;
 /// Half of the least thickness of a piece, m: contact solvers lose thinner ones.
 const MIN_HALF_M: f32 = 0.0025;
@@ -13,7 +13,7 @@ const MIN_HALF_M: f32 = 0.0025;
 /// The vertices of a mesh's connected pieces, of which each gets a convex hull.
 #[derive(Debug)]
 pub(crate) struct MeshPieces {
-    /// Of each piece, mesh space; the largest first.
+    /// Vertices of each piece, mesh space; the largest first.
     points: Vec<Vec<Vec3>>,
 }
 

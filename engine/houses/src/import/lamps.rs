@@ -1,9 +1,9 @@
-//! Lamps of files that know lights by their places alone: each hangs on the object that it most likely belongs to.
+//! Lamps of files that know lights by their positions alone: each is attached to the object that it most likely belongs to.
 
 use dwell_scene::{Aabb, HouseData, Id, Light, LightShape, Mobility, ObjectId};
 use glam::Vec3;
 
-/// A thing that moves counts as a lamp's own only within this distance, m.
+/// Largest distance at which a moving thing counts as a lamp's own, m.
 const OWN_M: f32 = 0.5;
 
 /// A light of a file, in the world.
@@ -15,20 +15,20 @@ pub(crate) struct ImportedLamp {
     /// Linear light, each 0 to 1.
     pub(crate) color: [f32; 3],
     pub(crate) power_w: f32,
-    /// The thing that the file says it belongs to, or whose parts it belongs to.
+    /// The object that it belongs to by the file, or whose parts it belongs to.
     pub(crate) carrier: Option<String>,
     /// True if it is on at the start.
     pub(crate) on: bool,
 }
 
-/// Returns whether `name` is that of a thing or of one of its parts: `fridge_1.door` is of `fridge_1`.
+/// Returns whether `name` is that of an object or of one of its parts: `fridge_1.door` is of `fridge_1`.
 fn is_of(name: &str, thing: &str) -> bool {
     let rest = name.strip_prefix(thing);
     rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
-/// Hangs lamps on the objects that the file names, else on the nearest, which get a switch: on something that moves only if it is right there. `bounds`: the box
-/// of each object. Without an object there are no lamps.
+/// Attaches lamps to the objects that the file names, else to the nearest, which get a switch: to a moving one only if it is right there.
+/// `bounds`: the box of each object. Without an object there are no lamps.
 pub(super) fn hang(lamps: Vec<ImportedLamp>, data: &mut HouseData, bounds: &[Aabb]) {
     for lamp in lamps {
         let apart_m = |k: usize| {

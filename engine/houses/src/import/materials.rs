@@ -1,4 +1,4 @@
-//! Looks of files into materials of the house, each once.
+//! Conversion of looks of files into materials of the house, each once.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +14,11 @@ pub(crate) struct ImportedMaterial {
     pub(crate) name: String,
     /// sRGB-encoded colour, each 0 to 1; multiplies the texture.
     pub(crate) srgb: [f32; 3],
-    /// The image.
+    /// The image, if there is one.
     pub(crate) texture: Option<TextureId>,
-    /// 1 is opaque.
+    /// Opacity; 1 is opaque.
     pub(crate) opacity: f32,
-    /// Linear light sent out.
+    /// Emitted light, linear.
     pub(crate) emission: [f32; 3],
     /// As in glTF 2.0; `None`: the substance's.
     pub(crate) roughness: Option<f32>,
@@ -44,7 +44,7 @@ impl ImportedMaterial {
     }
 }
 
-/// Everything that makes two looks the same, as bits.
+/// The key of equal looks, as bits.
 #[derive(Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct MaterialKey {
     name: String,

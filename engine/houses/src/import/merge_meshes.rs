@@ -1,4 +1,4 @@
-//! Several meshes as one.
+//! Merging of meshes.
 
 use std::sync::Arc;
 

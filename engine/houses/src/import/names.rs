@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Hands out names, each once.
+/// A generator of unique names.
 #[derive(Debug, Default)]
 pub(crate) struct UniqueNames {
     taken: BTreeSet<String>,
@@ -27,7 +27,7 @@ impl UniqueNames {
         }
     }
 
-    /// `base_1`, `base_2`, ...: the way objects of a category are counted.
+    /// `base_1`, `base_2`, ...: the numbering of objects of a category.
     pub(crate) fn counted(&mut self, base: &str) -> String {
         let base = if base.is_empty() { "thing" } else { base };
         let next = self.next.entry(base.to_owned()).or_insert(1);

@@ -1,6 +1,6 @@
-//! Named meshes of a general format into a house.
+//! Conversion of named meshes of a general format into a house.
 //!
-//! Formats such as OBJ and glTF know meshes and names, nothing of rooms and doors. What a name says is used: walls,
+//! Formats such as OBJ and glTF know meshes and names, but no rooms and doors. The meaning of a name is used: walls,
 //! floors and ceilings become structure, one room lies over the floors (unless the file names its rooms), everything else
 //! is an object of the category that its name means.
 
@@ -23,7 +23,7 @@ use crate::warning_kind::WarningKind;
 /// Largest gap between a thing and its support, m.
 const GAP_M: f32 = 0.03;
 
-/// A named mesh with its place and materials.
+/// A named mesh with its transform and materials.
 pub(crate) struct SceneNode {
     pub(crate) name: String,
     pub(crate) mesh: Arc<Mesh>,
@@ -40,12 +40,12 @@ pub(crate) struct SceneNode {
 /// The role that a file states for a node.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum NodeRole {
-    /// Nothing: its name may mean something.
+    /// None: its name may mean something.
     #[default]
     Unspecified,
     /// A piece of the building.
     Building(StructureKind),
-    /// Something that stands in it.
+    /// An object.
     Object,
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct ImportedScene {
     pub(crate) rooms: Vec<NamedRoom>,
     pub(crate) sky: Option<Sky>,
     pub(crate) lamps: Vec<ImportedLamp>,
-    /// Objects of which the file says more than shapes and names.
+    /// Objects with more than shapes and names in the file.
     pub(crate) objects: Vec<AnnotatedObject>,
 }
 
@@ -155,7 +155,7 @@ impl ImportedScene {
     }
 }
 
-/// Objects with the looks of their parts, in the order of the house that was written, and the things that are left: those of
+/// Objects with the meshes of their parts, in the order of the house that was written, and the things that are left: those of
 /// objects that were scaled are things like any other.
 fn given_objects(
     objects: Vec<AnnotatedObject>,
@@ -197,7 +197,7 @@ fn given_objects(
     (ready, left)
 }
 
-/// Returns what part of a building a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
+/// Returns the kind of structure that a name means, if it means one: `Wall_3`, `WallInside#0_0_1`, `floor`; not `wall_lamp_1`.
 pub(crate) fn structure_kind(name: &str) -> Option<StructureKind> {
     let lower = name.to_ascii_lowercase();
     let words = lower.split(|c: char| !c.is_ascii_alphabetic());
@@ -277,7 +277,7 @@ struct HouseBuilder {
     data: HouseData,
     names: UniqueNames,
     structure_names: UniqueNames,
-    /// Names of rooms that the file gives.
+    /// Unique names of the rooms in the file.
     room_names: UniqueNames,
     /// The box of each object.
     bounds: Vec<Aabb>,
@@ -334,7 +334,7 @@ impl HouseBuilder {
         });
     }
 
-    /// The id of an object's mesh, which several may share.
+    /// Returns the id of an object's mesh, which several may share.
     fn mesh(meshes: &mut Vec<Arc<Mesh>>, data: &mut HouseData, mesh: Arc<Mesh>) -> MeshId {
         let known = meshes.iter().position(|other| Arc::ptr_eq(other, &mesh));
         known.map_or_else(
@@ -439,7 +439,7 @@ impl HouseBuilder {
         });
     }
 
-    /// Fixes movable things that hang in the air: they would only fall. The first `known` objects are as their file says.
+    /// Makes movable things fixed that float: they would only fall. The first `known` objects are as their file says.
     fn settle(&mut self, alone: bool, known: usize) {
         let floor_of = |level: LevelId| {
             let rooms = self.data.rooms.iter().filter(|room| room.level == level);

@@ -1,4 +1,4 @@
-//! Image files into textures.
+//! Decoding of image files into textures.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -24,7 +24,7 @@ pub(crate) fn texture_name(path: &str) -> String {
         .to_owned()
 }
 
-/// The pixels that an image says it has, by its header alone.
+/// The number of pixels that an image states, by its header alone.
 ///
 /// # Errors
 /// A sentence when the bytes are no PNG or JPEG image, or it is too large to be read.
@@ -32,7 +32,7 @@ pub(crate) fn pixels(bytes: &[u8]) -> Result<u64, String> {
     header(bytes).map(|(_, pixels)| pixels)
 }
 
-/// A decoder that stands behind the image's header, and the pixels that this states.
+/// A decoder behind the image's header, and the number of pixels that this states.
 fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
     let told = |error: image::ImageError| error.to_string();
     let mut reader = ImageReader::new(Cursor::new(bytes))
@@ -46,7 +46,7 @@ fn header(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, u64), String> {
     let decoder = reader.into_decoder().map_err(told)?;
     let (width, height) = decoder.dimensions();
     let pixels = u64::from(width) * u64::from(height);
-    // Before anything is decoded: a few KiB can state, and fill, any number of pixels.
+    // Before decoding: a few KiB can state, and fill, any number of pixels.
     if pixels == 0 || pixels > MAX_IMAGE_PIXELS {
         return Err(format!(
             "{width} by {height} pixels; allowed are 1 to {MAX_IMAGE_PIXELS} in all"
@@ -115,7 +115,7 @@ fn rgba(mut raw: Vec<u8>, color: ColorType, pixels: u64) -> Result<Vec<u8>, Stri
     Ok(rgba)
 }
 
-/// Returns whether a JPEG image ends before its end marker: the decoder makes grey of what is missing.
+/// Returns whether a JPEG image ends before its end marker: the decoder fills the rest with grey.
 pub(crate) fn is_cut(bytes: &[u8]) -> bool {
     if !bytes.starts_with(&JPEG_START) {
         return false;
@@ -149,7 +149,7 @@ pub(crate) fn is_cut(bytes: &[u8]) -> bool {
     }
 }
 
-/// The images of a house as far as [`MAX_ALL_PIXELS`] reach, in order; what is above it is left out.
+/// A budget of decoded pixels: the images of a house up to [`MAX_ALL_PIXELS`], in order; those above it are left out.
 #[derive(Default)]
 pub(crate) struct PixelBudget {
     used: u64,
@@ -330,7 +330,7 @@ mod tests {
                 huge.len()
             ))
         );
-        // Other forms say themselves where they end.
+        // Truncated files of other formats are errors of their decoders.
         assert!(!is_cut(b"\x89PNG"));
     }
 }

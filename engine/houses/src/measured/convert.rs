@@ -1,4 +1,4 @@
-//! From the file to a house.
+//! Conversion of the file into a house.
 
 use super::file::{BandCoefficient, MeasuredMaterial, MeasuredRoomFile};
 use super::unknown_names;
@@ -14,7 +14,7 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// A wall of a box: its name in the file, what it is, and its corners as corners of a unit cube, seen from inside counter-clockwise.
+/// A wall of a box: its name in the file, its kind, and its corners as corners of a unit cube, seen from inside counter-clockwise.
 type BoxFace = (&'static str, StructureKind, [[f32; 3]; 4]);
 
 const SIDES: [BoxFace; 6] = [
@@ -59,12 +59,12 @@ fn is_band_list(centres_hz: &[f32]) -> bool {
     !centres_hz.is_empty() && centres_hz.iter().all(in_range) && centres_hz.is_sorted_by(|a, b| a < b)
 }
 
-/// From the file's axes to the house's.
+/// Converts the file's axes to the house's.
 fn upright(p: Vec3) -> Vec3 {
     Vec3::new(p.x, p.z, -p.y)
 }
 
-/// A house in the making.
+/// A house under construction.
 struct MeasuredRoomBuilder<'a> {
     file: &'a MeasuredRoomFile,
     at: &'a FileLocation,
@@ -118,7 +118,7 @@ pub(super) fn convert(
 }
 
 impl MeasuredRoomBuilder<'_> {
-    /// A material of plaster, apart from what it does to sound; nothing passes it.
+    /// A material of plaster with other acoustic properties; it transmits nothing.
     fn material(&self, name: &str, file: &MeasuredMaterial) -> Result<Material, HousesError> {
         let at = self.at.field("materials").field(name);
         let substance = library().get_or_default("plaster");

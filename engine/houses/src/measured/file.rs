@@ -18,7 +18,7 @@ pub(super) struct MeasuredRoomFile {
     pub(super) walls: BTreeMap<String, String>,
     /// An OBJ file beside this one whose `usemtl` names are materials.
     pub(super) mesh: Option<String>,
-    /// By name, each once.
+    /// Materials by name, each once.
     #[serde(deserialize_with = "each_once")]
     pub(super) materials: BTreeMap<String, MeasuredMaterial>,
     /// All other fields; they belong to the measurement.
@@ -26,7 +26,7 @@ pub(super) struct MeasuredRoomFile {
     pub(super) others: BTreeMap<String, serde_json::Value>,
 }
 
-/// A map in which no name stands twice: which of two materials counts is not for us to say.
+/// A map without repeated names: which of two materials counts is not for us to say.
 fn each_once<'de, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<BTreeMap<String, MeasuredMaterial>, D::Error> {
@@ -54,10 +54,10 @@ fn each_once<'de, D: Deserializer<'de>>(
 /// The acoustic properties of a surface.
 #[derive(Debug, Deserialize)]
 pub(super) struct MeasuredMaterial {
-    /// 0 to 1.
+    /// Absorption, 0 to 1.
     #[serde(default = "little")]
     pub(super) absorption: BandCoefficient,
-    /// 0 to 1.
+    /// Scattering, 0 to 1.
     #[serde(default = "none")]
     pub(super) scattering: BandCoefficient,
     /// All other fields.
@@ -72,7 +72,7 @@ pub(super) struct MeasuredMaterial {
     expecting = "expected a number, or a list of one number for each band"
 )]
 pub(super) enum BandCoefficient {
-    /// For all.
+    /// For all bands.
     One(f32),
     /// Shape (band,).
     Each(Vec<f32>),

@@ -1,4 +1,4 @@
-//! Measured rooms: a box or a mesh, with what each surface absorbs and scatters.
+//! Measured rooms: a box or a mesh, with absorption and scattering of each surface.
 //!
 //! `docs/formats/measured-room.md` lists the fields. Sources, microphones and air of the same file belong to the measurement, not to
 //! the room, and are read by who measures.
@@ -22,7 +22,7 @@ const WORDS: [&[&str]; 2] = [
     &["\"shoebox\"", "\"mesh\"", "\"absorption\""],
 ];
 
-/// Returns whether `path` is a measured room: a JSON file with materials and a shape, or with what absorbs.
+/// Returns whether `path` is a measured room: a JSON file with materials and a shape, or with absorption.
 pub(crate) fn recognizes(path: &Path) -> bool {
     is_json_with(path, &WORDS)
 }
@@ -32,7 +32,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// # Errors
 /// [`HousesError::Io`] when the file cannot be read, [`HousesError::Syntax`] when it is no JSON of that form, [`HousesError::Field`]
 /// for a name that is a few letters from a field's, for a wall or face without a material, for tables of another length than the
-/// bands, and for a mesh that cannot be read or lies outside of the file's folder, [`HousesError::Empty`] without a triangle, [`HousesError::Scene`] when a number is out of range.
+/// bands, and for a mesh that cannot be read or lies outside of the file's folder, [`HousesError::Empty`] without a triangle,
+/// [`HousesError::Scene`] when a number is out of range.
 pub fn open(path: &Path) -> Result<(House, LoadReport), HousesError> {
     let folder = path.parent().unwrap_or_else(|| Path::new(""));
     let name = path.file_name().unwrap_or_default().to_string_lossy();

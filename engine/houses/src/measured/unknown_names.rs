@@ -1,4 +1,4 @@
-//! Names in the file that no field has: slips of the pen are refused, all others are the user's own.
+//! Unknown names in the file: misspelt ones are refused, all others are the user's own.
 
 use super::file::MeasuredRoomFile;
 use crate::error::HousesError;
@@ -21,9 +21,9 @@ const FIELDS: [&str; 11] = [
     "walls",
 ];
 const MATERIAL_FIELDS: [&str; 2] = ["absorption", "scattering"];
-/// Names with up to so many letters written otherwise are the same name, misspelt.
+/// Largest number of differing letters of a misspelt name.
 const SLIP_LETTERS: usize = 2;
-/// Names of up to so many letters have too many words near them: only other case and one letter too many are slips.
+/// Length up to which names have too many similar words: only other case and one letter too many are misspellings.
 const SHORT: usize = 4;
 
 /// Refuses unknown names that are nearly a field's, whose value would silently be the default; other names in a material are
@@ -36,7 +36,7 @@ pub(super) fn check(
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> Result<(), HousesError> {
-    // "source" beside "sources" is no slip.
+    // "source" beside "sources" is no misspelling.
     let is_there = |field: &&str| file.others.contains_key(*field);
     let (there, absent): (Vec<_>, Vec<_>) = FIELDS.into_iter().partition(is_there);
     for name in file.others.keys() {

@@ -11,8 +11,8 @@ use crate::warning_kind::WarningKind;
 /// The effort of a motor that states no bound, N·m or N.
 const UNBOUNDED: f64 = 1e6;
 
-/// Gives joints the motors of their actuators. Each joint has one motor that takes every kind of command; what an actuator
-/// does not say stays 0.
+/// Adds motors to joints from their actuators. Each joint has one motor that takes every kind of command; values that an actuator
+/// does not state stay 0.
 pub(super) fn add(
     model: &Model,
     joints: &mut [RobotJoint],

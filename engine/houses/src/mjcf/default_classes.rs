@@ -1,4 +1,4 @@
-//! Classes of defaults that a model names and does not define, or defines twice: the parser takes no notice, MuJoCo refuses them.
+//! Classes of defaults that a model names and does not define, or defines twice: the parser ignores them, MuJoCo refuses them.
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ pub(super) struct DefaultClasses {
 }
 
 impl DefaultClasses {
-    /// Notes what `node` of the file `at` defines or names.
+    /// Records the classes that `node` of the file `at` defines or names.
     pub(super) fn note(&mut self, node: Node<'_, '_>, at: &FileLocation, report: &mut LoadReport) {
         let tag = node.tag_name().name();
         let at = |field: &str| {
@@ -41,7 +41,7 @@ impl DefaultClasses {
         }
     }
 
-    /// Reports the names that nothing defines.
+    /// Reports the names without a definition.
     pub(super) fn finish(self, report: &mut LoadReport) {
         for (at, name) in self.named {
             if name != TOP && !self.defined.contains(&name) {

@@ -1,13 +1,13 @@
 //! Numbers of MJCF: finite, wherever they stand.
 //!
-//! `mjcf-rs` reads `nan` and `inf` as any other number, and what it makes of the root goes into every place below.
+//! `mjcf-rs` reads `nan` and `inf` as any other number, and their effect on the root spreads to every pose below.
 
 use roxmltree::Node;
 
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
-/// Attributes that hold numbers of which each must be finite.
+/// Attributes with numbers that must all be finite.
 const FINITE: [&str; 34] = [
     "pos",
     "quat",
@@ -47,7 +47,7 @@ const FINITE: [&str; 34] = [
 /// Attributes whose ends may be infinite.
 const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
 
-/// Refuses an element with a number that is none; `at` is its file.
+/// Refuses an element with a number that is not finite; `at` is its file.
 ///
 /// # Errors
 /// [`HousesError::Field`] names line, element and attribute.

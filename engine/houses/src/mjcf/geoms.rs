@@ -1,4 +1,4 @@
-//! Geoms: what is seen, what touches, and what it weighs.
+//! Geoms: visual shapes, collision shapes, and masses.
 
 use glam::{DMat3, DVec3, Quat, Vec3};
 use mjcf_rs::Model;
@@ -19,10 +19,10 @@ const USUAL_DENSITY_KG_M3: f64 = 1000.0;
 const PLANE_M: f32 = 20.0;
 /// Half of the thickness of the box that stands for a plane, m.
 const PLANE_DEPTH_M: f32 = 0.05;
-/// Groups from which geoms are drawn for debugging only, by MuJoCo's custom.
+/// Group from which on geoms are drawn for debugging only, by MuJoCo's custom.
 const HIDDEN_GROUP: i32 = 3;
 
-/// A geom that is a body's.
+/// A geom of a body.
 pub(super) struct BodyGeom {
     pub(super) shape: LinkShape,
     /// Its name in the file.
@@ -31,13 +31,13 @@ pub(super) struct BodyGeom {
     pub(super) seen: bool,
     /// True for a plane, which is held as a flat box.
     pub(super) is_plane: bool,
-    /// As stated, kg.
+    /// Mass as stated, kg.
     mass: Option<f64>,
-    /// kg/m³.
+    /// Density, kg/m³.
     density: f64,
 }
 
-/// The geoms of a body that are bodies.
+/// The geoms of a body that are solid.
 pub(super) fn pieces(
     model: &Model,
     body: &Body,
@@ -126,7 +126,7 @@ fn shape(
                 scale: DVec3::from_array(asset.scale).as_vec3(),
             }
         }
-        // Of the world's; a robot has none.
+        // A plane of the world; a robot has none.
         GeomType::Plane if of_world => {
             let size = |x: f32| if x > 0.0 { x } else { PLANE_M };
             let half = Vec3::new(size(a), size(b), PLANE_DEPTH_M);
@@ -186,7 +186,7 @@ fn image(
     }
 }
 
-/// The mass of a body out of its geoms; `None` for a body without one.
+/// The mass of a body from its geoms; `None` for a body without one.
 pub(super) fn weight(
     pieces: &[BodyGeom],
     at: &FileLocation,

@@ -1,7 +1,7 @@
 //! A house of several bodies, as `MolmoSpaces` and others write them for `MuJoCo`.
 //!
-//! Bodies and geoms that are called walls, floors and ceilings become the building, each floor a room; every other body of
-//! the world becomes an object with what hangs on it.
+//! Bodies and geoms with names of walls, floors and ceilings become the building, each floor a room; every other body of
+//! the world becomes an object with its child bodies.
 
 use std::sync::Arc;
 
@@ -27,12 +27,12 @@ use crate::warning_kind::{UnmappedKind, WarningKind};
 const LEVEL: LevelId = LevelId(0);
 /// Height of rooms without ceiling and walls, m.
 const CEILING_M: f32 = 2.5;
-/// The largest thing that a hand takes, m.
+/// Largest side of a thing that a hand takes, m.
 const HANDY_M: f32 = 0.6;
-/// The most joints whose object counts as furniture; more are a robot.
+/// Largest number of joints of an object that counts as furniture; more are a robot.
 const MOST_JOINTS: usize = 40;
 
-/// Returns whether the file is a house: more than one body stands in the world, or one beside geoms that are called walls or floors.
+/// Returns whether the file is a house: more than one body is in the world, or one beside geoms with names of walls or floors.
 pub(super) fn is_house(source: &MjcfSource) -> bool {
     let world = &source.model.bodies[0].body;
     let built = world
@@ -111,7 +111,7 @@ struct MjcfHouseReader {
 }
 
 impl MjcfHouseReader {
-    /// A body of the building and all below it, where they stand.
+    /// Adds a body of the building and all below it.
     fn walls(&mut self, source: &mut MjcfSource, root: BodyId, report: &mut LoadReport) {
         let mut open = vec![(root, Pose::IDENTITY)];
         while let Some((id, file_from_parent)) = open.pop() {
@@ -126,7 +126,7 @@ impl MjcfHouseReader {
         }
     }
 
-    /// The geoms of a body as pieces of the building. What is seen counts; where nothing is, what touches.
+    /// Adds the geoms of a body as pieces of the building: the visual ones, or without any the collision ones.
     fn building(
         &mut self,
         source: &MjcfSource,
@@ -169,7 +169,7 @@ impl MjcfHouseReader {
         }
     }
 
-    /// A material of the building: what its name means, else plaster, or parquet on floors.
+    /// A material of the building: by the meaning of its name, else plaster, or parquet on floors.
     fn material(
         &mut self,
         piece: &BodyGeom,
@@ -298,7 +298,7 @@ impl MjcfHouseReader {
         }
     }
 
-    /// A body with what hangs on it.
+    /// Adds a body with its child bodies.
     fn object(
         &mut self,
         source: &MjcfSource,
@@ -385,7 +385,7 @@ fn kind_words(name: &str) -> Option<String> {
     known.or(Some(plain))
 }
 
-/// Rooms of objects and the storey's box, by where things stand; what is small and loose can be taken.
+/// Assigns objects to rooms, and sets the storey's box; small loose things can be taken.
 fn place(data: &mut HouseData) {
     for k in 0..data.objects.len() {
         let id = ObjectId(k as u32);

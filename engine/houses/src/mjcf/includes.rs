@@ -1,6 +1,6 @@
 //! The files that a file includes or attaches: all inside the data root, few, and not nested without end, or refused.
 //!
-//! `mjcf-rs` opens them itself, as large and as often as files say, so all of them are looked at beforehand.
+//! `mjcf-rs` opens them itself, as large and as often as files say, so all of them are checked beforehand.
 
 use std::mem;
 
@@ -16,7 +16,7 @@ use crate::report::{FileLocation, LoadReport};
 use crate::robot::RobotFiles;
 use crate::xml;
 
-/// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite. What of it the parser
+/// Checks the text of `files` and everything it includes or attaches; also that all its numbers are finite. Parts that the parser
 /// skips is reported.
 ///
 /// # Errors
@@ -42,16 +42,16 @@ pub(super) fn check(
 struct IncludeResolver<'a> {
     files: &'a RobotFiles,
     report: &'a mut LoadReport,
-    /// Files looked at, those that are named again counted again.
+    /// Number of checked files, those that are named again counted again.
     seen: usize,
-    /// The file at hand and those that name it.
+    /// The current file and those that name it.
     open: Vec<String>,
-    /// Those of the model at hand.
+    /// The classes of the current model.
     classes: DefaultClasses,
 }
 
 impl IncludeResolver<'_> {
-    /// Returns how many elements a file stands for, with all that it includes and attaches.
+    /// Returns the number of elements of a file, with all that it includes and attaches.
     fn file(&mut self, name: &str, text: &str) -> Result<u64, HousesError> {
         self.seen += 1;
         let at = FileLocation::file(name);
@@ -119,7 +119,7 @@ impl IncludeResolver<'_> {
         let at = FileLocation::file(name)
             .line(row)
             .field(format_args!("{tag}.file"));
-        // The parser takes paths from the folder of the file that names them.
+        // The parser resolves paths from the folder of the file that names them.
         let stated = node.attribute("file").unwrap_or("");
         let path = self.files.resolve(folder_of(name), stated, &at)?;
         let bytes = self.files.root.read(&path, MAX_TEXT_BYTES)?;

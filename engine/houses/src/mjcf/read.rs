@@ -1,4 +1,4 @@
-//! The parsed model into a [`Robot`].
+//! Conversion of the parsed model into a [`Robot`].
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,12 +18,12 @@ use crate::report::{FileLocation, LoadReport};
 use crate::robot::{LinkInertia, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink, check};
 use crate::warning_kind::WarningKind;
 
-/// A parsed file and what stands beside it.
+/// A parsed file with its folder.
 pub(super) struct MjcfSource {
     pub(super) model: Model,
     files: RobotFiles,
     pub(super) at: FileLocation,
-    /// The bodies that hang on each body.
+    /// The child bodies of each body.
     children: Vec<Vec<BodyId>>,
 }
 
@@ -70,14 +70,14 @@ impl MjcfSource {
         &self.files.file
     }
 
-    /// The bodies that hang on nothing.
+    /// The bodies without a parent.
     pub(super) fn roots(&self) -> Vec<BodyId> {
         let roots = self.model.bodies_iter();
         let roots = roots.filter(|(_, entry)| entry.parent == Some(0));
         roots.map(|(id, _)| id).collect()
     }
 
-    /// A body and what hangs on it, parents first.
+    /// A body with its descendants, parents first.
     fn below(&self, root: BodyId) -> Vec<BodyId> {
         let mut found = vec![root];
         let mut next = 0;
@@ -103,7 +103,7 @@ impl MjcfSource {
         geoms::pieces(&self.model, body, &mut self.files, &at, report)
     }
 
-    /// A body and what hangs on it. A root that turns or slides hangs on an empty link that stays where it is.
+    /// Converts a body with its descendants. A root with a hinge or slide gets a fixed empty link as its parent.
     ///
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot).
@@ -175,7 +175,7 @@ impl MjcfSource {
         })
     }
 
-    /// The first body of the world and what hangs on it; what else stands there is reported.
+    /// The first body of the world with its descendants; other contents of the world are reported.
     ///
     /// # Errors
     /// Those of [`open_robot`](crate::open_robot).
@@ -195,7 +195,7 @@ impl MjcfSource {
     }
 }
 
-/// Reads an MJCF file: the first body of the world and what hangs on it.
+/// Reads an MJCF file: the first body of the world with its descendants.
 ///
 /// # Errors
 /// Those of [`open_robot`](crate::open_robot).
@@ -374,7 +374,7 @@ fn stated_weight(stated: &Inertial) -> LinkInertia {
     }
 }
 
-/// A joint that an equality ties to another.
+/// Ties a joint to another by an equality.
 fn follow(
     equality: &Equality,
     joints: &mut [RobotJoint],

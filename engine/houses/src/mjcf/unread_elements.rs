@@ -1,4 +1,4 @@
-//! Elements among bodies that nothing reads, and rotations that are none: they stand in the report, so that nothing vanishes silently.
+//! Elements among bodies that are not read, and invalid rotations: they are reported, so that nothing vanishes silently.
 
 use roxmltree::Node;
 
@@ -7,7 +7,7 @@ use crate::warning_kind::WarningKind;
 
 /// Elements that hold bodies.
 const HOLDERS: [&str; 3] = ["worldbody", "body", "frame"];
-/// Elements that `mjcf-rs` reads in them, and those that the format's page says are left alone: cameras, lights and sites.
+/// Elements that `mjcf-rs` reads in them, and those that the format's page lists as ignored: cameras, lights and sites.
 const KNOWN: [&str; 11] = [
     "attach",
     "body",
@@ -26,7 +26,7 @@ const MAKERS: [&str; 3] = ["composite", "flexcomp", "replicate"];
 /// Characters of an element's name that a report shows.
 const SHOWN: usize = 60;
 
-/// Adds to the report what is lost of an element; `at` is its file.
+/// Reports the losses of an element; `at` is its file.
 pub(super) fn report(node: Node<'_, '_>, at: &FileLocation, report: &mut LoadReport) {
     let at = || at.line(node.document().text_pos_at(node.range().start).row);
     let tag = node.tag_name().name();
@@ -44,7 +44,7 @@ pub(super) fn report(node: Node<'_, '_>, at: &FileLocation, report: &mut LoadRep
         report.warn(at(), WarningKind::Simplified { what });
     }
     if node.attribute("quat").is_some_and(is_zero) {
-        // MuJoCo takes it so, too (mju_normalize4).
+        // MuJoCo reads it so, too (mju_normalize4).
         let what = format!("<{tag} quat> of length 0 is no rotation; it is not turned");
         report.warn(at(), WarningKind::Simplified { what });
     }

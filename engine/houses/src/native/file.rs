@@ -43,7 +43,7 @@ pub(super) struct NativeFile {
     pub(super) house: HouseData,
 }
 
-/// Returns where the bytes of sound file `k` stand in the house's folder: never at a path that the tables spell.
+/// Returns the path of sound file `k` in the house's folder: never one that the tables spell.
 pub(super) fn sound_path(k: usize, name: &str) -> String {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
     let known = ["wav", "flac", "ogg", "oga"];

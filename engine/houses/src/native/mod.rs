@@ -3,7 +3,7 @@
 //! `house.json` holds every table of the house, `house.glb` its meshes and textures in a form that any viewer opens, and
 //! `sound_0.wav` and so on its sound files as they were.
 //! Houses that are written together (`write_into`) share meshes and textures in `object/` and `texture/` beside `house/`.
-//! Reading gives back the same bits that were written; `docs/decisions/0002-native-form.md` says why it is so.
+//! Reading gives back the same bits that were written; `docs/decisions/0002-native-form.md` gives the reasons.
 
 mod file;
 mod read;

@@ -1,4 +1,4 @@
-//! `NAME.dwell/` into a house.
+//! Reading of `NAME.dwell/`.
 
 use std::io;
 use std::path::Path;
@@ -64,7 +64,7 @@ fn read(path: &Path, threads: Threads) -> Result<House, HousesError> {
     }
     let file: NativeFile = json::from_slice(&text).map_err(&syntax)?;
     let bytes = root.read(GEOMETRY, MAX_BUFFER_BYTES)?;
-    // Houses that were written together share what stands beside them.
+    // Houses that were written together share the files beside them.
     let library = DataRoot::new(path.join("../.."))?;
     let geometry = ParsedGlb::read(&bytes, GEOMETRY, &library)?;
     let mut data = file.house;

@@ -1,4 +1,4 @@
-//! A house into `NAME.dwell/`.
+//! Writing of `NAME.dwell/`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -76,11 +76,11 @@ fn write_as(house: &House, path: &Path, storage: Storage) -> Result<(), HousesEr
             "a table holds a number that is not finite ({error})"
         )));
     }
-    // What is shared comes first: a house that is there is whole.
+    // Shared files come first: a house that exists is complete.
     if let Some(root) = path.parent().and_then(Path::parent) {
         for beside in &written.beside {
             let path = root.join(&beside.path);
-            // The name is the content's, so what is there is the same.
+            // The name is the content's, so an existing file is the same.
             if !path.exists() {
                 crate::atomic::write_file(&path, &beside.bytes)?;
             }

@@ -1,4 +1,4 @@
-//! An OBJ file as a house: an object, or a scene of named ones.
+//! Conversion of an OBJ file into a house: an object, or a scene of named ones.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -145,7 +145,7 @@ pub(crate) fn bare_mesh(bytes: &[u8], path: &str, report: &mut LoadReport) -> Me
     shape_of(&shape, &FileLocation::file(path), report)
 }
 
-/// The folder that bounds the file's paths, and the file in it: the data root when the file is a SUNCG model, whose
+/// The folder that bounds the file's paths, and the file in it: the data root if the file is a SUNCG model, whose
 /// textures lie outside of its own folder.
 fn locate(path: &Path) -> Result<(DataRoot, String), HousesError> {
     let name = path

@@ -27,15 +27,15 @@ pub struct ObjFile {
 /// A corner of a face: 0-based indices, or [`NONE`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct FaceCorner {
-    /// Into `positions`.
+    /// Index into `positions`.
     pub position: u32,
-    /// Into `texcoords`.
+    /// Index into `texcoords`.
     pub texcoord: u32,
-    /// Into `normals`.
+    /// Index into `normals`.
     pub normal: u32,
 }
 
-/// Faces that stand under the same names.
+/// Faces under the same names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FaceGroup {
     /// The last `o`, empty before the first.
@@ -59,12 +59,12 @@ impl ObjFile {
         &self.corners[start..self.face_ends[face] as usize]
     }
 
-    /// Returns how many faces there are.
+    /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.face_ends.len()
     }
 
-    /// Returns how many triangles the faces make when fanned.
+    /// Returns the number of triangles of the fanned faces.
     pub fn triangle_count(&self) -> usize {
         self.corners.len() - 2 * self.face_ends.len()
     }
@@ -101,7 +101,7 @@ pub struct MtlMaterial {
 }
 
 impl MtlMaterial {
-    /// Perceptual roughness of the Phong exponent, 0 to 1; `None` when nothing shines.
+    /// Perceptual roughness of the Phong exponent, 0 to 1; `None` without a specular colour.
     ///
     /// # Source
     /// B. Walter et al., EGSR 2007, section 5: a Blinn-Phong exponent n acts like a Beckmann width with

@@ -42,7 +42,7 @@ pub(super) fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
         .filter(|word| !word.is_empty())
 }
 
-/// A decimal number; `None` when the word is none or is not finite (`nan`, `-1.#IND`, `1e99`).
+/// A decimal number; `None` if the word is none or not finite (`nan`, `-1.#IND`, `1e99`).
 pub(super) fn float(word: &[u8]) -> Option<f32> {
     let value: f32 = std::str::from_utf8(word).ok()?.parse().ok()?;
     value.is_finite().then_some(value)
@@ -64,7 +64,7 @@ pub(super) fn integer(word: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Text of a name: trimmed, whatever bytes it holds.
+/// The text of a name: trimmed, whatever bytes it holds.
 pub(super) fn name(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.trim_ascii()).into_owned()
 }

@@ -40,7 +40,7 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) ->
     let folder = folder_of(path);
     let mut known = BTreeSet::new();
     let named = files.obj.material_libraries.iter();
-    // A library that is named again says nothing new.
+    // A library that is named again adds nothing.
     let named = named.filter(|library| known.insert(library.as_str()));
     for library in named.take(MAX_LIBRARIES) {
         let Ok(mtl_path) = DataRoot::resolve(folder, library) else {

@@ -5,7 +5,7 @@ use super::lines::{float, integer, lines, name, shorten, split_word, words};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// Reads MTL text. Never fails: what cannot be read is left out and reported.
+/// Reads MTL text. Never fails: unreadable statements are left out and reported.
 ///
 /// `file` names the file in the report.
 pub fn read_mtl(text: &[u8], file: &str, report: &mut LoadReport) -> MtlFile {

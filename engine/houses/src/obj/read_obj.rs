@@ -6,7 +6,7 @@ use crate::limits::MAX_CORNERS;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// Reads OBJ text. Never fails: what cannot be read is left out and reported.
+/// Reads OBJ text. Never fails: unreadable statements are left out and reported.
 ///
 /// `file` names the file in the report.
 pub fn read_obj(text: &[u8], file: &str, report: &mut LoadReport) -> ObjFile {
@@ -170,7 +170,7 @@ impl ObjReader<'_> {
         );
     }
 
-    /// Ends the stretch of faces under the names that hold until now.
+    /// Ends the stretch of faces under the current names.
     fn close_run(&mut self) {
         let start = self.obj.runs.last().map_or(0, |run| run.faces.end);
         let end = self.obj.face_ends.len();

@@ -1,4 +1,4 @@
-//! Faces of an OBJ file into triangle meshes.
+//! Conversion of faces of an OBJ file into triangle meshes.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use super::file::{FaceCorner, FaceGroup, MtlFile, NONE, ObjFile};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// Most material slots of one mesh: slots are 16-bit numbers.
+/// Largest number of material slots of one mesh: slots are 16-bit numbers.
 const MAX_SLOTS: usize = u16::MAX as usize;
 
-/// Vertices at one position that are compared; more are made again.
+/// Largest number of compared vertices at one position; more are duplicated.
 const MAX_CHAIN: usize = 256;
 
 /// The material slots of a model: those of its MTL files in file order, then names that only `usemtl` knows.
@@ -91,7 +91,7 @@ pub(crate) struct PartShape<'a> {
     pub(crate) box_mapping: bool,
 }
 
-/// Fans polygons into triangles, brings corners together into vertices, replaces numbers that are not finite.
+/// Fans polygons into triangles, merges corners into vertices, replaces numbers that are not finite.
 pub(crate) fn shape_of(shape: &PartShape<'_>, at: &FileLocation, report: &mut LoadReport) -> Mesh {
     let obj = shape.obj;
     let faces = || {
@@ -133,7 +133,7 @@ pub(crate) fn shape_of(shape: &PartShape<'_>, at: &FileLocation, report: &mut Lo
 }
 
 fn position(obj: &ObjFile, corner: FaceCorner) -> Vec3 {
-    // The first importers set what was no number to 0, and houses depend on it.
+    // The first importers set numbers that are not finite to 0, and houses depend on it.
     Vec3::from(obj.positions[corner.position as usize].map(|x| if x.is_finite() { x } else { 0.0 }))
 }
 
@@ -238,7 +238,7 @@ impl ObjMeshBuilder<'_> {
             };
             self.mesh.uvs.push(stored.unwrap_or_else(made));
         }
-        // A vertex with a normal of its own is found by nobody: it stays out of the chain.
+        // A vertex with a normal of its own is never shared: it stays out of the chain.
         self.chain.push((corner, if own { NONE } else { head }));
         if !own {
             self.heads.set(corner.position, vertex);

@@ -7,7 +7,7 @@ use glam::{Affine3A, Vec3};
 
 /// The text of an OBJ file under construction.
 ///
-/// Numbers are the shortest that read back as the same bits.
+/// Numbers are written as the shortest that read back as the same bits.
 #[derive(Default)]
 pub(crate) struct ObjWriter {
     text: String,
@@ -78,7 +78,7 @@ impl ObjWriter {
         };
     }
 
-    /// Returns what was written so far.
+    /// Returns the text so far.
     pub(crate) fn text(&self) -> &str {
         &self.text
     }
@@ -89,7 +89,7 @@ impl ObjWriter {
     }
 }
 
-/// A material as one `newmtl`; `texture` is the path of its image as the file's folder sees it.
+/// A material as one `newmtl`; `texture` is the path of its image relative to the file's folder.
 pub(crate) fn mtl_material(name: &str, material: &Material, texture: Option<&str>) -> String {
     let [r, g, b] = material.base_color.map(units::srgb_from_linear);
     // The exponent whose roughness this is; see `MtlMaterial::roughness`.

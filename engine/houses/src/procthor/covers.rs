@@ -4,7 +4,7 @@ use dwell_furniture::finishes::Finish;
 use dwell_furniture::textures::Srgb;
 use serde_json::Value;
 
-/// Words of names (lower case), what they mean, and its usual colour; the first that occurs counts.
+/// Words of names (lower case), their meaning, and its usual colour; the first that occurs counts.
 const COVERS: &[(&str, &str, &str, Srgb)] = &[
     ("carpet", "carpet", "carpet", [150, 140, 128]),
     ("brick", "brick_surface", "brick", [168, 92, 66]),
@@ -33,11 +33,11 @@ const COVERS: &[(&str, &str, &str, Srgb)] = &[
     ("wall", "paint", "painted_plaster", [226, 222, 212]),
 ];
 
-/// Of a name that says nothing, or none.
+/// The finish for a name without a meaning, or none.
 const PLAIN: Finish = Finish::plain("paint", "painted_plaster", [226, 222, 212]);
 
-/// Returns what a material of the file is: a name, or an object with a `name` and a `color`. The name is returned beside it
-/// where it says nothing.
+/// Returns the finish of a material of the file: a name, or an object with a `name` and a `color`. The name is returned beside it
+/// where it has no known meaning.
 pub(super) fn cover(material: &Value) -> (Finish, Option<String>) {
     let name = material
         .as_str()

@@ -1,4 +1,4 @@
-//! A house as ProcTHOR writes it, and the table of assets that may stand beside it.
+//! Files of ProcTHOR: a house, and the table of assets that may be beside it.
 //!
 //! # Source
 //! Deitke et al., "`ProcTHOR`", `NeurIPS` 2022; field names as in `procthor/utils/types.py` and in the data set `ProcTHOR-10K`.
@@ -80,7 +80,7 @@ pub(super) struct HoleFile {
     pub(super) hole_polygon: Vec<Vector3>,
     /// The same in older files.
     pub(super) bounding_box: Option<BoxFile>,
-    /// 0 shut, 1 open.
+    /// Openness: 0 shut, 1 open.
     #[serde(deserialize_with = "nullable")]
     pub(super) openness: f32,
 }

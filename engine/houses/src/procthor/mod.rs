@@ -102,7 +102,7 @@ fn count(objects: &[ObjectFile]) -> usize {
         .sum()
 }
 
-/// A room that was read.
+/// A converted room.
 struct ConvertedRoom {
     id: RoomId,
     file_id: String,
@@ -111,7 +111,7 @@ struct ConvertedRoom {
     ceiling_y: f32,
 }
 
-/// A house on its way.
+/// The conversion of a house.
 struct ProcThorReader<'a> {
     at: FileLocation,
     assembly: HouseAssembly,
@@ -125,7 +125,7 @@ struct ProcThorReader<'a> {
 }
 
 impl ProcThorReader<'_> {
-    /// The room over whose floor a place lies.
+    /// The room whose floor is below a place.
     fn room_over(&self, place: Vec3) -> Option<&ConvertedRoom> {
         let known = &self.assembly.data.rooms;
         let place = Vec2::new(place.x, place.z);
@@ -153,7 +153,7 @@ impl ProcThorReader<'_> {
     }
 }
 
-/// A point of the file in our axes: +Z is backwards here, forwards there.
+/// Converts a point of the file to our axes: +Z is backwards here, forwards there.
 fn point(p: Vector3) -> Vec3 {
     Vec3::new(p.x, p.y, -p.z)
 }
@@ -165,7 +165,7 @@ fn rotation(degrees: Vector3) -> Quat {
     turn(Vec3::Y, -degrees.y) * turn(Vec3::X, -degrees.x) * turn(Vec3::Z, degrees.z)
 }
 
-/// Returns whether numbers can be a place in a house.
+/// Returns whether numbers are a possible position in a house.
 fn is_place(p: Vec3) -> bool {
     p.is_finite() && Aabb::new(Vec3::splat(-1e4), Vec3::splat(1e4)).contains(p)
 }

@@ -1,4 +1,4 @@
-//! Our models in the places of the file's assets.
+//! Conversion of the file's assets into our models.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -20,9 +20,9 @@ use crate::building::assembly::ModelInstances;
 use crate::import::{CategoryRow, category, category_of};
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
-/// Between the file's forward (+Z, our -Z) and the front of our models (+Z).
+/// Rotation between the file's forward (+Z, our -Z) and the front of our models (+Z).
 const HALF_TURN: f32 = std::f32::consts::PI;
-/// Stretching beyond this, or beyond one over it, is said.
+/// Stretching beyond which, or below the inverse of which, it is reported.
 const ODD_STRETCH: f32 = 3.0;
 
 /// A row of `assets/ai2thor_types.csv`.
@@ -53,7 +53,7 @@ fn kind_of(type_name: &str) -> Option<&'static str> {
 type AssetKinds = BTreeMap<(String, u32, bool), Option<ModelInstances>>;
 
 impl ProcThorReader<'_> {
-    /// All objects, those in and on others too.
+    /// Adds all objects, those in and on others too.
     pub(super) fn objects(&mut self, objects: &[ObjectFile]) {
         let mut kinds = AssetKinds::new();
         let mut unsized_count = 0;
@@ -103,7 +103,7 @@ impl ProcThorReader<'_> {
             return;
         };
         *unsized_count += usize::from(size.is_none());
-        // What stands on the floor is twice as high as its middle.
+        // The height of a thing on the floor is twice that of its middle.
         let upright = turned.mul_vec3(Vec3::Y).y > 0.99;
         let stands = 2.0 * (middle.y - self.floor_y);
         let height = (size.is_none() && !inside && upright && stands > 0.0).then_some(stands);
@@ -131,7 +131,7 @@ impl ProcThorReader<'_> {
         self.name_last(&object.id, &object.asset_id, at);
     }
 
-    /// The model of an asset; `None` when nothing is known of it.
+    /// The model of an asset; `None` for an unknown one.
     fn model(
         &mut self,
         type_name: &str,
@@ -201,7 +201,7 @@ impl ProcThorReader<'_> {
     }
 }
 
-/// A model that nothing moves, where `stays`; its doors and drawers still do.
+/// A model that is fixed, if `stays`; its doors and drawers still move.
 fn staying(mut model: Model, stays: bool) -> Model {
     if stays && model.mobility == Mobility::Movable {
         model.mobility = if model.joints.is_empty() {
@@ -214,7 +214,7 @@ fn staying(mut model: Model, stays: bool) -> Model {
     model
 }
 
-/// Something of which only size and name are known.
+/// A block for an asset of which only size and name are known.
 fn plain_block(type_name: &str, size: Vec3) -> Model {
     let wood = Finish::plain("unknown", "wood", [170, 150, 124]);
     let half = size * 0.5;

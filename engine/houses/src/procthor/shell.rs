@@ -36,22 +36,22 @@ const SILL_M: f32 = 0.02;
 /// A wall's face: it runs from `foot` along `along`, `height_m` high, and looks along `normal`.
 struct WallFace {
     foot: Vec3,
-    /// Unit length.
+    /// Direction, unit length.
     along: Vec3,
     width_m: f32,
     height_m: f32,
-    /// Unit length.
+    /// Normal, unit length.
     normal: Vec3,
 }
 
-/// A hole on a face: from and to along it, from and to above its foot, m.
+/// A hole on a face: ends along it, ends above its foot, m.
 #[derive(Clone, Copy)]
 struct FaceHole {
     along: [f32; 2],
     up: [f32; 2],
 }
 
-/// A wall that was read.
+/// A converted wall.
 struct ConvertedWall {
     /// Index of the wall in the file.
     k: usize,
@@ -60,7 +60,7 @@ struct ConvertedWall {
 }
 
 impl WallFace {
-    /// The part of a hole that is on the face, give or take what rounding takes.
+    /// The part of a hole that is on the face, with a tolerance for rounding.
     ///
     /// # Errors
     /// A sentence when the hole reaches beyond the face.
@@ -109,7 +109,7 @@ impl WallFace {
                     continue;
                 }
                 let mut corners = [(a[0], u[0]), (a[1], u[0]), (a[1], u[1]), (a[0], u[1])];
-                // Counter-clockwise as the room sees it.
+                // Counter-clockwise seen from the room.
                 if self.along.cross(Vec3::Y).dot(self.normal) < 0.0 {
                     corners.reverse();
                 }
@@ -435,7 +435,7 @@ impl ProcThorReader<'_> {
         self.name_last(&row.id, &row.asset_id, at);
     }
 
-    /// Calls the newest object what the file calls it; `at` is the place of its row.
+    /// Renames the newest object to its name in the file; `at` is the place of its row.
     pub(super) fn name_last(&mut self, id: &str, asset: &str, at: &str) {
         let Some(object) = self.assembly.data.objects.as_mut_slice().last_mut() else {
             return;

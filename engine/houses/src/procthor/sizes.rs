@@ -13,7 +13,7 @@ use crate::warning_kind::WarningKind;
 
 /// The file's name.
 const FILE: &str = "asset-database.json";
-/// Folders that are looked into: the house's own, and so many above.
+/// Number of folders that are searched: the house's own, and those above.
 const FOLDERS: usize = 3;
 
 /// Type and size of each asset.
@@ -23,14 +23,14 @@ pub(super) struct AssetSizes {
 }
 
 impl AssetSizes {
-    /// Reads the nearest file at or above `folder`; none is no fault, one that cannot be read is reported.
+    /// Reads the nearest file at or above `folder`; a missing one is no fault, an unreadable one is reported.
     pub(super) fn around(folder: &Path, report: &mut LoadReport) -> Self {
         let folder = folder.canonicalize().unwrap_or_default();
         let mut folders = folder.ancestors().take(FOLDERS);
         let Some(folder) = folders.find(|folder| folder.join(FILE).is_file()) else {
             return Self::default();
         };
-        // It belongs to the folder that it stands in: a link out of there is not followed.
+        // It belongs to the folder that it is in: a link out of there is not followed.
         let text = DataRoot::new(folder)
             .and_then(|root| root.read(FILE, MAX_TEXT_BYTES))
             .map_err(|error| error.reason());
@@ -44,7 +44,7 @@ impl AssetSizes {
         }
     }
 
-    /// Reads the table; sizes that no thing can have are left out.
+    /// Reads the table; impossible sizes are left out.
     fn read(text: &[u8]) -> Result<Self, String> {
         let file: AssetsFile = crate::json::from_slice(text).map_err(crate::plain_parse_error)?;
         let mut known = BTreeMap::new();

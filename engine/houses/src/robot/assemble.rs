@@ -23,7 +23,7 @@ const GROUND_M: f32 = 5.0;
 /// Thickness of the ground, m.
 const GROUND_DEPTH_M: f32 = 0.1;
 
-/// From a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
+/// The transform from a robot's axes (+X forward, +Z up) to dwell's (-Z forward, +Y up).
 pub(crate) fn ours_from_robot() -> Pose {
     let axes = Mat3::from_cols(Vec3::NEG_Z, Vec3::NEG_X, Vec3::Y);
     Pose::new(Vec3::ZERO, Quat::from_mat3(&axes))
@@ -39,7 +39,7 @@ pub(crate) fn add(
 ) {
     let object = ObjectId(data.objects.len() as u32);
     let first_part = PartId(data.parts.len() as u32);
-    // The links that begin a rigid group: the root, and what each moving joint moves.
+    // The links that begin a rigid group: the root, and the child of each moving joint.
     let moving = || {
         robot
             .joints
@@ -197,7 +197,7 @@ pub(crate) fn add(
     }
 }
 
-/// Materials that the robot has already brought.
+/// Materials that the robot has already added.
 #[derive(Default)]
 struct RobotMaterials {
     known: Vec<([u32; 4], String, Option<TextureId>, MaterialId)>,
@@ -250,7 +250,7 @@ impl RobotMaterials {
     }
 }
 
-/// The place of an image among the house's; a shared one is there once.
+/// The id of an image among the house's; a shared one is added once.
 pub(crate) fn texture(data: &mut HouseData, image: &Arc<Texture>) -> TextureId {
     let same = |(id, other): (TextureId, &Arc<Texture>)| Arc::ptr_eq(other, image).then_some(id);
     let known = data.textures.iter_ids().find_map(same);

@@ -1,4 +1,4 @@
-//! Links and joints into a tree; loops, orphans and numbers no body can have are refused.
+//! Checks that links and joints form a tree; loops, orphans and impossible numbers are refused.
 
 use std::collections::BTreeSet;
 
@@ -74,7 +74,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
     }
     let mut order = vec![root];
     let mut joints = Vec::with_capacity(robot.joints.len());
-    // Of each link; `None` for what does not hang on the root.
+    // Position of each link in `order`; `None` for links that are not connected to the root.
     let mut places: Vec<Option<usize>> = vec![None; count];
     let mut next = 0;
     while let Some(&link) = order.get(next) {
@@ -233,7 +233,7 @@ fn positive(m: &DMat3) -> bool {
     a.x > 0.0 && a.x * b.y - a.y * b.x > 0.0 && m.determinant() > 0.0
 }
 
-/// Returns what moves must have a mass.
+/// Checks that moving links have a mass.
 fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
     let fixed = FixedLinks::new(robot);
     for joint in robot

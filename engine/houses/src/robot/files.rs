@@ -1,4 +1,4 @@
-//! The files beside a robot's own: which folder bounds them, and its meshes.
+//! The files beside a robot's own: the folder that bounds them, and its meshes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(crate) struct RobotFiles {
     /// The robot's file, relative to the root.
     pub(crate) file: String,
     meshes: BTreeMap<String, Arc<Mesh>>,
-    /// `None` for those that cannot be read, which is reported once.
+    /// Images; `None` for those that cannot be read, which is reported once.
     images: BTreeMap<String, Option<Arc<Texture>>>,
     pixels: PixelBudget,
 }
@@ -69,7 +69,7 @@ impl RobotFiles {
         })
     }
 
-    /// The path inside the root that `name` means: relative to `folder`, or `package://NAME/...`, where NAME is the root's own
+    /// The path inside the root of `name`: relative to `folder`, or `package://NAME/...`, where NAME is the root's own
     /// name or a folder in it; a package that is neither is taken for the root.
     ///
     /// # Errors
@@ -204,7 +204,7 @@ fn bare(mesh: Mesh) -> Mesh {
     }
 }
 
-/// All that a file shows as one mesh.
+/// All meshes of a file as one.
 fn gathered(house: &House) -> Mesh {
     let mut all = Mesh::default();
     for piece in &house.structure {

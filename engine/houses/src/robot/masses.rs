@@ -8,7 +8,7 @@ use crate::warning_kind::WarningKind;
 
 use super::model::{LinkInertia, Robot, RobotJoint, RobotJointKind};
 
-/// By so much numbers of a few digits may break the inequality of moments.
+/// Factor by which numbers of a few digits may violate the triangle inequality of moments.
 const ROUNDING: f64 = 1.01;
 
 /// The links of a robot that fixed joints connect.
@@ -28,7 +28,7 @@ impl<'a> FixedLinks<'a> {
         Self { below }
     }
 
-    /// The link `first` and all that is fixed to it, each with its place on `first`.
+    /// The link `first` and all that is fixed to it, each with its pose on `first`.
     pub(super) fn group(&self, first: usize) -> Vec<(usize, Pose)> {
         let mut group = vec![(first, Pose::IDENTITY)];
         let mut next = 0;
@@ -84,7 +84,7 @@ impl LinkInertia {
         })
     }
 
-    /// Adds to the report moments that no body has by more than rounding: the largest is above the sum of the others.
+    /// Reports moments that violate the triangle inequality by more than rounding: the largest is above the sum of the others.
     pub(crate) fn report_impossible(&self, at: &FileLocation, report: &mut LoadReport) {
         let (moments, _) = self.principal();
         let largest = moments.max_element();
@@ -123,14 +123,14 @@ impl LinkInertia {
         (moments.max(DVec3::splat(1e-12)), axes)
     }
 
-    /// The principal axes and moments. Moments that no body can have, as rounded files hold, are brought to the nearest that
-    /// one can.
+    /// The principal axes and moments. Impossible moments, as rounded files hold, are moved to the nearest
+    /// possible ones.
     pub(super) fn inertial(&self) -> Inertial {
         let (mut moments, axes) = self.principal();
         let largest = moments.max_element();
         let others = moments.element_sum() - largest;
         if largest > others {
-            // Half of what is too much goes to the smaller ones.
+            // Half of the excess goes to the smaller ones.
             let more = 0.5 * (largest - others);
             moments = DVec3::from_array(
                 moments

@@ -1,6 +1,6 @@
-//! Robots: what URDF and MJCF have in common, and how a robot gets into a house.
+//! Robots: the common part of URDF and MJCF, and the placement of a robot in a house.
 //!
-//! Files say +Z up and +X forward. The base's frame in a house is dwell's: +Y up, and the robot faces -Z, as an agent at
+//! Files have +Z up and +X forward. The base's frame in a house is dwell's: +Y up, and the robot faces -Z, as an agent at
 //! yaw 0 does. Frames of links stay as the file has them.
 
 mod assemble;
@@ -26,7 +26,7 @@ use dwell_scene::{House, Pose};
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
-/// A house with a robot in it. `name` must be free; `fixed_base` holds its base for good, else the base is a body that
+/// A house with a robot in it. `name` must be free; `fixed_base` fixes its base, else the base is a body that
 /// stands and falls. Meshes are shared with the house.
 ///
 /// Links that are fixed to each other are one part, by the name of the one nearest to the base: it has the mass, centre and inertia of

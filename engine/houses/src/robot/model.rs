@@ -1,4 +1,4 @@
-//! A robot as its file has it, formats apart.
+//! A robot as its file has it, without regard to the format.
 
 use std::sync::Arc;
 
@@ -31,14 +31,14 @@ pub(crate) struct RobotLink {
     pub(crate) collisions: Vec<LinkShape>,
 }
 
-/// Mass, and how it is spread.
+/// Mass and its distribution.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LinkInertia {
     /// kg.
     pub(crate) mass: f64,
-    /// In the link's frame, m.
+    /// Centre of mass in the link's frame, m.
     pub(crate) center: DVec3,
-    /// About the centre, along the link's axes, kg·m².
+    /// Inertia about the centre, along the link's axes, kg·m².
     pub(crate) inertia: DMat3,
 }
 
@@ -78,7 +78,7 @@ pub(crate) enum RobotJointKind {
 #[derive(Clone, Debug)]
 pub(crate) struct RobotJoint {
     pub(crate) name: String,
-    /// Places in the robot's links.
+    /// Positions in the robot's links.
     pub(crate) parent: usize,
     pub(crate) child: usize,
     pub(crate) motion: RobotJointKind,
@@ -121,7 +121,7 @@ impl Robot {
         moving.map(|joint| joint.name.as_str())
     }
 
-    /// Returns whether its file holds the base for good: in MJCF a root without a free joint; URDF does not say, so `true`.
+    /// Returns whether its file fixes the base: in MJCF a root without a free joint; URDF does not say, so `true`.
     pub fn has_fixed_base(&self) -> bool {
         self.fixed_base
     }

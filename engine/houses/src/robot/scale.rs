@@ -7,7 +7,7 @@ use super::model::{LinkShape, Robot, RobotJointKind, ShapeGeometry};
 impl Robot {
     /// The same robot with all lengths multiplied by `factor` and all masses by `mass_factor`.
     ///
-    /// Positions of slides are lengths and grow; what joints and motors state as forces and torques stays.
+    /// Positions of slides are lengths and are scaled; forces and torques of joints and motors stay.
     #[must_use]
     pub(crate) fn scaled(mut self, factor: f32, mass_factor: f32) -> Self {
         let moved = |pose: Pose| Pose::new(pose.position * factor, pose.rotation);

@@ -1,4 +1,4 @@
-//! Shapes as triangles and as collision pieces.
+//! Conversion of shapes into triangles and collision pieces.
 
 use dwell_scene::{Collider, Mesh, Pose, math};
 use glam::{Affine3A, Quat, Vec3};
@@ -30,7 +30,7 @@ impl ShapeGeometry {
         }
     }
 
-    /// Returns whether its sizes are those of a body.
+    /// Returns whether its sizes are finite and positive.
     pub(super) fn is_sound(&self) -> bool {
         self.numbers().iter().all(|x| (1e-6..=1000.0).contains(x))
     }
@@ -115,12 +115,12 @@ fn turned(outline: &[(f32, f32)]) -> Mesh {
     mesh
 }
 
-/// Turns Y, along which our cylinders stand, into Z.
+/// Rotates Y, along which our cylinders stand, into Z.
 fn z_from_y() -> Pose {
     Pose::new(Vec3::ZERO, Quat::from_rotation_arc(Vec3::Y, Vec3::Z))
 }
 
-/// The collision pieces of a shape at a place.
+/// The collision pieces of a shape at a pose.
 pub(super) fn colliders(shape: &LinkShape, part_from_shape: &Pose) -> Vec<Collider> {
     let ball = |along: f32, radius: f32| Collider::Ball {
         center: part_from_shape.transform_point(Vec3::Z * along),

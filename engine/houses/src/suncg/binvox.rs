@@ -20,7 +20,7 @@ pub struct VoxelGrid {
 }
 
 impl VoxelGrid {
-    /// Returns how many voxels are solid.
+    /// Returns the number of solid voxels.
     pub fn count(&self) -> u64 {
         self.solid.iter().filter(|solid| **solid).count() as u64
     }

@@ -1,4 +1,4 @@
-//! Values as derived files really write them: numbers as strings, flags as anything, `null` for NaN.
+//! Values as derived files write them: numbers as strings, flags as anything, `null` for NaN.
 
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! A path into a house.
+//! Opening of a SUNCG path.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The text of `house.json` into [`SuncgHouse`], node by node, so that one bad field costs that field only.
+//! Parsing of `house.json` into [`SuncgHouse`], node by node, so that one bad field costs that field only.
 
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};

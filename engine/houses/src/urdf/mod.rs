@@ -1,6 +1,6 @@
 //! URDF, the Unified Robot Description Format of ROS.
 //!
-//! Read by hand over an XML tree: the crates that read URDF (`urdf-rs` 0.10) know no places in the file and take `nan` for
+//! Read by hand over an XML tree: the crates that read URDF (`urdf-rs` 0.10) give no places in the file and accept `nan` as
 //! a number, and an error here must name the node and the field.
 
 mod read;

@@ -1,4 +1,4 @@
-//! The file into a [`Robot`].
+//! Conversion of the file into a [`Robot`].
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -391,7 +391,7 @@ impl UrdfReader<'_> {
     }
 }
 
-/// The motor of a joint with an effort limit. URDF knows no gains: stiff enough for full effort at 0.02 rad (or m) off,
+/// Returns the motor of a joint with an effort limit. URDF knows no gains: stiff enough for full effort at 0.02 rad (or m) off,
 /// damped as strongly as a tenth of a second of that, and carrying weight by feed-forward, as controllers of arms do.
 fn servo(effort: f32, velocity: f32) -> Servo {
     let stiffness = effort / FULL_EFFORT_AT;

@@ -1,4 +1,4 @@
-//! The plan becomes a building: the walls, slabs, doors and windows of generated houses.
+//! Construction of a plan's building: the walls, slabs, doors and windows of generated houses.
 
 use std::collections::BTreeSet;
 
@@ -36,12 +36,12 @@ use crate::report::FileLocation;
 const CEILING_SLAB_M: f32 = 0.1;
 /// Thickness of floors, and of the ceiling under the roof, m.
 const FLOOR_SLAB_M: f32 = 0.2;
-/// The most storeys.
+/// Largest number of storeys.
 const MOST_STOREYS: usize = 20;
-/// The least floor of stairs, across and along their climb, m.
+/// Smallest floor of stairs, across and along their climb, m.
 const LEAST_STAIRS_M: [f32; 2] = [1.6, 2.4];
 
-/// Makes the building of a plan.
+/// Builds the building of a plan.
 ///
 /// # Errors
 /// [`HousesError::Spec`] names storey, room or opening, what was found and what is possible.
@@ -112,12 +112,12 @@ struct StoreyBuilder<'a> {
     key: RandomKey,
     level: usize,
     outer: Millimetres,
-    /// Stairs that come up here.
+    /// The stairs that come up here.
     well_below: Option<&'a StairsPlan>,
 }
 
 impl StoreyBuilder<'_> {
-    /// Adds the storey; gives back how far above its floor the next one is.
+    /// Adds the storey; returns the height of the next one above its floor.
     fn build(&self, assembly: &mut HouseAssembly) -> Result<f32, HousesError> {
         let height = within("height_m", self.storey.height_m, [1.8, 20.0], "m")?;
         if self.top && self.storey.stairs.is_some() {
@@ -477,7 +477,7 @@ impl StoreyBuilder<'_> {
     }
 }
 
-/// Returns what people call a room.
+/// Returns the everyday name of a room.
 fn kind_of(room: &RoomPlan) -> String {
     let told = room.kind.as_deref().unwrap_or(&room.name);
     let known = room_kind(told);
@@ -495,7 +495,7 @@ fn covers(well: &[Millimetres; 4], cell: &[Millimetres; 4]) -> bool {
     cell[0] >= well[0] && cell[2] <= well[2] && cell[1] >= well[1] && cell[3] <= well[3]
 }
 
-/// The half of a doorway on the side of a room, if the door is one of its.
+/// The half of a doorway on the side of a room, if the door leads into it.
 fn doorway(hole: &PlanOpening<'_>, stretch: &WallSegment, room: usize) -> Option<[f32; 4]> {
     if !matches!(hole.filling, OpeningFill::Door(_)) {
         return None;

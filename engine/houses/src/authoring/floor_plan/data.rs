@@ -14,11 +14,11 @@ pub struct BuildingPlan {
     pub style: Option<String>,
     /// The seed for all that is not stated.
     pub seed: u64,
-    /// Thickness of walls to the outside, m; 0.05 to 1. Walls between rooms are what is left between their floors.
+    /// Thickness of walls to the outside, m; 0.05 to 1. Walls between rooms fill the space between their floors.
     pub outer_wall_m: f32,
     /// Sun and sky.
     pub daytime: Daytime,
-    /// From the ground up.
+    /// The storeys from the ground up.
     pub storeys: Vec<StoreyPlan>,
 }
 
@@ -38,7 +38,7 @@ impl Default for BuildingPlan {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StoreyPlan {
-    /// From the floor to the lower face of the ceiling, m; 1.8 to 20.
+    /// Height from the floor to the lower face of the ceiling, m; 1.8 to 20.
     pub height_m: f32,
     /// Rooms; their floors do not overlap.
     pub rooms: Vec<RoomPlan>,
@@ -107,11 +107,11 @@ pub enum DoorLeaf {
     Panel,
     /// A leaf with a pane.
     Glazed,
-    /// Nothing: an opening.
+    /// No leaf: an opening.
     None,
 }
 
-/// The side of a leaf's hinges, as one stands in the room into which it swings and looks at it.
+/// The side of a leaf's hinges, seen from the room into which it swings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HingeSide {

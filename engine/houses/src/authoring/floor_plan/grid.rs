@@ -9,9 +9,9 @@ use crate::error::HousesError;
 /// A length in whole millimetres.
 pub(super) type Millimetres = i32;
 
-/// The most lines along x or z; cells are their product.
+/// Largest number of lines along x or z; cells are their product.
 const MAX_LINES: usize = 800;
-/// The least thickness of a wall.
+/// Smallest thickness of a wall.
 const LEAST_WALL: Millimetres = 50;
 
 /// Metres.
@@ -37,7 +37,7 @@ pub(super) enum PlanCell {
 pub(super) struct PlanGrid {
     pub(super) xs: Vec<Millimetres>,
     pub(super) zs: Vec<Millimetres>,
-    /// Rows of growing x.
+    /// Cells in rows of growing x.
     cells: Vec<PlanCell>,
     /// The room whose slabs reach under and over each cell: its own, or the nearest one of a wall.
     owners: Vec<Option<usize>>,
@@ -123,7 +123,7 @@ impl PlanGrid {
         self.zs.len().saturating_sub(1)
     }
 
-    /// Returns what lies at column and row; air beyond the grid.
+    /// Returns the cell at column and row; air beyond the grid.
     pub(super) fn cell(&self, i: usize, j: usize) -> PlanCell {
         if i >= self.columns() || j >= self.rows() {
             return PlanCell::Air;
@@ -136,7 +136,7 @@ impl PlanGrid {
         [self.xs[i], self.zs[j], self.xs[i + 1], self.zs[j + 1]]
     }
 
-    /// Rooms part by walls that can stand.
+    /// Checks that walls thick enough separate the rooms.
     fn check_walls(&self, storey: &StoreyPlan) -> Result<(), HousesError> {
         for along_x in [true, false] {
             let (lines, cross, count) = if along_x {
@@ -173,7 +173,7 @@ impl PlanGrid {
         Ok(())
     }
 
-    /// Gives each cell of a wall to the nearest room, counted in cells.
+    /// Assigns each cell of a wall to the nearest room, counted in cells.
     fn own(&mut self) {
         let (columns, rows) = (self.columns(), self.rows());
         let owner = |cell: &PlanCell| match cell {
@@ -336,7 +336,7 @@ fn meet(a: [[Millimetres; 2]; 2], b: [[Millimetres; 2]; 2]) -> bool {
     })
 }
 
-/// Returns where an outline is crossed by the row of cells that begins at `z`: pairs of x with the room between.
+/// Returns the crossings of an outline with the row of cells that begins at `z`: pairs of x with the room between.
 fn crossings(outline: &[[Millimetres; 2]], z: Millimetres) -> Vec<Millimetres> {
     let mut found: Vec<Millimetres> = (0..outline.len())
         .filter_map(|k| {
@@ -349,7 +349,7 @@ fn crossings(outline: &[[Millimetres; 2]], z: Millimetres) -> Vec<Millimetres> {
     found
 }
 
-/// Returns what of the row of cells from `z` to `z` lies within `outer` of the outline's edges: pairs of x.
+/// Returns the part of the row of cells from `z` to `z` within `outer` of the outline's edges: pairs of x.
 fn grown(
     outline: &[[Millimetres; 2]],
     [z0, z1]: [Millimetres; 2],

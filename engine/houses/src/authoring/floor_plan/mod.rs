@@ -1,6 +1,6 @@
-//! A building from a plan: rooms with their floors free of walls, what is left between them is wall.
+//! A building from a plan: rooms with their floors free of walls; the space between them is wall.
 //!
-//! `data` is the data, `grid` says what is room, wall and air, `walls` cuts the walls into straight stretches, `construct` makes
+//! `data` is the data, `grid` divides storeys into room, wall and air, `walls` cuts the walls into straight stretches, `construct` makes
 //! the house of them, with the walls, slabs, doors and windows of generated houses.
 
 mod construct;

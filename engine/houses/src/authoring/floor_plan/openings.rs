@@ -9,7 +9,7 @@ use crate::error::HousesError;
 
 /// Wall that stays above an opening, and beside it, m.
 const REST_M: f32 = 0.05;
-/// Before this end of a wall a leaf has no room to open beyond a right angle, m.
+/// Distance from the end of a wall within which a leaf cannot open beyond a right angle, m.
 const BESIDE_M: f32 = 0.12;
 
 /// The contents of a hole.
@@ -157,7 +157,7 @@ fn of_window<'a>(
     })
 }
 
-/// Returns whether a stretch parts a room from something else, on a side of the room.
+/// Returns whether a stretch separates a room from something else, on a side of the room.
 fn lies(
     stretch: &WallSegment,
     own: usize,
@@ -181,7 +181,7 @@ fn word(side: Option<CardinalDirection>) -> String {
     side.map_or_else(String::new, |side| format!("{side:?} ").to_lowercase())
 }
 
-/// A stretch for which `fits` holds, and where the hole is along it.
+/// A stretch for which `fits` holds, and the position of the hole along it.
 fn place(
     stretches: &[WallSegment],
     fits: impl Fn(&WallSegment) -> bool,

@@ -5,7 +5,7 @@ use super::grid::{Millimetres, PlanCell, PlanGrid};
 /// A stretch of wall.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct WallSegment {
-    /// x from, z from, x to, z to.
+    /// The rectangle: x from, z from, x to, z to.
     pub(super) rect: [Millimetres; 4],
     /// True if it runs along x; else along z.
     pub(super) along_x: bool,
@@ -16,19 +16,19 @@ pub(super) struct WallSegment {
 }
 
 impl WallSegment {
-    /// From and to along the wall.
+    /// The ends along the wall.
     pub(super) fn span(&self) -> [Millimetres; 2] {
         let [x0, z0, x1, z1] = self.rect;
         if self.along_x { [x0, x1] } else { [z0, z1] }
     }
 
-    /// From and to across the wall.
+    /// The faces across the wall.
     pub(super) fn depth(&self) -> [Millimetres; 2] {
         let [x0, z0, x1, z1] = self.rect;
         if self.along_x { [z0, z1] } else { [x0, x1] }
     }
 
-    /// Returns whether it parts these two.
+    /// Returns whether it separates these two.
     pub(super) fn parts(&self, a: PlanCell, b: PlanCell) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }
@@ -37,15 +37,15 @@ impl WallSegment {
 /// The run of wall that a cell belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum WallRun {
-    /// In a wall along x, with what lies north and south of it.
+    /// In a wall along x, with the cells north and south of it.
     X([PlanCell; 2]),
-    /// In a wall along z, with what lies west and east of it.
+    /// In a wall along z, with the cells west and east of it.
     Z([PlanCell; 2]),
     /// At a corner or a crossing.
     Corner,
 }
 
-/// All stretches of a storey, those along x first. `thickest`: what is thicker is no wall between two sides.
+/// All stretches of a storey, those along x first. `thickest`: walls beyond that thickness have no other side.
 pub(super) fn stretches(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegment> {
     let (columns, rows) = (grid.columns(), grid.rows());
     let mut runs = Vec::with_capacity(columns * rows);
@@ -66,7 +66,7 @@ pub(super) fn stretches(grid: &PlanGrid, thickest: Millimetres) -> Vec<WallSegme
         let mut open: Vec<WallSegment> = Vec::new();
         for line in 0..lines {
             let at = |k: usize| if along_x { (line, k) } else { (k, line) };
-            // What of this line of cells belongs together across the wall.
+            // The wall segments of this line of cells across the wall.
             let mut slices: Vec<WallSegment> = Vec::new();
             for k in 0..cross {
                 let (i, j) = at(k);
@@ -150,7 +150,7 @@ fn run_of(grid: &PlanGrid, i: usize, j: usize, thickest: Millimetres) -> WallRun
     }
 }
 
-/// Returns what lies on both sides of the wall at a place of a line of cells, and how far they are apart.
+/// Returns the cells on both sides of the wall at a place of a line of cells, and their distance.
 fn across(
     lines: &[Millimetres],
     at: usize,

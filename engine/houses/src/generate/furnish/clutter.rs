@@ -11,14 +11,14 @@ use dwell_scene::{Aabb, Pose, ReceptacleKind};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Places that are tried for one thing.
+/// Number of places that are tried for one thing.
 const TRIES: usize = 14;
-/// Nothing lies higher, m.
+/// Largest height of a small thing, m.
 const HIGHEST_M: f32 = 2.4;
-/// Kept free at the edges of what things stand on, m.
+/// Clearance at the edges of surfaces, m.
 const EDGE_M: f32 = 0.01;
 
-/// Follows one rule on everything that stands in the room.
+/// Applies one rule to everything that stands in the room.
 pub(crate) fn scatter(
     space: &mut RoomLayout,
     rule: &SmallItemRule,
@@ -81,7 +81,7 @@ fn on_one(
     }
 }
 
-/// Somewhere in a space of the host, turned at random; `None` when the thing is too large.
+/// A random place in a space of the host, randomly rotated; `None` when the thing is too large.
 fn place(
     host: &PlacedFurniture,
     k: usize,

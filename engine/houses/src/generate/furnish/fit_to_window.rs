@@ -1,4 +1,4 @@
-//! Things that are made to measure for a window.
+//! Furniture that is made to measure for a window.
 
 use crate::generate::openings::WallHole;
 use dwell_furniture::finishes::Finish;

@@ -22,13 +22,13 @@ use rules::{FittedRunRule, FurnishingRule, PlacementKind, rules};
 use space::RoomLayout;
 use std::sync::Arc;
 
-/// Half of the width of the paths that are kept, m: the first that a room allows, then narrower ones for what it needs.
+/// Half-widths of the paths that are kept, m: the first that a room allows, then narrower ones for needed furniture.
 const PATHS_M: [f32; 3] = [0.4, 0.35, 0.3];
-/// Places that are tried for one thing.
+/// Number of places that are tried for one thing.
 const TRIES: usize = 160;
-/// Looks that are tried for one thing.
+/// Number of looks that are tried for one thing.
 const LOOKS: u64 = 3;
-/// Looks that are tried for one that shall be unlike others.
+/// Number of looks that are tried for one that must differ from others.
 const UNLIKE_LOOKS: u64 = 24;
 
 /// The furniture of one room, heights above its floor.
@@ -112,10 +112,10 @@ impl HouseFurnisher<'_> {
             if !rule.rooms.contains(&kind) {
                 continue;
             }
-            // Rules are told apart by what they ask for, so that a new rule reshuffles no other.
+            // Rules are distinguished by their content, so that a new rule reshuffles no other.
             let key = key.child(rule.kinds[0].as_str()).child(k as u64);
             let mut done = furnishing.follow(rule, key);
-            // What a room needs may narrow its paths.
+            // Needed furniture may narrow the paths.
             while !done && rule.needed && path + 1 < PATHS_M.len() {
                 path += 1;
                 furnishing.space.walk(room, storey, PATHS_M[path]);
@@ -140,7 +140,7 @@ impl HouseFurnisher<'_> {
     }
 }
 
-/// A room while rules are followed.
+/// A room while rules are applied.
 struct RoomFurnisher<'a> {
     area_m2: f32,
     space: RoomLayout,
@@ -149,7 +149,7 @@ struct RoomFurnisher<'a> {
 }
 
 impl RoomFurnisher<'_> {
-    /// Follows a rule; false when nothing came of it that was wanted.
+    /// Applies a rule; false when a wanted thing found no place.
     fn follow(&mut self, rule: &FurnishingRule, key: RandomKey) -> bool {
         let mut draw = key.stream();
         let chance = rule.chance * (self.density / 0.8);
@@ -176,7 +176,7 @@ impl RoomFurnisher<'_> {
         let mut placed = 0;
         for (k, anchor) in anchors.iter().enumerate() {
             let count = rule.count[0] + draw.below(rule.count[1] - rule.count[0] + 1);
-            // What comes in numbers is alike.
+            // Several things of one rule look alike.
             let look = key.child("look").child(k as u64);
             for _ in 0..count {
                 placed += usize::from(self.put(rule, *anchor, look, &mut draw));
@@ -299,7 +299,7 @@ impl RoomFurnisher<'_> {
     }
 }
 
-/// Returns what rooms of a kind have that nobody could find a place for, and nothing of the kind at all.
+/// Returns the needed kinds of rooms that found no place in any form.
 pub(crate) fn missing(rooms: &[Vec<RoomFurniture>]) -> Vec<String> {
     rooms
         .iter()

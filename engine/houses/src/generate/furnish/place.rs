@@ -1,4 +1,4 @@
-//! Places where a rule would put a thing, the likeliest first.
+//! Candidate poses of a rule's things, the likeliest first.
 
 use super::rules::{FurnishingRule, PlacementKind};
 use super::space::{PlacedFurniture, RoomLayout, WallSpan};
@@ -21,7 +21,7 @@ const ALONG_M: f32 = 0.12;
 /// Chairs are this far apart along a table, m (DIN 18022 asks for 0.6).
 const SEAT_M: f32 = 0.6;
 
-/// A place and how little it is liked.
+/// A pose with its cost.
 type CandidatePose = (f32, Pose);
 
 /// Half of a thing's width with its doors open, and from its origin to its back with its lid up.
@@ -303,7 +303,7 @@ fn on(
     ideas
 }
 
-/// On the wall behind the anchor; nothing where the anchor stands away from walls.
+/// On the wall behind the anchor; none where the anchor stands away from walls.
 fn above(space: &RoomLayout, anchor: &PlacedFurniture, height_m: f32) -> Vec<CandidatePose> {
     let mut ideas = Vec::new();
     for x in [0.0, 0.2, -0.2] {
@@ -333,7 +333,7 @@ fn above(space: &RoomLayout, anchor: &PlacedFurniture, height_m: f32) -> Vec<Can
 /// The gap that a row leaves where its rule says so, m.
 const ROW_GAP_M: f32 = 0.09;
 
-/// Returns how long a row of fitted units is, gaps (`None`) among them, m.
+/// Returns the length of a row of fitted units, gaps (`None`) among them, m.
 pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
     let length = |stock: &Option<Arc<CachedModel>>| {
         stock.as_ref().map_or(ROW_GAP_M, |stock| {
@@ -343,7 +343,7 @@ pub(crate) fn row_length(row: &[Option<Arc<CachedModel>>]) -> f32 {
     row.iter().map(length).sum()
 }
 
-/// The poses of a row of fitted units along a span, from left to right as one stands before them, starting `start_m` from
+/// The poses of a row of fitted units along a span, from left to right seen from the room, starting `start_m` from
 /// the left end; `None` when the row is longer than the span.
 pub(crate) fn row(
     span: &WallSpan,

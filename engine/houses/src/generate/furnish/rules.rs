@@ -47,7 +47,7 @@ pub(crate) struct FurnishingRule {
     /// Kinds of things that it goes with.
     #[serde(default)]
     pub(crate) of: Vec<String>,
-    /// The least and the largest number.
+    /// The smallest and the largest number.
     #[serde(default = "one")]
     pub(crate) count: [usize; 2],
     /// Probability that a home has it; `furniture_density` scales it.
@@ -59,7 +59,7 @@ pub(crate) struct FurnishingRule {
     /// Free floor before it, m.
     #[serde(default)]
     pub(crate) front_m: f32,
-    /// From its anchor, m: the least, and the most when the distance is free.
+    /// Distance from its anchor, m: the least, and the most when the distance is free.
     #[serde(default)]
     pub(crate) gap_m: [f32; 2],
     /// Height above the floor (or above its anchor's foot) at which it hangs, m.
@@ -83,7 +83,7 @@ pub(crate) struct FurnishingRule {
 #[serde(deny_unknown_fields)]
 pub(crate) struct FittedRunRule {
     pub(crate) rooms: Vec<GeneratedRoomKind>,
-    /// `"gap"` is no thing but leaves a gap.
+    /// The rows of kinds; `"gap"` is no thing but leaves a gap.
     pub(crate) rows: Vec<Vec<String>>,
     /// Free floor before it, m.
     pub(crate) front_m: f32,
@@ -106,7 +106,7 @@ pub(crate) struct SmallItemRule {
     /// True if it lies inside, else on top.
     #[serde(default)]
     pub(crate) inside: bool,
-    /// The least and the largest number on each.
+    /// The smallest and the largest number on each.
     pub(crate) count: [usize; 2],
     /// Largest turn either way, degrees.
     #[serde(default = "round")]

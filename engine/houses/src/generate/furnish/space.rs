@@ -1,6 +1,6 @@
-//! A room while it is furnished: what stands in it, what must stay free, and whether one can still walk through.
+//! A room while it is furnished: its contents, the floor that must stay free, and its walkability.
 //!
-//! World x and z, heights above the room's floor. All tests are on boxes around collision pieces: what they allow is free
+//! World x and z, heights above the room's floor. All tests are on boxes around collision pieces, so that accepted places are free
 //! of overlap for sure.
 
 use crate::generate::openings::{HoleContents, WallHole, ZoneXz, overlap};
@@ -11,7 +11,7 @@ use dwell_scene::{Aabb, Pose};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Overlap that counts as none, m.
+/// Overlap that is ignored, m.
 const TOUCH_M: f32 = 0.0005;
 /// Height below which obstacles are stepped over, m.
 const STEP_M: f32 = 0.05;
@@ -36,7 +36,7 @@ pub(crate) struct WallSpan {
 }
 
 impl WallSpan {
-    /// The yaw of what turns its back to it, degrees.
+    /// The yaw of a thing with its back to it, degrees.
     pub(crate) fn yaw_deg(&self) -> f32 {
         match (self.along_x, self.inward > 0.0) {
             (true, true) => 0.0,
@@ -65,7 +65,7 @@ pub(crate) struct PlacedFurniture {
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) bounds: Aabb,
     pub(crate) swept_boxes: Vec<Aabb>,
-    /// Around all swings.
+    /// The box around all swings.
     pub(crate) reach: Aabb,
     /// Floor that must stay free for its use.
     pub(crate) clear: Vec<ZoneXz>,
@@ -76,7 +76,7 @@ pub(crate) struct PlacedFurniture {
 }
 
 impl PlacedFurniture {
-    /// A thing at a place; `pose` maps the model to the room.
+    /// A thing at a pose; `pose` maps the model to the room.
     pub(crate) fn new(stock: &Arc<CachedModel>, pose: Pose) -> Self {
         let place = pose.to_affine();
         let moved = |boxes: &[Aabb]| {
@@ -152,7 +152,7 @@ pub(crate) struct RoomLayout {
     pub(crate) pieces: Vec<PlacedFurniture>,
     /// Windows and doors as boxes before their walls: nothing hangs or stands there.
     openings: Vec<Aabb>,
-    /// Floor that doors need.
+    /// Floor that must stay free for doors.
     keep: Vec<ZoneXz>,
     /// The stairs.
     void: Option<ZoneXz>,
@@ -235,7 +235,7 @@ impl RoomLayout {
         space
     }
 
-    /// Looks at the walkable floor anew for paths of another width.
+    /// Computes the walkable floor for paths of another width.
     pub(crate) fn walk(&mut self, room: usize, storey: &GeneratedStorey, radius_m: f32) {
         let corner = [0, 1].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MAX, f32::min));
         let far = [2, 3].map(|k| self.floor.iter().map(|z| z[k]).fold(f32::MIN, f32::max));
@@ -299,7 +299,7 @@ impl RoomLayout {
         covers(&self.floor, rect)
     }
 
-    /// Returns whether a thing can stand there without touching anything or standing in anyone's way.
+    /// Returns whether a thing fits there: it touches nothing and blocks nothing.
     pub(crate) fn fits(&self, piece: &PlacedFurniture) -> bool {
         let own = zone(&piece.bounds);
         if !self.covers(&own) {
@@ -312,7 +312,7 @@ impl RoomLayout {
         if !piece.at_window && open().any(|o| hits(&piece.boxes, &piece.bounds, o)) {
             return false;
         }
-        // What hangs above head height is in no door's way.
+        // A thing above head height blocks no door.
         let low = piece.boxes.iter().filter(|b| b.min.y < 2.1);
         for bounds in low {
             if self.keep.iter().any(|keep| overlap(keep, &zone(bounds))) {
@@ -377,7 +377,7 @@ impl RoomLayout {
         }) && self.openings.iter().all(|o| !meets(&piece.bounds, o))
     }
 
-    /// Puts a small thing there, which is in nobody's way.
+    /// Adds a small thing, which blocks nothing.
     pub(crate) fn add_small(&mut self, piece: PlacedFurniture) {
         self.pieces.push(piece);
     }
@@ -393,7 +393,7 @@ impl RoomLayout {
         Some(span.point(middle, 0.0))
     }
 
-    /// Puts a thing there.
+    /// Adds a thing.
     pub(crate) fn add(&mut self, piece: PlacedFurniture) -> usize {
         for bounds in piece.boxes.iter().filter(|b| stands_in_the_way(b)) {
             self.grid.block(&zone(bounds));

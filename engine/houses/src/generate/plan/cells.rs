@@ -7,7 +7,7 @@ use super::{GeneratedRoom, GridRect, GridSteps};
 pub(crate) struct RoomBoundary {
     /// True if it runs along x (west to east); else along z.
     pub(crate) along_x: bool,
-    /// Its place across: z of one along x, x of one along z.
+    /// Its position across: z of one along x, x of one along z.
     pub(crate) at: GridSteps,
     pub(crate) from: GridSteps,
     pub(crate) to: GridSteps,
@@ -16,7 +16,7 @@ pub(crate) struct RoomBoundary {
 }
 
 impl RoomBoundary {
-    /// Returns whether it parts these two.
+    /// Returns whether it separates these two.
     pub(crate) fn parts(&self, a: Option<usize>, b: Option<usize>) -> bool {
         self.sides == [a, b] || self.sides == [b, a]
     }

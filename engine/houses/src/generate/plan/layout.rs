@@ -1,4 +1,4 @@
-//! The best of many drawn plans.
+//! Layout of rooms: the best of many drawn plans.
 
 use super::links::{join, score_links};
 use super::storey::{STAIRS_DEPTH, STAIRS_WIDTH, StoreyFrame, StripLayout, draw, end_width};
@@ -11,9 +11,9 @@ use crate::generate::rooms::GeneratedRoomKind;
 use crate::generate::spec::HomeKind;
 use dwell_scene::random::{RandomKey, RandomStream};
 
-/// Plans that are drawn before the best is taken.
+/// Number of plans that are drawn before the best is taken.
 const DRAWN: u64 = 96;
-/// Plans that are drawn at most while none fits.
+/// Largest number of plans that are drawn while none fits.
 const AT_MOST: u64 = 1600;
 
 /// The best plan of a bounded number of drawn ones; `None` when none fits.
@@ -142,7 +142,7 @@ fn arrange(
     arrangement
 }
 
-/// Depths and width that suit the first storey; the others follow.
+/// Depths and width for the first storey; the others follow.
 fn frame(
     arrangements: &[StripLayout],
     home: HomeKind,
@@ -209,7 +209,7 @@ fn frame(
     (metres(frame.width) <= 30.0).then_some(frame)
 }
 
-/// Returns how far rooms are from what is wanted; `None` when one cannot be used.
+/// Returns the cost of the rooms' deviations from the programme; `None` when one cannot be used.
 fn faults(rooms: &[GeneratedRoom], wanted: &[RoomRequirement]) -> Option<f32> {
     let mut score = 0.0;
     let mut open: Vec<&RoomRequirement> = wanted.iter().collect();

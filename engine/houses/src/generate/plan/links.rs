@@ -6,9 +6,9 @@ use super::{
 };
 use crate::generate::rooms::GeneratedRoomKind;
 
-/// The least stretch of wall for a door with its frame and the wall beside it.
+/// Smallest stretch of wall for a door with its frame and the wall beside it.
 const DOOR_RUN: GridSteps = 24;
-/// The least stretch for a wide opening.
+/// Smallest stretch for a wide opening.
 const OPEN_RUN: GridSteps = 40;
 
 /// The longest stretch between two rooms.
@@ -17,7 +17,7 @@ fn shared(runs: &[RoomBoundary], a: usize, b: Option<usize>) -> GridSteps {
     between.map(|run| run.to - run.from).max().unwrap_or(0)
 }
 
-/// Joins the rooms of a storey; `None` when one cannot be reached.
+/// Connects the rooms of a storey; `None` when one cannot be reached.
 pub(super) fn join(
     rooms: &[GeneratedRoom],
     ground: bool,
@@ -29,7 +29,7 @@ pub(super) fn join(
         |wanted: fn(GeneratedRoomKind) -> bool| rooms.iter().position(|room| wanted(room.kind));
     let hallway = of(|kind| kind == Hallway);
     let public = of(|kind| matches!(kind, LivingRoom | Lobby | Studio));
-    // Where one comes in, and from where the others are reached.
+    // The room of the entrance, from which the others are reached.
     let hub = hallway.or(public).or((!rooms.is_empty()).then_some(0))?;
     let mut links = Vec::new();
     if ground {
@@ -86,7 +86,7 @@ pub(super) fn join(
     Some(links)
 }
 
-/// Pairs of kinds that should be joined and are not.
+/// The pairs of kinds that should be connected and are not.
 pub(super) fn score_links(
     storeys: &[GeneratedStorey],
     adjacency: &[[GeneratedRoomKind; 2]],

@@ -50,7 +50,7 @@ pub(crate) enum ConnectionKind {
     Open,
 }
 
-/// Two rooms that are joined, or a room and the outside.
+/// A connection of two rooms, or of a room and the outside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RoomConnection {
     /// The room into which the leaf swings.
@@ -83,6 +83,6 @@ pub(crate) struct StairwellPlan {
 pub(crate) struct GeneratedPlan {
     pub(crate) storeys: Vec<GeneratedStorey>,
     pub(crate) stairs: Option<StairwellPlan>,
-    /// Pairs of kinds that should have been joined and are not.
+    /// Pairs of kinds that should have been connected and are not.
     pub(crate) missing_connections: Vec<[GeneratedRoomKind; 2]>,
 }

@@ -7,7 +7,7 @@ use dwell_scene::random::RandomStream;
 
 /// Width of the stairs' place: two flights and a gap between them.
 pub(super) const STAIRS_WIDTH: GridSteps = 44;
-/// The least depth of the strip that holds the stairs.
+/// Smallest depth of the strip that holds the stairs.
 pub(super) const STAIRS_DEPTH: GridSteps = 66;
 /// A doorway with what it needs on both sides.
 const DOORWAY: GridSteps = 25;
@@ -18,7 +18,7 @@ pub(super) struct StoreyFrame {
     /// Depth of the strips north and south of the corridor; 0: none.
     pub(super) strips: [GridSteps; 2],
     pub(super) corridor: GridSteps,
-    /// From west to east.
+    /// Width from west to east.
     pub(super) width: GridSteps,
     /// True if stairs stand at the west end of the northern strip.
     pub(super) stairs: bool,
@@ -29,7 +29,7 @@ impl StoreyFrame {
         self.strips[0] + self.corridor + self.strips[1]
     }
 
-    /// Returns where the corridor begins and ends from north to south.
+    /// Returns the ends of the corridor from north to south.
     fn aisle(&self) -> [GridSteps; 2] {
         [self.strips[0], self.strips[0] + self.corridor]
     }
@@ -54,7 +54,7 @@ impl StripLayout {
         rooms.map(|room| room.area_m2).sum()
     }
 
-    /// Returns how wide a strip wants to be.
+    /// Returns the preferred width of a strip.
     pub(super) fn wish(&self, strip: usize, depth: GridSteps) -> GridSteps {
         let rooms = self.strips[strip].iter();
         rooms.map(|room| width_of(room, depth)).sum()
@@ -68,7 +68,7 @@ pub(super) fn width_of(room: &RoomRequirement, depth: GridSteps) -> GridSteps {
     steps(room.area_m2 / depth_m).max(least)
 }
 
-/// Widths of rooms that fill `length` exactly, in proportion to what they want; `None` when they do not fit.
+/// Widths of rooms that fill `length` exactly, in proportion to their preferred ones; `None` when they do not fit.
 fn fill(rooms: &[RoomRequirement], depth: GridSteps, length: GridSteps) -> Option<Vec<GridSteps>> {
     let wishes: Vec<GridSteps> = rooms.iter().map(|room| width_of(room, depth)).collect();
     let total: GridSteps = wishes.iter().sum();
@@ -198,7 +198,7 @@ pub(super) fn end_width(area_m2: f32, depth: GridSteps) -> GridSteps {
     }
 }
 
-/// Takes a corner of the room at the east end for another one: at the north or the south. What is left must keep its width
+/// Carves another room from a corner of the room at the east end: at the north or the south. The rest must keep its width
 /// and stay at the corridor's end.
 fn carve(
     living: &mut GeneratedRoom,

@@ -19,7 +19,7 @@ pub(super) fn structure(piece: &Structure) -> Value {
     json!({"dwell": {"structure": piece.kind}})
 }
 
-/// An object: category, how it moves, its joints, the places that hold things, and what sounds.
+/// An object: category, mobility, joints, receptacles, and sounds.
 pub(super) fn object(house: &HouseData, id: ObjectId, object: &Object) -> Value {
     let part_name = |id: PartId| house.parts[id].name.as_str();
     let joints: Vec<Value> = house
@@ -72,7 +72,7 @@ pub(super) fn object(house: &HouseData, id: ObjectId, object: &Object) -> Value 
     json!({"dwell": known})
 }
 
-/// A part: what weighs and touches. Collision pieces stand in part space, which the node's matrix may scale.
+/// A part: mass and collision pieces. Those are in part space, which the node's matrix may scale.
 pub(super) fn part(part: &Part) -> Value {
     json!({"dwell": {
         "part": part.name,

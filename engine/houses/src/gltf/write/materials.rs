@@ -1,9 +1,9 @@
-//! Materials, with what they are beyond their looks.
+//! Materials with their properties beyond looks.
 
 use dwell_scene::{Id, Material};
 use serde_json::{Value, json};
 
-/// A material of the file. `extras.dwell` holds its substance, what physics and sound know of it, in SI units, and
+/// A material of the file. `extras.dwell` holds its substance, its physical and acoustic properties in SI units, and
 /// emission, which the format caps; absorption and scattering of energy, and transmission loss in dB, by band.
 pub(super) fn material(material: &Material) -> Value {
     let [r, g, b] = material.base_color;

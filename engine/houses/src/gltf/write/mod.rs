@@ -22,7 +22,7 @@ use crate::export_loss::{ExportLoss, ExportLosses};
 use crate::import::encode_png;
 use meshes::MeshTable;
 
-/// A written house: the file, and where its tables went.
+/// A written house: the file, and the files beside it.
 pub(crate) struct WrittenGlb {
     pub(crate) file: Vec<u8>,
     /// Files beside it that its URIs name: what several houses share.
@@ -53,7 +53,7 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError>
     Ok(losses(house))
 }
 
-/// Returns what viewers do not get to know: they may pass over `extras`, which our own reader reads.
+/// Returns the losses for viewers: they may ignore `extras`, which our own reader reads.
 fn losses(house: &HouseData) -> Vec<ExportLoss> {
     let mut losses = ExportLosses::default();
     losses.add(

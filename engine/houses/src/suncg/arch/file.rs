@@ -8,11 +8,11 @@ use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
-/// Most corners of a slab; ear clipping takes their cube.
+/// Largest number of corners of a slab; ear clipping takes their cube.
 const MAX_POINTS: usize = crate::limits::MAX_OUTLINE;
-/// Most holes of a wall; their edges cut it into squared many cells.
+/// Largest number of holes of a wall; their edges cut it into squared many cells.
 const MAX_HOLES: usize = 64;
-/// Most elements of a house.
+/// Largest number of elements of a house.
 const MAX_ELEMENTS: usize = 20_000;
 
 /// All elements in file order.

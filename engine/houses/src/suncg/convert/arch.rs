@@ -11,7 +11,7 @@ use crate::report::FileLocation;
 use crate::warning_kind::WarningKind;
 
 impl<'a> Converter<'a> {
-    /// Returns whether the walls stand in `arch.json`.
+    /// Returns whether the walls are in `arch.json`.
     pub(super) fn has_arch(&self) -> bool {
         self.files.arch.is_some()
     }

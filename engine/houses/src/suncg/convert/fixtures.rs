@@ -1,4 +1,4 @@
-//! Lamps' lights and things that sound.
+//! Lights of lamps, and sounds.
 
 use dwell_scene::{Light, LightShape, ObjectId, Part, PartId, SoundEmitter, units};
 use glam::Vec3;
@@ -8,11 +8,11 @@ use super::Converter;
 use crate::report::FileLocation;
 use crate::warning_kind::WarningKind;
 
-/// A lamp's cone narrower than this is a mistake, rad.
+/// Smallest cone of a lamp that is no mistake, rad.
 const LEAST_CUTOFF_RAD: f32 = 0.01;
 
 impl Converter<'_> {
-    /// The lights of a model on a part; returns whether it has any.
+    /// Adds the lights of a model to a part; returns whether it has any.
     pub(super) fn lights(
         &mut self,
         model: &str,
@@ -37,7 +37,7 @@ impl Converter<'_> {
         !lights.is_empty()
     }
 
-    /// Returns what a model sounds like while it is on; returns whether it sounds at all.
+    /// Adds the sounds of a model while it is on; returns whether there are any.
     ///
     /// Sounds of a moment (a ring, a bark) have no start in the tables and are reported as left out.
     pub(super) fn sounds(

@@ -1,27 +1,27 @@
 //! The hinge between the two states of a model.
 //!
-//! SUNCG stores a door twice, open and closed, and no joint. What stands still in both is the frame; the rest turned
-//! about an upright line. Area, centre and main direction of a surface do not depend on how it is cut into vertices and
-//! triangles, so the turn follows from them even where the two files are meshed differently.
+//! SUNCG stores a door twice, open and closed, and no joint. The part that is the same in both is the frame; the rest rotated
+//! about a vertical line. Area, centre and main direction of a surface do not depend on how it is cut into vertices and
+//! triangles, so the rotation follows from them even where the two files are meshed differently.
 
 use dwell_scene::{Aabb, Mesh};
 use glam::{DMat2, DVec2, Vec3};
 
 use crate::import::Component;
 
-/// Pieces whose boxes differ less stand still, m.
+/// Largest difference of the boxes of pieces that stand still, m.
 const STILL_M: f32 = 1e-3;
 /// Largest distance of the turned leaf from the other state's box, m.
 const MISS_M: f32 = 0.015;
-/// Smaller turns are no opening, rad.
+/// Smallest rotation of an opening, rad.
 const LEAST_TURN_RAD: f64 = 0.05;
 
-/// An upright hinge in mesh space.
+/// A vertical hinge in mesh space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MeshHinge {
     /// Position of the axis, (x, z), m.
     pub(super) point: DVec2,
-    /// The turn about +Y that leads to the other state, rad.
+    /// The rotation about +Y that leads to the other state, rad.
     pub(super) turn_rad: f64,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct HingeFit {
     pub(super) moving: [Vec<u32>; 2],
 }
 
-/// Finds the hinge between two states; `None` when no single upright hinge explains them.
+/// Finds the hinge between two states; `None` when no single vertical hinge explains them.
 pub(super) fn fit(meshes: [&Mesh; 2], pieces: &[Vec<Component>; 2]) -> Option<HingeFit> {
     let mut still_in_second = vec![false; pieces[1].len()];
     let mut moving = [Vec::new(), Vec::new()];
@@ -105,7 +105,7 @@ fn points<'a>(mesh: &'a Mesh, triangles: &'a [u32]) -> impl Iterator<Item = Vec3
     triangles.iter().flat_map(|&k| mesh.corners(k as usize))
 }
 
-/// Returns what a turn about +Y does to (x, z).
+/// Returns the effect of a rotation about +Y on (x, z).
 fn rotation(turn_rad: f64) -> DMat2 {
     let (s, c) = turn_rad.sin_cos();
     DMat2::from_cols(DVec2::new(c, -s), DVec2::new(s, c))
@@ -117,7 +117,7 @@ fn turned(point: Vec3, hinge: &MeshHinge) -> Vec3 {
     Vec3::new(flat.x as f32, point.y, flat.y as f32)
 }
 
-/// A surface seen from above.
+/// A surface in plan view.
 struct SurfaceOutline {
     /// m².
     area: f64,

@@ -13,9 +13,9 @@ const HAND_SIDE_M: f32 = 0.6;
 /// Largest box of a thing that one hand takes, m³.
 const HAND_VOLUME_M3: f32 = 0.05;
 
-/// Returns whether this kind of thing moves at all.
+/// Returns whether this kind of thing is movable.
 ///
-/// Things of unknown kind stay: a house without tables must not fall apart.
+/// Things of unknown kind are fixed: a house without tables must not fall apart.
 pub(super) fn kind_moves(row: Option<&CategoryRow>, entry: Option<&CategoryEntry>) -> bool {
     row.is_some_and(|row| row.is_movable() && !row.is_mounted())
         && entry.is_none_or(|entry| entry.structure != 1)

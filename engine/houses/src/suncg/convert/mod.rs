@@ -1,4 +1,4 @@
-//! The only place where SUNCG files become a [`House`]: every decision about meaning is made below this folder.
+//! Conversion of SUNCG files into a [`House`]: every decision about meaning is made below this folder.
 
 mod arch;
 mod boxes;
@@ -25,7 +25,7 @@ use crate::error::HousesError;
 use crate::import::{MaterialTableBuilder, UniqueNames};
 use crate::report::{FileLocation, LoadReport};
 
-/// Makes a house of the files.
+/// Converts the files into a house.
 ///
 /// # Errors
 /// [`HousesError::Field`] for axes nothing can be made of, [`HousesError::Empty`] when no triangle is left,
@@ -104,11 +104,11 @@ struct Converter<'a> {
     stands: Vec<(PartId, Aabb)>,
     /// True for each element of `arch.json` that some room has.
     arch_used: Vec<bool>,
-    /// Corners of all rooms' meshes so far.
+    /// Number of corners of all rooms' meshes so far.
     corners_shown: u64,
 }
 
-/// A node's place: level, position there.
+/// A node's position: level, position there.
 type NodeKey = (usize, usize);
 
 impl Converter<'_> {

@@ -1,4 +1,4 @@
-//! Object and box nodes: what they name, where they stand, what they show.
+//! Conversion of object and box nodes: their names, poses and looks.
 
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ impl<'a> Converter<'a> {
         });
         let category = category.unwrap_or_default();
         let row = crate::import::category([category.fine.as_str(), category.coarse.as_str()]);
-        // A table that says nothing of the model, or a class that nobody knows.
+        // A table without the model, or an unknown class.
         if row.is_none() && !self.files.categories.is_empty() {
             self.report.warn(
                 at.field("modelId"),
@@ -99,7 +99,7 @@ impl<'a> Converter<'a> {
         self.model_object(&plan, &path, node);
     }
 
-    /// Returns where a node stands: a rigid pose, and the scale and mirror that its mesh keeps.
+    /// Returns a node's rigid pose, and the scale and mirror that its mesh keeps.
     fn placement(&mut self, node: &NodeFile, at: &FileLocation) -> Option<(Pose, Affine3A)> {
         let at = at.field("transform");
         let matrix = match place::transform(node.transform.as_deref()) {

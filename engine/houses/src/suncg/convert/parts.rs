@@ -35,7 +35,7 @@ pub(super) struct ObjectPlan<'a> {
     pub(super) part_from_mesh: Affine3A,
 }
 
-/// A part without its place in the tables.
+/// A part without its position in the tables.
 pub(super) struct PartGeometry {
     pub(super) name: &'static str,
     pub(super) mesh: MeshId,
@@ -121,7 +121,7 @@ impl Converter<'_> {
     ) -> Part {
         let fixed = !swings && !plan.moves;
         let mesh = self.data.meshes[shape.mesh].clone();
-        // What moves gets its convex pieces at the end, several at once.
+        // A moving part gets its convex pieces at the end, several at once.
         let colliders = if fixed {
             vec![Collider::ExactMesh]
         } else {
@@ -154,7 +154,7 @@ impl Converter<'_> {
         }
     }
 
-    /// Fixes what hangs: a movable thing that stands on nothing would only fall.
+    /// Makes movable things fixed that stand on nothing: they would only fall.
     pub(super) fn settle(&mut self) {
         for (k, object) in self.data.objects.iter_mut().enumerate() {
             let (first_part, bounds) = self.stands[k];
@@ -176,7 +176,7 @@ impl Converter<'_> {
         }
     }
 
-    /// Gives every part that moves its convex pieces; instances of a model at one scale share the work.
+    /// Gives every moving part its convex pieces; instances of a model at one scale share the work.
     pub(super) fn shape_bodies(&mut self, threads: Threads) {
         let key = |part: &Part| {
             (
@@ -208,7 +208,7 @@ pub(super) struct HingeOnPart {
     turn_rad: f32,
 }
 
-/// Takes a hinge from mesh space onto the part; `None` when the scale would make the turn something else.
+/// Transforms a hinge from mesh space onto the part; `None` when the scale would distort the rotation.
 pub(super) fn hinge_on_part(hinge: &MeshHinge, part_from_mesh: &Affine3A) -> Option<HingeOnPart> {
     let m = part_from_mesh.matrix3;
     let upright = m

@@ -83,7 +83,7 @@ pub(super) fn transform(numbers: Option<&[f64]>) -> Result<DMat4, String> {
     Ok(matrix)
 }
 
-/// Scale and mirror without the rounding of the turn that was taken out of them: instances of a model that differ by a
+/// Scale and mirror without the rounding of the rotation that was removed from them: instances of a model that differ by a
 /// turn alone have the same bits.
 pub(super) fn snapped(mut rest: Affine3A) -> Affine3A {
     let snap = |x: f32| {

@@ -1,4 +1,4 @@
-//! Rooms and grounds: structure pieces, floors, kinds.
+//! Conversion of rooms and grounds: structure pieces, floors, kinds.
 
 use std::sync::Arc;
 
@@ -16,12 +16,12 @@ use crate::obj::{MaterialSlots, PartShape, shape_of};
 use crate::report::FileLocation;
 use crate::warning_kind::{UnmappedKind, WarningKind};
 
-/// Faces that look up at least this much belong to the floor that one walks on.
+/// Cosine from which on upward faces belong to the floor that one walks on.
 const UPWARD: f32 = 0.7;
-/// Pieces of a floor this far below its top are not walked on, m.
+/// Depth below a floor's top from which on its pieces are not walked on, m.
 const FLOOR_STEP_M: f32 = 0.02;
 
-/// The meshes of a room: file letter, what it holds, whether the node hides it.
+/// The meshes of a room: file letter, kind, whether the node hides it.
 const PARTS: [(char, StructureKind); 3] = [
     ('c', StructureKind::Ceiling),
     ('f', StructureKind::Floor),
@@ -206,7 +206,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// Returns what a piece is, by the name of its group.
+    /// Returns the kind of a piece, by the name of its group.
     fn piece_kind(
         &mut self,
         group: &str,

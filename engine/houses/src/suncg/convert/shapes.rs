@@ -29,7 +29,7 @@ pub(super) struct SharedMesh {
     id: Option<MeshId>,
 }
 
-/// A model taken apart at its hinge.
+/// A model that is split at its hinge.
 pub(super) struct HingedModel {
     /// The fixed part, if there is one.
     pub(super) frame: Option<SharedMesh>,
@@ -63,7 +63,7 @@ pub(super) struct ModelShapes {
 impl ModelShapes {
     /// Makes the shapes, several at once.
     pub(super) fn build(files: &SuncgFiles, threads: Threads, report: &mut LoadReport) -> Self {
-        // Model ids in use, and whether some instance lays a texture on it.
+        // Model ids in use, and whether some instance puts a texture on it.
         let mut models: BTreeMap<&str, bool> = BTreeMap::new();
         for node in files.house.levels.iter().flat_map(|level| &level.nodes) {
             if let (true, Some("Object"), Some(model)) = (
@@ -170,7 +170,7 @@ fn model_mesh(
     )
 }
 
-/// Finds the hinge between the two states of a model and takes both meshes apart at it.
+/// Finds the hinge between the two states of a model and splits both meshes at it.
 fn take_apart(first: &mut ModelShape, second: &mut ModelShape) {
     let pieces = [
         components(&first.whole.mesh),

@@ -1,4 +1,4 @@
-//! Materials: what a slot shows, in the model's file and after an override.
+//! Materials of slots, by the model's file and overrides.
 
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{MaterialId, StructureKind, TextureId};
@@ -26,7 +26,7 @@ impl<'a> Converter<'a> {
         self.look(&surface, substance, false)
     }
 
-    /// The material of a side of a wall or slab that has only what `change` says.
+    /// The material of a side of a wall or slab that has only those of `change`.
     pub(super) fn plain_structure_material(
         &mut self,
         change: Option<&'a SuncgMaterial>,
@@ -161,7 +161,7 @@ impl<'a> Converter<'a> {
         }
     }
 
-    /// Returns what a surface is made of: by its names, by its transparency, else as usual for the kind of thing.
+    /// Returns the substance of a surface: by its names, by its transparency, else as usual for the kind of thing.
     fn substance(
         &mut self,
         surface: &SlotSurface<'_>,
@@ -229,7 +229,7 @@ impl<'a> Converter<'a> {
     }
 }
 
-/// Returns what walls, floors and ceilings are usually made of.
+/// Returns the usual substance of walls, floors and ceilings.
 fn usual_of_structure(kind: StructureKind) -> &'static Substance {
     let name = match kind {
         StructureKind::Floor => "floor",
@@ -248,7 +248,7 @@ struct SlotSurface<'a> {
     opacity: f32,
     roughness: Option<f32>,
     emission: [f32; 3],
-    /// Labels that may say what it is made of, most telling first; the texture's name goes before them.
+    /// Labels that may name its substance, the most specific first; the texture's name precedes them.
     names: Vec<&'a str>,
 }
 

@@ -8,9 +8,9 @@ use crate::report::{FileLocation, LoadReport};
 /// Votes on one storey.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AcceptabilityVotes {
-    /// For "realistic".
+    /// Votes for "realistic".
     pub positive: u32,
-    /// Against.
+    /// Votes against.
     pub negative: u32,
 }
 
@@ -58,7 +58,7 @@ impl VoteTable {
         self.rows.get(&(house.to_owned(), level)).copied()
     }
 
-    /// Returns how many storeys were voted on.
+    /// Returns the number of storeys with votes.
     pub fn len(&self) -> usize {
         self.rows.len()
     }

@@ -1,4 +1,4 @@
-//! `ModelCategoryMapping.csv`: what kind of thing each model is.
+//! `ModelCategoryMapping.csv`: the category of each model.
 
 use std::collections::BTreeMap;
 
@@ -74,7 +74,7 @@ impl CategoryTable {
         self.rows.iter().map(|(id, row)| (id.as_str(), row))
     }
 
-    /// Returns how many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()
     }

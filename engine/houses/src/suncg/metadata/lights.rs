@@ -127,7 +127,7 @@ impl LightTable {
             .map(|(id, lights)| (id.as_str(), lights.as_slice()))
     }
 
-    /// Returns how many models have lights.
+    /// Returns the number of models with lights.
     pub fn len(&self) -> usize {
         self.lights.len()
     }

@@ -76,7 +76,7 @@ impl ModelTable {
         self.rows.iter().map(|(id, row)| (id.as_str(), row))
     }
 
-    /// Returns how many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()
     }

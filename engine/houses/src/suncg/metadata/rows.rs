@@ -9,14 +9,14 @@ pub(super) struct CsvRows<'a> {
     columns: Vec<Option<usize>>,
 }
 
-/// A row: the cells of the columns that were asked for, empty where missing.
+/// A row: the cells of the requested columns, empty where missing.
 pub(super) struct CsvRow<'a> {
     record: &'a csv::StringRecord,
     columns: &'a [Option<usize>],
 }
 
 impl CsvRow<'_> {
-    /// The cell of the `column`-th name asked for.
+    /// The cell of the `column`-th requested name.
     pub(super) fn cell(&self, column: usize) -> &str {
         self.columns[column]
             .and_then(|i| self.record.get(i))
@@ -72,7 +72,7 @@ impl<'a> CsvRows<'a> {
         Some(Self { reader, columns })
     }
 
-    /// Calls `row` for every row; rows that cannot be read, and those for which it says so, are reported.
+    /// Calls `row` for every row; rows that cannot be read, and those for which it returns an error, are reported.
     pub(super) fn each(
         mut self,
         at: &FileLocation,

@@ -1,4 +1,4 @@
-//! `sounds.json`: which categories and models make which sounds.
+//! `sounds.json`: sounds of categories and models.
 
 use std::collections::BTreeMap;
 
@@ -93,7 +93,7 @@ impl SoundTable {
             .map(|(event, file)| (event.as_str(), file.as_str()))
     }
 
-    /// Returns how many entries there are.
+    /// Returns the number of entries.
     pub fn len(&self) -> usize {
         self.entries.len()
     }

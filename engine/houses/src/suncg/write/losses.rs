@@ -67,7 +67,7 @@ pub(super) fn of_house(house: &House) -> ExportLosses {
     losses
 }
 
-/// Returns whether a material differs from what its substance says where the format has no field.
+/// Returns whether a material differs from its substance where the format has no field.
 fn has_own_numbers(material: &Material) -> bool {
     let usual = library().get_or_default(&material.substance);
     let numbers = |density: f32, friction: f32, restitution: f32, metallic: f32| {

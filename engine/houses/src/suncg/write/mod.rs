@@ -1,6 +1,6 @@
 //! Any house as a SUNCG data root.
 //!
-//! The format knows rooms, models, places and colours, and little else: the list of losses says what is left behind.
+//! The format knows rooms, models, poses and colours, and little else: the list of losses says what is left behind.
 
 mod losses;
 mod models;
@@ -56,7 +56,7 @@ pub fn write_into(
     let mut losses = losses::of_house(house);
     let draft = StagedPath::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
     SuncgWriter::new(house, draft.path(), scene_id.clone(), true).everything(&mut losses)?;
-    // What is shared comes first and the house last: a house that is there is whole.
+    // Shared files come first and the house last: a house that exists is complete.
     for (folder, is_shared) in [
         ("texture", true),
         ("object", true),
@@ -69,7 +69,7 @@ pub fn write_into(
     Ok((file, losses.into_vec()))
 }
 
-/// Moves everything in folder `from` into folder `to`; what is there already stays when it is shared, else it is replaced.
+/// Moves everything in folder `from` into folder `to`; existing files stay if they are shared, else they are replaced.
 fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> {
     if !from.exists() {
         return Ok(());
@@ -85,7 +85,7 @@ fn move_all(from: &Path, to: &Path, is_shared: bool) -> Result<(), HousesError> 
             fs::remove_dir_all(&target).map_err(HousesError::io(&target))?;
         }
         let moved = fs::rename(entry.path(), &target);
-        // Somebody else may have brought the same model in between.
+        // Another process may have written the same model in between.
         if !(is_shared && target.exists()) {
             moved.map_err(HousesError::io(&target))?;
         }
@@ -103,7 +103,7 @@ pub fn finish(root: &Path) -> Result<(), HousesError> {
     let mut rows = tables::read_rows(&root_of)?;
     loop {
         tables::write_tables(root, &rows)?;
-        // Who fills the same root at the same time may have finished in between.
+        // Another process that fills the same root may have finished in between.
         let now = tables::read_rows(&root_of)?;
         if now.len() == rows.len() {
             return Ok(());
@@ -139,7 +139,7 @@ impl<'a> SuncgWriter<'a> {
         }
     }
 
-    /// Everything but the tables.
+    /// Writes everything but the tables.
     fn everything(
         &mut self,
         losses: &mut crate::export_loss::ExportLosses,
@@ -307,7 +307,7 @@ fn model_name(name: &str) -> String {
     plain
 }
 
-/// Returns what tells content from other content in names: 64 bits of its hash.
+/// Returns a short name of content: 64 bits of its hash.
 fn short_name(bytes: &[u8]) -> String {
     format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes))
 }

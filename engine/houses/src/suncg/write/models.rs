@@ -1,4 +1,4 @@
-//! Objects as models and places.
+//! Conversion of objects into models and nodes.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,7 @@ struct TwoStates {
     starts_closed: bool,
 }
 
-/// A part with its place in the model.
+/// A part with its pose in the model.
 struct ModelPiece<'a> {
     part: &'a Part,
     model_from_mesh: Affine3A,
@@ -107,7 +107,7 @@ impl SuncgWriter<'_> {
         })
     }
 
-    /// Returns what the tables must say about the model of `object`.
+    /// Returns the row of the model of `object` in the tables.
     fn model_row(
         &self,
         id: ObjectId,
@@ -227,7 +227,7 @@ impl SuncgWriter<'_> {
     }
 }
 
-/// The name of a slot says what it is made of; the position makes it unique.
+/// The name of a slot gives its substance; the position makes it unique.
 fn slot_name(house: &House, materials: &[MaterialId], slot: usize) -> String {
     let substance = materials
         .get(slot)
@@ -235,7 +235,7 @@ fn slot_name(house: &House, materials: &[MaterialId], slot: usize) -> String {
     format!("{substance}_{slot}")
 }
 
-/// Everything that two objects must share to be one model: shape, what the tables say, and what an override cannot change.
+/// The key of equal models: shape, table row, and looks that an override cannot change.
 fn model_key(house: &House, id: ObjectId, row: &ModelRow, materials: &[MaterialId]) -> String {
     let object = &house.objects[id];
     let root = house.parts[object.first_part].world_from_part;
@@ -284,7 +284,7 @@ fn model_key(house: &House, id: ObjectId, row: &ModelRow, materials: &[MaterialI
     )
 }
 
-/// Returns what the tables say of a model, apart from what follows from its shape.
+/// Returns the part of a table row that does not follow from the shape.
 fn key_of_row(row: &ModelRow) -> String {
     format!("{:?}{:?}{:?}", row.category, row.lights, row.signals)
 }

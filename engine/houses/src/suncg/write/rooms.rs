@@ -8,7 +8,7 @@ use super::{SuncgWriter, bounds};
 use crate::error::HousesError;
 use crate::obj::ObjWriter;
 
-/// Returns whether a piece of `level` needs a room of its own: it stands in none and is no ground.
+/// Returns whether a piece of `level` needs a room of its own: it is in none and is no ground.
 pub(super) fn is_homeless(piece: &Structure, level: LevelId) -> bool {
     piece.level == level && piece.room.is_none() && piece.kind != StructureKind::Ground
 }
@@ -22,7 +22,7 @@ fn letter(kind: StructureKind) -> char {
     }
 }
 
-/// The group name of a piece: its own where that says what it is, else with the kind before it.
+/// The group name of a piece: its own where that means its kind, else with the kind before it.
 fn group_name(piece: &Structure) -> String {
     let kind = match piece.kind {
         StructureKind::Ceiling => "Ceiling",
@@ -40,7 +40,7 @@ fn group_name(piece: &Structure) -> String {
 }
 
 impl SuncgWriter<'_> {
-    /// The node of a room, or of the pieces of a storey that stand in no room.
+    /// The node of a room, or of the pieces of a storey without a room.
     pub(super) fn room_node(
         &self,
         level: LevelId,

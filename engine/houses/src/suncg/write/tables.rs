@@ -27,11 +27,11 @@ pub(super) struct ModelRow {
     pub(super) signals: Vec<String>,
 }
 
-/// Beside a model that houses share: its [`ModelRow`].
+/// File name of the [`ModelRow`] beside a model that houses share.
 const ROW: &str = "row.json";
 
 impl SuncgWriter<'_> {
-    /// Writes what the tables will say of a shared model beside it.
+    /// Writes the table row of a shared model beside it.
     pub(super) fn row_file(&self, row: &ModelRow) -> Result<(), HousesError> {
         let path = format!("object/{}/{ROW}", row.id);
         let text = serde_json::to_vec(row).map_err(|error| HousesError::Unwritable {
@@ -48,7 +48,7 @@ impl SuncgWriter<'_> {
 /// [`HousesError::Io`] when the system refuses, [`HousesError::Syntax`] when a row is none.
 pub(super) fn read_rows(root: &DataRoot) -> Result<Vec<ModelRow>, HousesError> {
     let folder = root.folder().join("object");
-    // Where no house could be made there are no models.
+    // Without any house there are no models.
     if !folder.exists() {
         return Ok(Vec::new());
     }
