@@ -1,4 +1,4 @@
-//! Air: how fast sound travels and how much of it is lost on the way.
+//! Air: speed of sound and absorption.
 
 use crate::bands::{self, BAND_COUNT};
 use crate::error::{AcousticsError, range};
@@ -76,7 +76,7 @@ impl Air {
         343.2 * (self.temperature_k() / T0_K).sqrt()
     }
 
-    /// Attenuation of a pure tone, dB/m.
+    /// Returns the attenuation of a pure tone, dB/m.
     ///
     /// # Source
     /// ISO 9613-1:1993, equations (3) to (6), (B.1) to (B.3).
@@ -97,7 +97,7 @@ impl Air {
         8.686 * f2 * (classical + libm::pow(ratio, -2.5) * (oxygen + nitrogen))
     }
 
-    /// Attenuation of **energy**, 1/m, in each band at its exact centre: over d metres exp(-m d) is left. Shape (band,).
+    /// Returns the attenuation of **energy**, 1/m, in each band at its exact centre: after d metres exp(-m d) is left. Shape (band,).
     pub fn energy_decay_per_m(&self) -> [f64; BAND_COUNT] {
         std::array::from_fn(|band| {
             let db = self.attenuation_db_per_m(bands::exact_centre_hz(band));

@@ -1,4 +1,4 @@
-//! Octave bands: the eight numbers that stand for a spectrum, and the filters that belong to them.
+//! Octave bands: the eight values that represent a spectrum, and their filters.
 //!
 //! Every energy per band in this crate has the same unit: **e = 1/d² for a free path of d metres**, that is the squared
 //! magnitude of the transfer function from pressure at 1 m to pressure at the receiver (pyroomacoustics gives the
@@ -25,10 +25,10 @@ const LONGEST_RING_S: f64 = 0.05;
 /// Ringing beyond this wraps around to the other end, s: where bands cross over half an octave or more, less than -77 dB of
 /// the output of [`FilterBank::blend`] and [`FilterBank::sift`], less than -55 dB of that of [`FilterBank::split`].
 const WRAP_S: f64 = 0.2;
-/// A band ends below this part of half the rate at which it is kept: the energy of its samples over some milliseconds is then that of
-/// all that were left out.
+/// A band ends below this part of half its decimated rate: the energy of its samples over some milliseconds is then that of
+/// all that were dropped.
 const ROOM: f64 = 0.85;
-/// Of a band at least one of so many samples is kept.
+/// Largest decimation factor of a band.
 const SLOWEST: usize = 8;
 /// Position of the 1 kHz band.
 const BAND_OF_1_KHZ: f64 = 4.0;
@@ -41,12 +41,12 @@ pub fn exact_centre_hz(band: usize) -> f64 {
     1000.0 * libm::pow(10.0, 0.3 * (band as f64 - BAND_OF_1_KHZ))
 }
 
-/// A material's values at the bands.
+/// Returns a material's values at the bands.
 pub fn sample(values: &Bands) -> BandValues {
     NOMINAL_CENTRES_HZ.map(|centre| values.at(centre))
 }
 
-/// Returns how the power at `frequency_hz` is shared among the bands; the shares sum to 1. Shape (band,).
+/// Returns the shares of the power at `frequency_hz` in the bands; they sum to 1. Shape (band,).
 ///
 /// Between two centres the shares cross with a raised cosine in the logarithm of frequency that is `overlap` octaves
 /// wide, above 0 to 1 (1: the whole way from centre to centre). Everything below the lowest centre belongs to the lowest band, and
@@ -70,7 +70,7 @@ pub fn power_shares(frequency_hz: f64, overlap: f64) -> [f64; BAND_COUNT] {
     shares
 }
 
-/// A bank of zero-phase filters that loses no power: at every frequency the squares of their gains sum to 1.
+/// A bank of zero-phase, power-complementary filters: at every frequency the squares of their gains sum to 1.
 ///
 /// At 16 kHz the 8 kHz band ends at the Nyquist frequency; a band that lies wholly above it is silent.
 #[derive(Clone, Debug)]
@@ -78,13 +78,13 @@ pub struct FilterBank {
     fft: RealFft,
     /// Power share of each band at each bin. Shape (band, bin).
     shares: Vec<Vec<f32>>,
-    /// The bins at which a band has any. Shape (band,).
+    /// The range of bins in which a band has a share. Shape (band,).
     spans: Vec<Range<usize>>,
     /// As [`Self::up_to`].
     up_to: Vec<Vec<f32>>,
     /// As [`Self::stride`], and the transform to that rate. Shape (band,).
     slow: Vec<(usize, RealFft)>,
-    /// Energy in a band of what two bands blend to, for pulses of amplitude 1. Shape (band, one, other).
+    /// Energy in a band of the blend of two bands, for pulses of amplitude 1. Shape (band, one, other).
     blended: Vec<[[f64; BAND_COUNT]; BAND_COUNT]>,
 }
 
@@ -107,7 +107,7 @@ impl FilterBank {
             let mut spectrum: Vec<Complex<f32>> =
                 share.iter().map(|s| Complex::new(*s, 0.0)).collect();
             let response = fft.inverse(&mut spectrum);
-            // Samples before the pulse stand at the end.
+            // Samples before the pulse are at the end.
             let samples = (0..2 * reach).map(|k| (k + fft.len() - reach) % fft.len());
             let mut sum = 0.0;
             let mut sums = vec![0.0];
@@ -136,7 +136,7 @@ impl FilterBank {
         }
     }
 
-    /// The signal in each band: their powers sum to the signal's, and filtering each again and summing gives it back.
+    /// Splits a signal into bands: their powers sum to the signal's, and filtering each again and summing reconstructs it.
     /// Shape (band, sample).
     pub fn split(&self, signal: &[f32]) -> Vec<Vec<f32>> {
         let mut fft = self.fft.clone();
@@ -156,8 +156,8 @@ impl FilterBank {
             .collect()
     }
 
-    /// A signal filtered by every band's **power share** as a gain, of which each [`Self::stride`]th sample is kept.
-    /// Shape (band, sample).
+    /// Filters a signal by every band's **power share** as a gain, keeping each [`Self::stride`]th sample. Shape (band,
+    /// sample).
     pub(crate) fn sift(&self, signal: &[f32]) -> Vec<Vec<f32>> {
         let spectrum = self.fft.clone().forward(signal);
         let bands = self.shares.iter().zip(&self.spans).zip(&self.slow);
@@ -176,13 +176,13 @@ impl FilterBank {
         sifted.collect()
     }
 
-    /// Of how many samples of a band [`Self::sift`] keeps one: a power of two.
+    /// Returns the decimation factor of a band in [`Self::sift`]: a power of two.
     pub(crate) fn stride(&self, band: usize) -> usize {
         self.slow[band].0
     }
 
-    /// The energy that [`Self::sift`] finds in a band of a pulse that [`Self::blend`] made, from its energy in each band. Pulses that
-    /// come together with other signs in each band have up to 0.4 dB less.
+    /// Returns the energy that [`Self::sift`] finds in a band of a pulse made by [`Self::blend`], from its energy in each
+    /// band. Overlapping pulses with different signs in the bands have up to 0.4 dB less.
     pub(crate) fn found(&self, band: usize, energy: &[f64; BAND_COUNT]) -> f64 {
         let amplitude = energy.map(f64::sqrt);
         let rows = self.blended[band].iter().zip(&amplitude);
@@ -192,13 +192,13 @@ impl FilterBank {
         rows.map(|(shares, a)| a * row(shares)).sum()
     }
 
-    /// The fraction of a pulse's energy in a band that is over up to each sample; the middle of the row is the pulse. Shape (odd,).
+    /// Returns the cumulative fraction of a pulse's energy in a band at each sample; the middle of the row is the pulse. Shape (odd,).
     pub(crate) fn up_to(&self, band: usize) -> &[f32] {
         &self.up_to[band]
     }
 
-    /// Sums one signal per band, each multiplied by its band's **power share** as a gain: equal signals come back
-    /// unchanged, and the spectrum between two centres lies between the two.
+    /// Sums one signal per band, each multiplied by its band's **power share** as a gain: equal signals are reconstructed,
+    /// and the spectrum between two centres lies between the two.
     ///
     /// `signals`: shape (band, sample), equal lengths. Returns `length` samples.
     pub fn blend(&self, signals: &[Vec<f32>], length: usize) -> Vec<f32> {
@@ -222,7 +222,7 @@ impl FilterBank {
     }
 }
 
-/// The bins from the first to the last with a share.
+/// Returns the bins from the first to the last with a share.
 fn span(share: &[f32]) -> Range<usize> {
     let first = share.iter().position(|s| *s > 0.0);
     let last = share.iter().rposition(|s| *s > 0.0);
@@ -248,7 +248,7 @@ fn blended(shares: &[Vec<f32>], band: usize) -> [[f64; BAND_COUNT]; BAND_COUNT] 
     let mut poll = PollEvery::new(4096);
     for bin in (0..=last).filter(|bin| shares[band][*bin] > 0.0) {
         poll.turn();
-        // All bins but the first and the last stand for two frequencies.
+        // All bins but the first and the last represent two frequencies.
         let weight = if bin == 0 || bin == last { 0.5 } else { 1.0 } / last as f64;
         let here: [f64; BAND_COUNT] = std::array::from_fn(|k| f64::from(shares[k][bin]));
         for (row, one) in sums.iter_mut().zip(&here) {
@@ -342,7 +342,7 @@ mod tests {
                 let window = (0.02 * rate_hz) as usize / stride;
                 let usual = energy(&all[..n]) / (n / (window * stride)) as f64;
                 for k in 1..n / stride / window {
-                    // Each sample stands for those around it.
+                    // Each sample represents those around it.
                     let around = |k: usize| k * window * stride - stride / 2;
                     let few = stride as f64 * energy(&few[k * window..(k + 1) * window]);
                     let all = energy(&all[around(k)..around(k + 1)]);

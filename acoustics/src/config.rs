@@ -30,12 +30,12 @@ pub struct AcousticConfig {
     /// Decay of the rays' energy down to which their number is kept, dB; 10 to 120. Above it, faint rays end and strong
     /// ones split, so that there are always as many; below, their number falls with their energy. Bands count alike.
     pub roulette_db: f64,
-    /// Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2. It is this large for paths up
-    /// to 8 m and grows with their length, up to 0.35 of the cube root of the volume in sight.
+    /// Radius of the detection sphere in which paths with specular last reflections are counted, m; 0.05 to 2. It holds for
+    /// paths up to 8 m and grows with their length, up to 0.35 of the cube root of the volume in sight.
     pub receiver_radius_m: f64,
     /// Relative standard error of the tail's energy, in every band, below which no more rays are traced; 0 (all rays) to 1.
     pub max_error: f64,
-    /// Random arrivals that make up a second of the tail's pressure; 500 to 100,000. Denser ones cannot be told apart.
+    /// Random arrivals a second in the tail's pressure; 500 to 100,000. Denser ones cannot be distinguished.
     pub arrivals_per_s: f64,
     /// Makes panels below 4 m² mirror only short waves and scatter long ones, except panels that hang at a wall or lean out
     /// of one.
@@ -63,7 +63,7 @@ impl Default for AcousticConfig {
 }
 
 impl AcousticConfig {
-    /// For listening and measuring: 5,000 rays, images to order 3, two seconds.
+    /// Settings for listening and measuring: 5,000 rays, images to order 3, two seconds.
     pub fn full() -> Self {
         Self {
             rate_hz: 16_000,
@@ -87,7 +87,7 @@ impl AcousticConfig {
         }
     }
 
-    /// For agents that learn: 300 rays, images to order 2, one second.
+    /// Settings for learning agents: 300 rays, images to order 2, one second.
     pub fn rl() -> Self {
         Self {
             rays: 300,
@@ -102,7 +102,7 @@ impl AcousticConfig {
         }
     }
 
-    /// For comparing others with: 50,000 rays, images to order 3, four seconds in bins of 2 ms.
+    /// Reference settings for comparisons: 50,000 rays, images to order 3, four seconds in bins of 2 ms.
     pub fn reference() -> Self {
         Self {
             rays: 50_000,
@@ -115,7 +115,7 @@ impl AcousticConfig {
         }
     }
 
-    /// The settings called `name`: one of [`Self::PRESETS`].
+    /// Returns the settings called `name`: one of [`Self::PRESETS`].
     pub fn preset(name: &str) -> Option<Self> {
         match name {
             "rl" => Some(Self::rl()),
@@ -128,7 +128,7 @@ impl AcousticConfig {
     /// The names of all settings, the quickest first.
     pub const PRESETS: [&'static str; 3] = ["rl", "full", "reference"];
 
-    /// Bins of a tail's histogram.
+    /// Returns the number of bins of a tail's histogram.
     pub(crate) fn bin_count(&self) -> usize {
         (self.max_duration_s / self.bin_s).ceil() as usize
     }

@@ -1,4 +1,4 @@
-//! Cells of equal area on the sphere: from where energy comes.
+//! Cells of equal area on the sphere: directions of arrival of energy.
 
 use crate::bands::{BAND_COUNT, BandValues};
 use dwell_scene::math::sin_cos;
@@ -15,7 +15,7 @@ const COLUMNS: usize = 8;
 /// The number of cells.
 pub const CELL_COUNT: usize = ROWS * COLUMNS;
 
-/// The cell that a unit vector points into.
+/// Returns the cell that a unit vector points into.
 ///
 /// Cells lie between heights -1, -2/3, ... 1 (of equal area by Archimedes' theorem of the sphere and the cylinder) and between
 /// eighths of a turn from +X towards +Z: cell = 8 row + column.
@@ -32,7 +32,7 @@ pub fn cell_of(direction: Vec3) -> usize {
     row.min(ROWS - 1) * COLUMNS + column
 }
 
-/// The unit vector at a place within a cell, `u` and `v` from 0 to 1; uniform over the cell where they are uniform.
+/// Returns the unit vector at a place within a cell, `u` and `v` from 0 to 1; uniform over the cell where they are uniform.
 pub fn within(cell: usize, u: f32, v: f32) -> Vec3 {
     let (row, column) = (cell / COLUMNS, cell % COLUMNS);
     let y = ((row as f32 + u) * (2.0 / ROWS as f32) - 1.0).clamp(-1.0, 1.0);
@@ -41,9 +41,9 @@ pub fn within(cell: usize, u: f32, v: f32) -> Vec3 {
     Vec3::new(across * cos, y, across * sin)
 }
 
-/// From where energy comes during a span of time.
+/// Directional distribution of energy during a span of time.
 ///
-/// Shares are per cell and band and need no sum of 1; a band in which nothing was found counts as sound from all sides.
+/// Shares are per cell and band and need no sum of 1; a band without energy counts as diffuse.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DirectionalEnergy {
     /// Energy by cell and band. Shape (cell,).
@@ -70,8 +70,8 @@ impl DirectionalEnergy {
         sum
     }
 
-    /// Mean of the unit vectors towards where the energy of all bands comes from: length 0 for sound from all sides, nearly 1
-    /// for sound from one.
+    /// Returns the mean of the unit vectors of arrival of the energy of all bands: length 0 for a diffuse field, nearly 1
+    /// for a single direction.
     pub fn mean(&self) -> Vec3 {
         let (mut sum, mut all) = (Vec3::ZERO, 0.0);
         for (cell, energy) in self.energy.iter().enumerate() {
@@ -82,7 +82,7 @@ impl DirectionalEnergy {
         if all > 0.0 { sum / all } else { Vec3::ZERO }
     }
 
-    /// Ready to draw from.
+    /// Returns a sampler of directions.
     pub(crate) fn sampler(&self) -> DirectionSampler {
         let total = self.total();
         let heard = total.iter().filter(|t| **t > 0.0).count();
@@ -100,8 +100,8 @@ impl DirectionalEnergy {
                     even
                 }
             });
-            // The chance of a cell is the mean over the bands that are heard; a band with more or less than that share is louder
-            // or fainter from there, so that each band keeps its own directions.
+            // The probability of a cell is the mean over the bands with energy; a band with another share is louder or
+            // fainter from there, so that each band keeps its own directions.
             let chance = if heard == 0 {
                 even
             } else {
@@ -118,7 +118,7 @@ impl DirectionalEnergy {
     }
 }
 
-/// The middle of a cell, not of unit length: the mean of its unit vectors.
+/// Returns the middle of a cell, not of unit length: the mean of its unit vectors.
 fn middle(cell: usize) -> Vec3 {
     // Over an eighth of a turn the mean of a vector is sin(pi/8)/(pi/8) of it; over the height it is nearly the middle's.
     const SPREAD: f32 = 0.974_495_4;
@@ -126,16 +126,16 @@ fn middle(cell: usize) -> Vec3 {
     Vec3::new(v.x * SPREAD, v.y, v.z * SPREAD)
 }
 
-/// Draws directions.
+/// A sampler of directions.
 pub(crate) struct DirectionSampler {
-    /// Chances summed up to each cell.
+    /// Cumulative probabilities of the cells.
     up_to: [f32; CELL_COUNT],
-    /// Amplitude of a band against the mean of all, from each cell.
+    /// Amplitude of a band over the mean of all, from each cell.
     gain: Vec<BandValues>,
 }
 
 impl DirectionSampler {
-    /// A direction that sound comes from, and the gain of its bands.
+    /// Draws a direction of arrival, and the gain of its bands.
     pub(crate) fn draw(&self, stream: &mut RandomStream) -> (Vec3, &BandValues) {
         let place = stream.uniform_f32() * self.up_to[CELL_COUNT - 1];
         let cell = self.up_to.partition_point(|sum| *sum <= place);
@@ -183,7 +183,7 @@ mod tests {
         );
     }
 
-    /// Two bands from opposite sides: what is drawn gives each band its own side and its whole energy.
+    /// Two bands from opposite sides: draws give each band its own side and its whole energy.
     #[test]
     fn every_band_keeps_its_directions() {
         let mut directions = DirectionalEnergy::default();

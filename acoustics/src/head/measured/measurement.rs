@@ -21,18 +21,18 @@ pub(super) const SAME: f64 = 8.7e-4;
 /// Only directions count: sources are taken as distant. Of places in one direction the farthest is used.
 ///
 /// Processing:
-/// - **Level**: one gain for both ears and all directions, such that from 200 to 500 Hz, where a head is small, the energy over
-///   all directions is that at a sphere. So a source of 1 Pa at 1 m gives at an ear what it gives at the head's centre without the
-///   head, times what the head does; the gain of the measurement's loudspeaker and microphones drops out. Their response remains,
-///   except below 160 Hz, where such loudspeakers fail and a head does nothing: one filter of minimum phase for both ears and all
-///   directions makes the mean level there that at 200 to 500 Hz (by at most 26 dB); what then differs from it is noise, and goes until 80 Hz,
-///   from where on the head only delays, as it does from 160 to 320 Hz.
-/// - **Time**: one delay for both ears and all directions is taken off, such that what remains is that of a sphere around the
-///   head's centre; the sphere's radius is fitted.
-/// - **Between directions**: each response is split into its delay and a rest, both are interpolated over the triangle around
-///   the direction (delay, modulus and phase of the rest), and what was measured comes out exactly at its own direction.
-/// - **Where nothing was measured** (no direction within 25 degrees), a sphere of the fitted radius takes over, with the level
-///   and delay by which the nearest measured directions differ from it.
+/// - **Level**: one gain for both ears and all directions, such that from 200 to 500 Hz, where a head is small, the energy
+///   over all directions is that at a sphere. So a source of 1 Pa at 1 m gives at an ear the pressure at the head's centre
+///   without the head, times the head's response; the gain of the measurement's loudspeaker and microphones drops out. Their
+///   response remains, except below 160 Hz, where such loudspeakers fail and a head has no effect: one filter of minimum phase
+///   for both ears and all directions makes the mean level there that at 200 to 500 Hz (by at most 26 dB); the remaining
+///   difference is noise, and is faded out down to 80 Hz, below which the head only delays, as it does from 160 to 320 Hz.
+/// - **Time**: one delay for both ears and all directions is removed, such that the remaining one is that of a sphere around
+///   the head's centre; the sphere's radius is fitted.
+/// - **Between directions**: each response is split into its delay and a remainder, both are interpolated over the triangle
+///   around the direction (delay, modulus and phase of the remainder), and measured directions are reproduced exactly.
+/// - **Unmeasured directions** (none within 25 degrees) have the response of a sphere of the fitted radius, with the level and
+///   delay by which the nearest measured directions differ from it.
 /// - **Above half of its sample rate** modulus and phase stay as they are at 0.46 of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HrirMeasurement {

@@ -1,8 +1,8 @@
 //! Heads that were measured: from responses to tables.
 //!
-//! - `measurement`: what comes in, checked; `onset`: when each response begins; `spectra`: responses at any frequencies.
-//! - `fit`: the sphere that a head resembles, which gives level, time and what was not measured.
-//! - `hull`: triangles between directions; `tables`: what is heard from any direction.
+//! - `measurement`: the input, checked; `onset`: onsets of responses; `spectra`: responses at any frequencies.
+//! - `fit`: the sphere fitted to a head, which gives level, time and unmeasured directions.
+//! - `hull`: triangles between directions; `tables`: filters for any direction.
 
 mod fit;
 mod hull;
