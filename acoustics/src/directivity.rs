@@ -8,18 +8,18 @@ use std::f64::consts::{PI, TAU};
 
 /// Angles in the table of a sphere: every 3 degrees.
 const ANGLES: usize = 61;
-/// The most angles that a measured one may have: every half degree.
+/// Most angles of a measured pattern: every half degree.
 const MOST_ANGLES: f64 = 361.0;
 
-/// A directivity that is symmetric about an axis: the forward axis (-Z) of what has it. Its gain on the axis is 1 in every band.
+/// A directivity that is symmetric about its forward axis (-Z). Its gain on the axis is 1 in every band.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Directivity {
-    /// Equal on all sides.
+    /// Equal in all directions.
     #[default]
     Omni,
-    /// 1 - g + g cos(angle) in each band: g = 0 omnidirectional, 0.5 cardioid, 0.75 hypercardioid, 1 figure of eight. Pressure
-    /// is upside down where the gain is negative.
+    /// 1 - g + g cos(angle) in each band: g = 0 omnidirectional, 0.5 cardioid, 0.75 hypercardioid, 1 figure of eight.
+    /// Pressure is inverted where the gain is negative.
     FirstOrder {
         /// g, 0 to 1. Shape (band,).
         gradient: BandValues,
@@ -34,10 +34,10 @@ pub enum Directivity {
         /// 0.01 to 1 m.
         radius_m: f32,
     },
-    /// As it was measured: amplitudes at angles to the axis.
+    /// A measured pattern: amplitudes at angles to the axis.
     Polar {
-        /// Over that on the axis, from there (0 degrees) to behind (180) at equal steps; between them amplitudes are interpolated. At
-        /// most 2. Shape (angle, band), 2 to 361 angles.
+        /// Amplitudes over that on the axis, from the axis (0 degrees) to behind (180) at equal steps, interpolated
+        /// between. At most 2. Shape (angle, band), 2 to 361 angles.
         gain: Vec<BandValues>,
     },
 }
@@ -54,7 +54,7 @@ impl Directivity {
     /// A talking person.
     pub const TALKER: Self = Self::Sphere { radius_m: 0.0875 };
 
-    /// The directivity called `name`: `"omni"`, `"cardioid"`, `"figure_of_eight"`, `"talker"` or `"loudspeaker"`.
+    /// Returns the directivity called `name`: `"omni"`, `"cardioid"`, `"figure_of_eight"`, `"talker"` or `"loudspeaker"`.
     pub fn named(name: &str) -> Option<Self> {
         match name {
             "omni" => Some(Self::Omni),
@@ -97,7 +97,7 @@ impl Directivity {
         }
     }
 
-    /// Ready for many directions, in air with `speed_m_s`.
+    /// Returns it tabulated, in air with `speed_m_s`.
     pub(crate) fn pattern(&self, speed_m_s: f64) -> TabulatedPattern {
         match self {
             Self::Omni => TabulatedPattern::Omni,
@@ -134,7 +134,7 @@ pub(crate) enum TabulatedPattern {
 }
 
 impl TabulatedPattern {
-    /// Gain of amplitude at an angle to the axis, by its cosine. Shape (band,).
+    /// Returns the gain of amplitude at an angle to the axis, by its cosine. Shape (band,).
     pub(crate) fn gain(&self, cosine: f32) -> BandValues {
         match self {
             Self::Omni => [1.0; BAND_COUNT],
@@ -150,14 +150,14 @@ impl TabulatedPattern {
         }
     }
 
-    /// Tabulated with other gains; `change` gets the cosine of the angle to the axis and the gain there.
+    /// Returns it with other gains; `change` gets the cosine of the angle to the axis and the gain there.
     pub(crate) fn reshaped(&self, change: impl Fn(f32, BandValues) -> BandValues) -> Self {
         let cosine = |k: usize| libm::cos(PI * k as f64 / (ANGLES - 1) as f64) as f32;
         let cosines = (0..ANGLES).map(cosine);
         Self::Table(cosines.map(|c| change(c, self.gain(c))).collect())
     }
 
-    /// Returns whether it is equal on all sides.
+    /// Returns whether it is equal in all directions.
     pub(crate) fn is_omni(&self) -> bool {
         matches!(self, Self::Omni)
     }
@@ -192,7 +192,7 @@ mod tests {
         assert!(Directivity::Sphere { radius_m: f32::NAN }.check().is_err());
     }
 
-    /// A cardioid that was measured at 37 angles is one, between them too, and passes its bounds as any other does.
+    /// A cardioid measured at 37 angles is one, between them too, and passes its bounds as any other does.
     #[test]
     fn a_measured_pattern_is_what_was_measured() {
         let cosine = |k: u16| (f32::from(k) * 5.0).to_radians().cos();
@@ -224,7 +224,7 @@ mod tests {
         }
     }
 
-    /// Long waves go round a head; short ones leave its back faint.
+    /// Long waves are diffracted around a head; short ones leave its back faint.
     #[test]
     fn a_talker_is_faint_behind_at_high_frequencies() {
         let pattern = Directivity::TALKER.pattern(343.2);

@@ -1,17 +1,17 @@
-//! Energies over time: what arrives when, in which band, from where.
+//! Echograms: energies by time, band and direction of arrival.
 
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::directions::DirectionalEnergy;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The closest that source and receiver count as being, m: nearer, 1/d has no meaning for real sources.
+/// Least distance of source and receiver, m: nearer, 1/d has no meaning for real sources.
 pub const NEAREST_M: f64 = 0.1;
 
 /// One deterministic path from source to receiver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PropagationPath {
-    /// The planes it is reflected by, from the source on. Shape (order,).
+    /// The planes that reflect it, from the source on. Shape (order,).
     pub planes: Vec<u32>,
     /// Points at which it bends around edges, from the source on, m; a diffracted path is not reflected. Shape (0 to 2,).
     pub bends: Vec<Vec3>,
@@ -35,13 +35,13 @@ impl PropagationPath {
         self.planes.is_empty() && self.bends.is_empty()
     }
 
-    /// The number of reflections.
+    /// Returns the number of reflections.
     pub fn order(&self) -> usize {
         self.planes.len()
     }
 }
 
-/// Energy of the tail over time, and from where it comes.
+/// Energy of the tail over time, and its directions.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyHistogram {
     /// Width of a bin, s.
@@ -50,7 +50,7 @@ pub struct EnergyHistogram {
     pub bins: Vec<[f64; BAND_COUNT]>,
     /// Bins that share one entry of `directions`; at least 1.
     pub bins_per_direction: usize,
-    /// From where it comes. Shape (ceil(bin / `bins_per_direction`),).
+    /// Directions of arrival. Shape (ceil(bin / `bins_per_direction`),).
     pub directions: Vec<DirectionalEnergy>,
 }
 
@@ -66,7 +66,7 @@ impl EnergyHistogram {
         sum
     }
 
-    /// From where the energy of bin `bin` comes, if that is known.
+    /// Returns the directions of arrival of the energy of bin `bin`, if they are known.
     pub fn directions_at(&self, bin: usize) -> Option<&DirectionalEnergy> {
         self.directions.get(bin / self.bins_per_direction.max(1))
     }
@@ -77,13 +77,13 @@ impl EnergyHistogram {
     }
 }
 
-/// Spans of time in [`RayStatistics::error_over_time`].
+/// Number of time spans in [`RayStatistics::error_over_time`].
 pub const SPAN_COUNT: usize = 7;
 
 /// Statistics of the traced rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RayStatistics {
-    /// Rays that started.
+    /// Rays emitted.
     pub rays: u64,
     /// Straight pieces that ended on a surface.
     pub segments: u64,
@@ -91,7 +91,7 @@ pub struct RayStatistics {
     pub escaped: u64,
     /// Mean length of the pieces, m: 4 V / S in a closed room with scattering walls that absorb alike.
     pub mean_free_path_m: f64,
-    /// Radius of the largest ball around the receiver in which rays were counted, m.
+    /// Radius of the largest detection sphere around the receiver, m.
     pub receiver_radius_m: f64,
     /// Standard error of the tail's energy over its mean, from the scatter among groups of rays; 0 where nothing arrives.
     /// Shape (band,).
@@ -99,14 +99,14 @@ pub struct RayStatistics {
     /// The same for spans of time, all bands together, from the scatter among rays: up to 20, 40, 80, 160, 320, 640 ms, and later.
     /// Shape (span,).
     pub error_over_time: [f32; SPAN_COUNT],
-    /// Volume that the receiver sees, m³: that of a convex room, and an underestimate behind corners.
+    /// Volume visible from the receiver, m³: that of a convex room, and an underestimate behind corners.
     pub seen_volume_m3: f64,
 }
 
 /// All energies between one source and one receiver, without any noise realisation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Echogram {
-    /// Direct sound, low-order reflections and what bends around edges, by length.
+    /// Direct sound, low-order reflections and diffracted paths, by length.
     pub paths: Vec<PropagationPath>,
     /// Everything else.
     pub tail: EnergyHistogram,
@@ -114,7 +114,7 @@ pub struct Echogram {
     pub trace: RayStatistics,
     /// Position of the source, m.
     pub source: Vec3,
-    /// The straight distance from source to receiver, m, whatever stands between: nothing is heard before that.
+    /// Straight distance from source to receiver, m, whatever is between: nothing is heard before that.
     pub direct_length_m: f64,
     /// Speed of sound, m/s.
     pub speed_m_s: f64,
@@ -126,7 +126,7 @@ impl Echogram {
         self.paths.iter().find(|path| path.is_direct())
     }
 
-    /// Returns when a path arrives, s.
+    /// Returns the arrival time of a path, s.
     pub fn delay_s(&self, path: &PropagationPath) -> f64 {
         path.length_m / self.speed_m_s
     }
@@ -142,7 +142,7 @@ impl Echogram {
         sum
     }
 
-    /// Returns whether nothing at all is heard.
+    /// Returns whether there is no energy at all.
     pub fn is_silent(&self) -> bool {
         self.total().iter().all(|energy| *energy == 0.0)
     }

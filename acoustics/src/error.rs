@@ -1,6 +1,6 @@
 //! Errors of the acoustics engine.
 
-/// Why an acoustic call was refused.
+/// The reason why an acoustic call was refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum AcousticsError {
@@ -16,7 +16,7 @@ pub enum AcousticsError {
         /// The allowed values.
         allowed: &'static str,
     },
-    /// A source or receiver is nowhere.
+    /// A source or receiver whose position is not finite.
     #[error("{what} stands at {found:?}; allowed are coordinates up to 1,000,000 m")]
     Position {
         /// Source or receiver.
@@ -24,7 +24,7 @@ pub enum AcousticsError {
         /// The coordinates, m.
         found: [f32; 3],
     },
-    /// A source, receiver or microphone is turned by what is no rotation.
+    /// A source, receiver or microphone whose rotation is none.
     #[error("{what} is turned by {found:?}; allowed are quaternions of length 1")]
     Rotation {
         /// Source, receiver or microphone.
@@ -32,7 +32,7 @@ pub enum AcousticsError {
         /// The quaternion, x, y, z, w.
         found: [f32; 4],
     },
-    /// The rays go through another house than the scene was made for.
+    /// Rays of another house than the scene's.
     #[error("the rays belong to house {rays:?}, the acoustic scene to {scene:?}")]
     OtherHouse {
         /// The house of the rays.
@@ -60,22 +60,22 @@ pub enum AcousticsError {
         /// The allowed values.
         allowed: String,
     },
-    /// A measurement that is no head.
+    /// An invalid measurement of a head.
     #[error("the head's responses: {0}")]
     Head(String),
     /// A file that cannot be read as HDF5.
     #[error("{0}")]
     Hdf5(String),
-    /// A receiver wears a head that the scene was not given.
+    /// A receiver's head that is unknown to the scene.
     #[error("the receiver wears head {id}, which the scene does not know: add it first")]
     UnknownHead {
         /// Its number.
         id: u64,
     },
-    /// A buffer has the wrong length.
+    /// A buffer of the wrong length.
     #[error("{at}: expected {expected} samples, found {found}")]
     Buffer {
-        /// Whose buffer.
+        /// The buffer.
         at: &'static str,
         /// The length it must have.
         expected: usize,
@@ -107,7 +107,7 @@ pub(crate) fn range(
     })
 }
 
-/// Refuses a point that is nowhere.
+/// Refuses a point that is not finite.
 pub(crate) fn finite(what: &'static str, point: glam::Vec3) -> Result<(), AcousticsError> {
     if point.is_finite() && point.abs().max_element() < 1e6 {
         return Ok(());

@@ -6,7 +6,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::fmt;
 use std::sync::Arc;
 
-/// A forward and an inverse transform of one length, and the memory they work in. Clones share the plans.
+/// A forward and an inverse transform of one length, and their work memory. Clones share the plans.
 #[derive(Clone)]
 pub(crate) struct RealFft {
     forward: Arc<dyn RealToComplex<f32>>,
@@ -33,9 +33,9 @@ impl RealFft {
         }
     }
 
-    /// Transforms of a length that is fast and at least `length`.
+    /// Transforms of an efficient length of at least `length`.
     pub(crate) fn at_least(length: usize) -> Self {
-        // 2^a, 3 * 2^a or 5 * 2^a: at most a quarter longer than asked for.
+        // 2^a, 3 * 2^a or 5 * 2^a: at most a quarter longer than needed.
         let mut best = length.max(2).next_power_of_two();
         for factor in [3, 5] {
             let candidate = factor * length.div_ceil(factor).next_power_of_two();
@@ -46,17 +46,17 @@ impl RealFft {
         Self::new(best)
     }
 
-    /// Samples of the time signal.
+    /// Returns the number of samples of the time signal.
     pub(crate) fn len(&self) -> usize {
         self.time.len()
     }
 
-    /// Values of the spectrum.
+    /// Returns the number of values of the spectrum.
     pub(crate) fn bins(&self) -> usize {
         self.time.len() / 2 + 1
     }
 
-    /// The spectrum of `signal`, cut or padded with zeros to the length.
+    /// Returns the spectrum of `signal`, cut or padded with zeros to the length.
     pub(crate) fn forward(&mut self, signal: &[f32]) -> Vec<Complex<f32>> {
         let mut spectrum = vec![Complex::default(); self.bins()];
         self.forward_into(signal, &mut spectrum);
@@ -65,7 +65,7 @@ impl RealFft {
 
     /// As [`Self::forward`], into `spectrum` of [`Self::bins`] values.
     pub(crate) fn forward_into(&mut self, signal: &[f32], spectrum: &mut [Complex<f32>]) {
-        // A transform of some million samples takes 0.1 s, and nothing stops it.
+        // A transform of some million samples takes 0.1 s, and cannot be cancelled.
         interrupt::check();
         let used = signal.len().min(self.time.len());
         self.time[..used].copy_from_slice(&signal[..used]);
@@ -75,7 +75,7 @@ impl RealFft {
             .expect("buffers have the lengths that the plan asks for");
     }
 
-    /// The signal of a spectrum of [`Self::bins`] values, scaled so that it inverts [`Self::forward`]. Destroys `spectrum`.
+    /// Returns the signal of a spectrum of [`Self::bins`] values, scaled so that it inverts [`Self::forward`]. Destroys `spectrum`.
     pub(crate) fn inverse(&mut self, spectrum: &mut [Complex<f32>]) -> Vec<f32> {
         self.inverse_ref(spectrum).to_vec()
     }
@@ -83,7 +83,7 @@ impl RealFft {
     /// As [`Self::inverse`], without a copy.
     pub(crate) fn inverse_ref(&mut self, spectrum: &mut [Complex<f32>]) -> &[f32] {
         interrupt::check();
-        // A real signal's spectrum is real at both ends; what rounding left there is dropped.
+        // A real signal's spectrum is real at both ends; rounding errors there are dropped.
         spectrum[0].im = 0.0;
         let last = spectrum.len() - 1;
         spectrum[last].im = 0.0;

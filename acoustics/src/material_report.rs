@@ -7,7 +7,7 @@ use dwell_scene::{Id, MaterialId};
 use glam::Vec3;
 use serde::Serialize;
 
-/// One material of a house, as sound meets it.
+/// The acoustic properties of a material of a house.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MaterialAcoustics {
     /// The material.
@@ -43,9 +43,9 @@ pub struct AcousticReport {
     pub mean_scattering: [f64; BAND_COUNT],
     /// The box around all triangles: its lowest and its highest corner, m; zeros without any.
     pub bounds_m: [[f32; 3]; 2],
-    /// Planes into which the triangles fall.
+    /// Number of planes of the triangles.
     pub planes: usize,
-    /// Triangles.
+    /// Number of triangles.
     pub triangles: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The microphones of one receiver, as laws have them: what they give out of the pressure that reaches them.
+//! The chain of microphone laws of one receiver, applied to the pressure that reaches it.
 
 use crate::error::AcousticsError;
 use crate::laws::{
@@ -8,10 +8,10 @@ use crate::laws::{
 use dwell_scene::LawSpec;
 use serde::{Deserialize, Serialize};
 
-/// The installed laws of microphones at work, one after the other.
+/// The installed microphone laws, one after the other.
 ///
-/// When laws come, go or change their numbers, what the old and what the new ones give out are crossfaded over one block; a law
-/// of the same id and target goes on from what it remembered.
+/// When laws are added, removed or changed, the outputs of the old and the new chain are crossfaded over one block; a law
+/// of the same id and target keeps its state.
 #[derive(Debug)]
 pub(crate) struct MicrophoneChain {
     rate_hz: f64,
@@ -20,10 +20,10 @@ pub(crate) struct MicrophoneChain {
     chain: Vec<ChainStage>,
 }
 
-/// One law at work.
+/// One law of the chain.
 #[derive(Debug)]
 struct ChainStage {
-    /// Its place in the state's list.
+    /// Its index in the state's list.
     place: u64,
     spec: LawSpec,
     stage: Box<dyn MicrophoneStage>,
@@ -37,7 +37,7 @@ pub(crate) struct ChainMemory {
 }
 
 impl ChainStage {
-    /// `None` for a law of something else, and for one that does nothing.
+    /// Returns `None` for a law of something else, and for one without effect.
     fn new(place: u64, spec: &LawSpec, rate_hz: f64) -> Option<Self> {
         Some(Self {
             place,
@@ -66,13 +66,13 @@ impl MicrophoneChain {
         }
     }
 
-    /// They have never heard anything.
+    /// Resets the state.
     pub(crate) fn reset(&mut self) {
         self.channels = 0;
         self.chain.clear();
     }
 
-    /// Changes the next block of pressure to what the microphones give out of it. `samples`: shape (channel, sample), flat.
+    /// Replaces the next block of pressure by the microphones' output. `samples`: shape (channel, sample), flat.
     pub(crate) fn hear(
         &mut self,
         installed: &[LawSpec],
@@ -113,7 +113,7 @@ impl MicrophoneChain {
             known.push((&link.spec, memory));
         }
         for link in &mut self.chain {
-            // Two laws of one kind on one target are told apart by their order.
+            // Two laws of one kind on one target are distinguished by their order.
             let same = |(spec, _): &(&LawSpec, StageMemory)| {
                 spec.id == link.spec.id && spec.target == link.spec.target
             };
@@ -131,7 +131,7 @@ impl MicrophoneChain {
         }
     }
 
-    /// Returns what microphones that have heard nothing before give out of `samples` and the silence after it, until they have fallen
+    /// Returns the output of microphones in their initial state for `samples` and the silence after it, until they are
     /// silent themselves. Shape (channel, sample), flat.
     pub(crate) fn record(
         installed: &[LawSpec],
@@ -172,10 +172,10 @@ impl MicrophoneChain {
         }
     }
 
-    /// Microphones that remember what [`Self::memory`] wrote.
+    /// Restores a chain from [`Self::memory`].
     ///
     /// # Errors
-    /// [`AcousticsError::Snapshot`] for a law that this build does not know or with other numbers than it allows.
+    /// [`AcousticsError::Snapshot`] for a law that this build does not know or with numbers out of range.
     pub(crate) fn restore(rate_hz: f64, memory: ChainMemory) -> Result<Self, AcousticsError> {
         let mut chain = Vec::with_capacity(memory.chain.len());
         for (place, spec, stage) in memory.chain {

@@ -10,7 +10,7 @@ const FLOOR: f32 = 1e-12;
 /// Time by which the filters of ears begin before the delay, s: room for their ringing.
 pub(crate) const EAR_LEAD_S: f64 = 0.001;
 
-/// Time that the transforms of paths span, s.
+/// Duration of the path transforms, s.
 const SPAN_S: f64 = 0.032;
 
 fn transform_length(rate_hz: f64, span_s: f64) -> usize {
@@ -39,7 +39,7 @@ impl PathFilters {
         Self::spanning(rate_hz, SPAN_S)
     }
 
-    /// Values of a spectrum of [`Self::new`].
+    /// Returns the number of bins of a spectrum of [`Self::new`].
     pub(crate) fn bins_at(rate_hz: f64) -> usize {
         transform_length(rate_hz, SPAN_S) / 2 + 1
     }
@@ -68,18 +68,18 @@ impl PathFilters {
         }
     }
 
-    /// Values of a spectrum.
+    /// Returns the number of bins of a spectrum.
     pub(crate) fn bins(&self) -> usize {
         self.fft.bins()
     }
 
-    /// The logarithmic spectrum of minimum phase whose gain has, at a frequency in Hz, the natural logarithm `gain`.
+    /// Returns the logarithmic spectrum of minimum phase whose gain has, at a frequency in Hz, the natural logarithm `gain`.
     pub(crate) fn logarithmic(&self, gain: impl Fn(f64) -> f64) -> Vec<Complex<f32>> {
         logarithmic(&mut self.fft(), self.rate_hz, gain)
     }
 
-    /// The spectrum for `energy`, and the amplitude that it still has to be multiplied by. `more`: a logarithmic spectrum, and how many
-    /// times it is added.
+    /// Returns the spectrum for `energy`, and the amplitude to multiply it by. `more`: a logarithmic spectrum, and the
+    /// number of times that it is added.
     pub(crate) fn spectrum(
         &self,
         energy: &BandValues,
@@ -111,19 +111,19 @@ impl PathFilters {
         (sum, strongest.sqrt())
     }
 
-    /// The transform that [`Self::impulse_response`] works with.
+    /// Returns the transform used by [`Self::impulse_response`].
     pub(crate) fn fft(&self) -> RealFft {
         self.fft.clone()
     }
 
-    /// Makes the response of a spectrum late by [`lead`].
+    /// Delays the response of a spectrum by [`lead`].
     pub(crate) fn delay(&self, spectrum: &mut [Complex<f32>]) {
         for (value, late) in spectrum.iter_mut().zip(&self.late) {
             *value *= late;
         }
     }
 
-    /// The first half of the impulse response of a spectrum, its end faded out. Destroys `spectrum`.
+    /// Returns the first half of the impulse response of a spectrum, its end faded out. Destroys `spectrum`.
     pub(crate) fn impulse_response(
         &self,
         fft: &mut RealFft,
@@ -153,12 +153,12 @@ fn logarithmic(fft: &mut RealFft, rate_hz: f64, gain: impl Fn(f64) -> f64) -> Ve
     fft.forward(&cepstrum)
 }
 
-/// Samples by which the filters of ears begin before the delay.
+/// Returns the samples by which the filters of ears begin before the delay.
 pub(crate) fn lead(rate_hz: f64) -> usize {
     (EAR_LEAD_S * rate_hz) as usize
 }
 
-/// Weights that lead from 1 to 0. Shape (tap,).
+/// Returns weights that fall from 1 to 0. Shape (tap,).
 pub(crate) fn fade(taps: usize) -> Vec<f32> {
     let weight = |k: usize| {
         let cos = libm::cosf(std::f32::consts::FRAC_PI_2 * k as f32 / taps as f32);
@@ -167,7 +167,7 @@ pub(crate) fn fade(taps: usize) -> Vec<f32> {
     (0..taps).map(weight).collect()
 }
 
-/// Lets a response end with `fade`.
+/// Fades out the end of a response.
 pub(crate) fn fade_out(response: &mut [f32], fade: &[f32]) {
     let start = response.len().saturating_sub(fade.len());
     for (x, weight) in response[start..].iter_mut().zip(fade) {
@@ -209,7 +209,7 @@ mod tests {
                 "{band}: {found}"
             );
         }
-        // Minimum phase: the energy stands at the beginning.
+        // Minimum phase: the energy is at the beginning.
         let power = |x: &[f32]| x.iter().map(|v| v * v).sum::<f32>();
         assert!(power(&response[..8]) / power(&response) > 0.99);
     }

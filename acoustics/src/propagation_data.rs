@@ -21,7 +21,7 @@ const NEXT_WAY_M: f64 = 3.0;
 #[derive(Clone, Debug)]
 pub(crate) struct PropagationData {
     house: Arc<House>,
-    /// The settings, with the air as laws make it.
+    /// The settings, with the air as changed by laws.
     config: AcousticConfig,
     effects: PathEffects,
     table: Arc<PlaneTable>,
@@ -37,7 +37,7 @@ pub(crate) struct PropagationData {
 }
 
 impl PropagationData {
-    /// `house` with everything where it stands at the start.
+    /// The data of `house` in its initial state.
     pub(crate) fn new(house: Arc<House>, config: AcousticConfig) -> Self {
         let table = Arc::new(PlaneTable::new(&house));
         tracing::debug!(planes = table.len(), "acoustic planes built");
@@ -58,7 +58,7 @@ impl PropagationData {
         }
     }
 
-    /// Takes over overridden materials and moved parts; cheap when nothing changed.
+    /// Applies overridden materials and moved parts; cheap when nothing changed.
     pub(crate) fn update(&mut self, state: &State) {
         if state.overrides != self.overrides {
             self.overrides.clone_from(&state.overrides);
@@ -72,7 +72,7 @@ impl PropagationData {
         }
     }
 
-    /// Takes over what laws do to air and sources; `stated` as it was asked for.
+    /// Applies laws' effects on air and sources; `stated`: the original settings.
     pub(crate) fn apply(&mut self, effects: PathEffects, stated: &AcousticConfig) {
         self.config = effects.config(stated);
         self.effects = effects;
@@ -82,12 +82,12 @@ impl PropagationData {
         &self.house
     }
 
-    /// The settings, with the air as laws make it.
+    /// Returns the settings, with the air as changed by laws.
     pub(crate) fn config(&self) -> &AcousticConfig {
         &self.config
     }
 
-    /// Returns what laws do to air and sources.
+    /// Returns laws' effects on air and sources.
     pub(crate) fn effects(&self) -> &PathEffects {
         &self.effects
     }
@@ -96,12 +96,12 @@ impl PropagationData {
         &self.table
     }
 
-    /// All planes where they are now, largest of the static ones first.
+    /// Returns all planes at their present positions, largest of the static ones first.
     pub(crate) fn planes(&self) -> &[Plane] {
         &self.planes
     }
 
-    /// All edges that sound bends around, where they are now.
+    /// Returns all diffraction edges at their present positions.
     pub(crate) fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
         let fixed = self.table.edges().fixed.iter();
         fixed.chain(&self.moving_edges)
@@ -114,13 +114,14 @@ impl PropagationData {
             .unwrap_or(&AcousticSurface::HARD)
     }
 
-    /// The fraction of reflected energy that a surface scatters where a ray meets it, after `straight_m` from the source or the
-    /// last scattering and with a cosine of incidence. Shape (band,).
+    /// Returns the fraction of reflected energy that a surface scatters at a ray's hit, after `straight_m` from the source
+    /// or the last scattering and with a cosine of incidence. Shape (band,).
     ///
-    /// A panel that is small against the wave scatters what it is too small to mirror. Images and rays share this rule, so that
-    /// together they keep all energy; therefore the way after the reflection, which rays do not know yet, counts as
-    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. What goes around a panel that
-    /// hangs at a wall, or leans out of one as folds do, meets the wall: waves that are long against the heights find one mirror.
+    /// A panel that is small against the wavelength scatters instead of mirroring. Images and rays share this rule, so that
+    /// together they conserve energy; therefore the distance after the reflection, which rays do not know yet, counts as
+    /// [`NEXT_WAY_M`]. Walls end at other walls, where their images go on: they mirror all waves. Sound that is diffracted
+    /// around a panel that hangs at a wall, or leans out of one as folds do, meets the wall: waves that are long against
+    /// the heights find one mirror.
     ///
     /// # Source
     /// J. H. Rindel, *Attenuation of sound reflections due to diffraction*, Proc. Nordic Acoustical Meeting 86, 257 (1986): below
@@ -158,14 +159,14 @@ impl PropagationData {
         scattering
     }
 
-    /// Returns whether the state overrides a number of the material called `name`.
+    /// Returns whether the state overrides a parameter of the material called `name`.
     pub(crate) fn is_overridden(&self, name: &str) -> bool {
         let prefix = format!("material/{name}/");
         let mut addresses = self.overrides.keys();
         addresses.any(|address| address.as_str().starts_with(&prefix))
     }
 
-    /// Energy decay of air in each band, 1/m; zeros where air does not absorb.
+    /// Returns the energy decay of air in each band, 1/m; zeros where air does not absorb.
     pub(crate) fn air_decay_per_m(&self) -> [f64; BAND_COUNT] {
         if self.config.air_absorption {
             let whole = self.config.air.energy_decay_per_m();
@@ -175,7 +176,7 @@ impl PropagationData {
         }
     }
 
-    /// Energy of a free path: 1/d² and what air leaves of it.
+    /// Returns the energy of a free path: 1/d² less absorption by air.
     pub(crate) fn spread(&self, length_m: f64) -> [f64; BAND_COUNT] {
         let distance = length_m.max(NEAREST_M);
         self.air_decay_per_m()

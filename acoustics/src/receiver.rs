@@ -33,22 +33,22 @@ impl SoundSourcePose {
         }
     }
 
-    /// A source with a front.
+    /// A directional source.
     pub const fn facing(pose: Pose, directivity: Directivity) -> Self {
         Self { pose, directivity }
     }
 
-    /// Returns where it is, m.
+    /// Returns its position, m.
     pub const fn position(&self) -> Vec3 {
         self.pose.position
     }
 
-    /// Returns where its axis points, unit length.
+    /// Returns the direction of its axis, unit length.
     pub fn axis(&self) -> Vec3 {
         self.pose.rotation * Vec3::NEG_Z
     }
 
-    /// Returns whether it is somewhere and its directivity in range.
+    /// Checks that its position is finite and its directivity in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         finite("the source", self.pose.position)?;
         turned("the source", self.pose.rotation)?;
@@ -66,7 +66,7 @@ pub struct Microphone {
 }
 
 impl Microphone {
-    /// A microphone that hears equally from all sides.
+    /// An omnidirectional microphone.
     pub const fn omni(position: Vec3) -> Self {
         Self {
             array_from_microphone: Pose {
@@ -82,14 +82,14 @@ impl Microphone {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ReceiverKind {
-    /// A small microphone that hears equally from all directions: one channel.
+    /// A small omnidirectional microphone: one channel.
     Omni,
     /// Two ears on the scene's built-in sphere (forward -Z, left -X): channel 0 left, channel 1 right.
     Binaural,
-    /// Two ears on a head that the scene was given: channel 0 left, channel 1 right.
+    /// Two ears on a head that was added to the scene: channel 0 left, channel 1 right.
     Head(HeadId),
-    /// Microphones around a centre: a channel each, in their order. All hear one sound field, so that their differences are
-    /// those of a real array, early and late.
+    /// Microphones around a centre: a channel each, in their order. All are in one sound field, so that their differences
+    /// are those of a real array, early and late.
     Array(Vec<Microphone>),
     /// Spherical harmonics at one point: (order + 1)² channels, ACN order, SN3D weights, x to the front (-Z), y to the left
     /// (-X), z up.
@@ -128,8 +128,8 @@ impl Receiver {
         }
     }
 
-    /// Another head than the built-in one at a pose;
-    /// [`AcousticScene::add_head`](crate::AcousticScene::add_head) makes it known.
+    /// Another head than the built-in one at a pose; [`AcousticScene::add_head`](crate::AcousticScene::add_head) adds it to
+    /// the scene.
     pub const fn wearing(head: HeadId, world_from_head: Pose) -> Self {
         Self {
             pose: world_from_head,
@@ -137,7 +137,7 @@ impl Receiver {
         }
     }
 
-    /// Microphones around a pose.
+    /// An array of microphones at a pose.
     pub const fn array(world_from_array: Pose, microphones: Vec<Microphone>) -> Self {
         Self {
             pose: world_from_array,
@@ -158,7 +158,7 @@ impl Receiver {
         self.pose.position
     }
 
-    /// Returns how many channels it has.
+    /// Returns the number of its channels.
     pub fn channels(&self) -> usize {
         match &self.kind {
             ReceiverKind::Omni => 1,
@@ -168,7 +168,7 @@ impl Receiver {
         }
     }
 
-    /// Returns how it is turned; nothing turns a microphone.
+    /// Returns its rotation; the identity for a microphone.
     pub fn rotation(&self) -> Quat {
         match self.kind {
             ReceiverKind::Omni => Quat::IDENTITY,
@@ -176,7 +176,7 @@ impl Receiver {
         }
     }
 
-    /// Returns where the microphones of an array are, m; nothing for a receiver at one point.
+    /// Returns the positions of an array's microphones, m; `None` for a receiver at one point.
     pub(crate) fn microphone_positions(&self) -> Option<Vec<Vec3>> {
         let ReceiverKind::Array(microphones) = &self.kind else {
             return None;
@@ -188,7 +188,7 @@ impl Receiver {
         Some(positions.collect())
     }
 
-    /// Returns how far its furthest channel is from its centre, m.
+    /// Returns the distance of its furthest channel from its centre, m.
     pub(crate) fn radius_m(&self) -> f64 {
         let ReceiverKind::Array(microphones) = &self.kind else {
             return 0.0;
@@ -199,12 +199,12 @@ impl Receiver {
         f64::from(far.fold(0.0, f32::max))
     }
 
-    /// Returns whether a turn of it needs no new rays: all its channels are at one point.
+    /// Returns whether rotating it needs no new rays: all its channels are at one point.
     pub(crate) fn turns_in_place(&self) -> bool {
         !matches!(self.kind, ReceiverKind::Array(_))
     }
 
-    /// Returns whether it is somewhere and all its parts are in range.
+    /// Checks that its position is finite and all its parts are in range.
     pub(crate) fn check(&self) -> Result<(), AcousticsError> {
         const AT: &str = "receiver";
         finite("the receiver", self.pose.position)?;
@@ -232,7 +232,7 @@ impl Receiver {
     }
 }
 
-/// Returns whether a rotation turns anything at all.
+/// Checks that a rotation is one.
 fn turned(what: &'static str, rotation: Quat) -> Result<(), AcousticsError> {
     if rotation.is_finite() && (rotation.length_squared() - 1.0).abs() < 1e-2 {
         return Ok(());

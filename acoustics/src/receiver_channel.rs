@@ -9,13 +9,13 @@ use realfft::num_complex::Complex;
 
 /// The response of a channel to a plane wave.
 pub(crate) struct ChannelResponse {
-    /// Gain of amplitude; negative where pressure is upside down. Shape (band,).
+    /// Gain of amplitude; negative where pressure is inverted. Shape (band,).
     pub(crate) gain: BandValues,
     /// Against the receiver's centre, s.
     pub(crate) delay: Delay,
 }
 
-/// When a wave reaches a channel, against the receiver's centre, s.
+/// Delay of a wave at a channel, re the receiver's centre, s.
 pub(crate) enum Delay {
     None,
     Same(f32),
@@ -23,7 +23,7 @@ pub(crate) enum Delay {
 }
 
 impl Delay {
-    /// In each band, s.
+    /// Returns the delay in each band, s.
     pub(crate) fn banded(&self) -> BandValues {
         match self {
             Self::None => [0.0; BAND_COUNT],
@@ -36,7 +36,7 @@ impl Delay {
 /// One channel of a receiver.
 #[derive(Clone, Debug)]
 pub(crate) enum ReceiverChannel {
-    /// Everything alike.
+    /// Omnidirectional.
     Omni,
     /// An ear of a head.
     Ear(PlacedEar),
@@ -54,7 +54,7 @@ pub(crate) enum ReceiverChannel {
 }
 
 impl ReceiverChannel {
-    /// The channels of a receiver, in order.
+    /// Returns the channels of a receiver, in order.
     pub(crate) fn of(receiver: &Receiver, heads: &HeadSet, speed_m_s: f64) -> Vec<Self> {
         let rotation = receiver.pose.rotation;
         match &receiver.kind {
@@ -81,7 +81,7 @@ impl ReceiverChannel {
         }
     }
 
-    /// Returns how it hears a wave that comes from `towards`, unit length, world.
+    /// Returns the response to a wave from `towards`, unit length, world.
     pub(crate) fn hear(&self, speed_m_s: f64, towards: Vec3) -> ChannelResponse {
         let (gain, delay) = match self {
             Self::Omni => ([1.0; BAND_COUNT], Delay::None),
@@ -108,13 +108,13 @@ impl ReceiverChannel {
         ChannelResponse { gain, delay }
     }
 
-    /// Returns whether what it hears of a path needs room before the delay for ringing.
+    /// Returns whether its filters ring before the delay and need room for that.
     pub(crate) fn rings_early(&self) -> bool {
         matches!(self, Self::Ear(_))
     }
 
-    /// Multiplies a path's spectrum by what this channel makes of it beyond [`Self::hear`]'s gains, and returns the delay against
-    /// the receiver's centre, s.
+    /// Multiplies a path's spectrum by this channel's response beyond [`Self::hear`]'s gains, and returns the delay re the
+    /// receiver's centre, s.
     pub(crate) fn shade(
         &self,
         speed_m_s: f64,
@@ -128,7 +128,7 @@ impl ReceiverChannel {
         }
     }
 
-    /// Gains of a path's bands; for ears they are in [`Self::shade`].
+    /// Returns the gains of a path's bands; those of ears are in [`Self::shade`].
     pub(crate) fn path_gain(&self, towards: Vec3) -> BandValues {
         match self {
             Self::Omni | Self::Ear(_) => [1.0; BAND_COUNT],
@@ -141,7 +141,7 @@ impl ReceiverChannel {
     }
 }
 
-/// Real spherical harmonic number `acn` (up to 15) with SN3D weight towards a unit vector in the receiver's axes.
+/// Returns real spherical harmonic number `acn` (up to 15) with SN3D weight towards a unit vector in the receiver's axes.
 ///
 /// # Source
 /// C. Nachbar, F. Zotter, E. Deleflie, A. Sontacchi, `AmbiX`, a suggested ambisonics format, Ambisonics Symposium 2011,

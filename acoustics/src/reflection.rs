@@ -2,40 +2,40 @@
 
 use crate::bands::BandValues;
 
-/// The admittance that absorbs most over all angles: 1 / 1.567.
+/// The admittance of largest random-incidence absorption: 1 / 1.567.
 const HIGHEST_ADMITTANCE: f64 = 0.638_163;
-/// Steps of Newton's method; the last half is for the flat top, where each only halves the error.
+/// Steps of Newton's method; the last half is for the flat maximum, where each only halves the error.
 const STEPS: usize = 40;
-/// The smallest cosine of incidence: nothing comes along the very surface.
+/// Smallest cosine of incidence.
 const GRAZING: f32 = 1e-4;
 
-/// The energy that stays after a reflection.
+/// Reflected energy by angle of incidence.
 ///
-/// A table's absorption coefficients are measured with sound from all sides. Here a surface is a real admittance in every band,
-/// the one whose absorption from all sides is the table's: what grazes it is absorbed more, what meets it head on less. In a
+/// A table's absorption coefficients are measured at random incidence. Here a surface is a real admittance in every band,
+/// the one whose random-incidence absorption is the table's: it absorbs more at grazing incidence, and less at normal. In a
 /// room of parallel walls all directions then decay nearly alike, as its modes do (P. M. Morse, K. U. Ingard, *Theoretical
 /// Acoustics* (1968), section 9.5), where one coefficient for all angles leaves the sound along its length.
 ///
 /// # Source
-/// H. Kuttruff, *Room Acoustics* (5th ed., 2009), sections 2.3 (one angle) and 2.5 (all angles) for real impedances. 0.951 is
-/// the most that such a surface can absorb; above it, the rest is taken off at all angles alike. J. H. Rindel, Applied
-/// Acoustics 38, 223 (1993) has programs for rooms reflect so.
+/// H. Kuttruff, *Room Acoustics* (5th ed., 2009), sections 2.3 (one angle) and 2.5 (all angles) for real impedances. 0.951
+/// is the largest absorption of such a surface; above it, the rest is subtracted at all angles alike. J. H. Rindel, Applied
+/// Acoustics 38, 223 (1993) proposes this for room acoustics programs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reflection {
-    /// Of air over the surface's impedance; 0 for what does not depend on the angle. Shape (band,).
+    /// Ratio of air's to the surface's impedance; 0 for a surface that does not depend on the angle. Shape (band,).
     admittance: BandValues,
     /// Reflected energy at the admittance of full reflection. Shape (band,).
     most: BandValues,
 }
 
 impl Reflection {
-    /// Of a surface that absorbs nothing.
+    /// A surface that absorbs nothing.
     pub(crate) const HARD: Self = Self {
         admittance: [0.0; crate::bands::BAND_COUNT],
         most: [1.0; crate::bands::BAND_COUNT],
     };
 
-    /// That of `absorption` (from 0 to 1) at all angles alike.
+    /// The reflection with `absorption` (from 0 to 1) at all angles alike.
     pub(crate) fn uniform(absorption: &BandValues) -> Self {
         Self {
             most: absorption.map(|a| 1.0 - a),
@@ -43,7 +43,7 @@ impl Reflection {
         }
     }
 
-    /// That of a surface which absorbs `absorption` (from 0 to 1) of sound from all sides.
+    /// The reflection with a random-incidence `absorption` (from 0 to 1).
     pub(crate) fn by_angle(absorption: &BandValues) -> Self {
         let highest = from_all_sides(HIGHEST_ADMITTANCE);
         let rest = |a: f32| (1.0 - f64::from(a)) / (1.0 - highest);
@@ -53,7 +53,7 @@ impl Reflection {
         }
     }
 
-    /// The part of the energy that is kept, at a cosine of incidence. Shape (band,).
+    /// Returns the reflected share of energy, at a cosine of incidence. Shape (band,).
     pub(crate) fn kept(&self, cosine: f32) -> BandValues {
         let cosine = cosine.max(GRAZING);
         std::array::from_fn(|band| {
@@ -65,17 +65,17 @@ impl Reflection {
     }
 }
 
-/// The absorption of an admittance over all angles.
+/// Returns the random-incidence absorption of an admittance.
 fn from_all_sides(admittance: f64) -> f64 {
     8.0 * admittance * admittance * bracket(admittance)
 }
 
-/// Returns what stands in the equation's brackets.
+/// Returns the bracket of the equation.
 fn bracket(b: f64) -> f64 {
     1.0 + 1.0 / b - b / (1.0 + b) + 2.0 * libm::log(b / (1.0 + b))
 }
 
-/// The lower of the two admittances that absorb so much over all angles.
+/// Returns the lower of the two admittances with this random-incidence absorption.
 fn admittance(absorption: f64) -> f64 {
     // The curve bends downwards: from the left, Newton's steps never go too far.
     let mut b = absorption / 8.0;
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::bands::BAND_COUNT;
 
-    /// The mean of a function of the cosine over sound from all sides, by the midpoint rule.
+    /// Returns the mean of a function of the cosine over random incidence, by the midpoint rule.
     fn over_all_sides(f: impl Fn(f64) -> f64) -> f64 {
         let n = 200_000;
         let cosines = (0..n).map(|k| (f64::from(k) + 0.5) / f64::from(n));
@@ -116,7 +116,8 @@ mod tests {
         assert_eq!(reflection.kept(0.3)[7], 0.0);
     }
 
-    /// A tube measures half of what a reverberant room does, where little is absorbed (Kuttruff, section 2.5): 4 of 8 admittances.
+    /// An impedance tube measures half of a reverberation room's absorption, where little is absorbed (Kuttruff, section
+    /// 2.5): 4 of 8 admittances.
     #[test]
     fn head_on_hard_walls_absorb_half_of_it() {
         let kept = Reflection::by_angle(&[0.002; BAND_COUNT]).kept(1.0)[3];

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 /// Pressure over time at a receiver, for a source that makes an impulse of 1 Pa at 1 m.
 ///
-/// Convolved with a source's pressure at 1 m (Pa), it gives the pressure at the receiver (Pa). Sample 0 is the moment of the
+/// Convolved with a source's pressure at 1 m (Pa), it gives the pressure at the receiver (Pa). Sample 0 is the time of the
 /// impulse: there is no hidden delay.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImpulseResponse {
@@ -14,7 +14,7 @@ pub struct ImpulseResponse {
     pub channels: usize,
     /// Samples a second.
     pub rate_hz: u32,
-    /// The pressure. Shape (channel, sample), one channel after the other; empty where nothing is heard.
+    /// The pressure. Shape (channel, sample), one channel after the other; empty without energy.
     pub samples: Vec<f32>,
     /// The energies it was made from.
     pub echogram: Echogram,
@@ -29,7 +29,7 @@ impl ImpulseResponse {
         self.samples.len() / self.channels.max(1)
     }
 
-    /// Returns whether nothing is heard.
+    /// Returns whether it is silent.
     pub fn is_empty(&self) -> bool {
         self.samples.is_empty()
     }
@@ -58,7 +58,7 @@ mod tests {
     use glam::Vec3;
     use std::sync::Arc;
 
-    /// Whose head turns hears what one hears who came so, to the bit.
+    /// A head that turned hears what a head that arrived so turned hears, to the bit.
     #[test]
     fn a_turned_head_hears_what_one_that_came_so_hears() {
         let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
@@ -86,7 +86,7 @@ mod tests {
             );
             assert!(turned.levels.are_shared_with(&before.levels));
         }
-        // Nobody listens.
+        // A receiver without channels.
         let nobody = Receiver::array(Pose::from_position(place), Vec::new());
         assert!(
             scene

@@ -1,8 +1,8 @@
-//! Directions that cover the sphere evenly.
+//! Sequences of directions that cover the sphere evenly.
 
 use glam::Vec3;
 
-/// Direction `k` of `count` that cover the sphere evenly.
+/// Returns direction `k` of `count` that cover the sphere evenly.
 ///
 /// # Source
 /// R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132, 1769 (2006): the Fibonacci lattice.
@@ -11,7 +11,7 @@ pub(crate) fn fibonacci_direction(k: usize, count: usize) -> Vec3 {
     on_sphere(y, k as f64 * 0.618_033_988_749_894_9)
 }
 
-/// Direction `k` of a sequence every beginning of which covers the sphere evenly.
+/// Returns direction `k` of a sequence every prefix of which covers the sphere evenly.
 ///
 /// # Source
 /// M. Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences* (2018): the additive recurrence of the plastic number,
@@ -25,7 +25,7 @@ pub(crate) fn sequence_direction(k: usize, (u, v): (f64, f64)) -> Vec3 {
     on_sphere(y, place(v, 0.569_840_290_998_053_2))
 }
 
-/// The unit vector at height `y` and some turns about the vertical.
+/// Returns the unit vector at height `y` and an azimuth in turns.
 fn on_sphere(y: f64, turns: f64) -> Vec3 {
     let angle = std::f64::consts::TAU * (turns - turns.floor());
     let r = (1.0 - y * y).max(0.0).sqrt();

@@ -8,12 +8,12 @@ use dwell_scene::{House, Material, MaterialId, State};
 /// The acoustic properties of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AcousticSurface {
-    /// Energy that sound from all sides loses in a reflection.
+    /// Random-incidence absorption of energy.
     pub(crate) absorption: BandValues,
     pub(crate) reflection: Reflection,
-    /// Fraction of what stays that is scattered.
+    /// Scattered fraction of the reflected energy.
     pub(crate) scattering: BandValues,
-    /// Energy that passes through, from 0 to 1.
+    /// Transmitted energy, 0 to 1.
     pub(crate) passed: BandValues,
 }
 

@@ -1,4 +1,4 @@
-//! Sound through walls and doors.
+//! Transmission of sound through walls and doors.
 
 use crate::bands::{BAND_COUNT, BandValues};
 use crate::propagation_data::PropagationData;
@@ -8,24 +8,24 @@ use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
-/// Walls that sound passes through at most.
+/// Most walls of a transmitted path.
 pub(crate) const MOST_WALLS: usize = 3;
-/// Surfaces that are looked at between source and receiver.
+/// Most surfaces that are tested between source and receiver.
 const MOST_SURFACES: usize = 64;
-/// Parallel faces of the structure that are no further apart than this are the two sides of one wall, m.
+/// Largest distance of parallel faces of the structure that are the two sides of one wall, m.
 const THICKEST_WALL_M: f32 = 0.5;
 
-/// One obstacle on the way.
+/// A wall on the path.
 struct TransmittingWall {
     owner: SurfaceOwner,
     normal: Vec3,
     /// Distance of its first face from the source, m.
     first_m: f32,
-    /// The least energy that one of its materials lets pass.
+    /// Transmitted energy of its best insulating material.
     passed: BandValues,
 }
 
-/// The energy that gets from `source` to `receiver` through what stands between, and how many walls that is.
+/// Returns the energy transmitted from `source` to `receiver` through all walls between, and their number.
 pub(crate) fn transmitted(
     data: &PropagationData,
     rays: &RayScene,
@@ -44,7 +44,7 @@ pub(crate) fn transmitted(
         };
         near_m = hit.distance_m + margin_m(whole.at(hit.distance_m));
         let here = TransmittingWall::new(data, rays, &hit);
-        // Both faces of a solid, or both shells of a wall, are crossed by one sound: it counts once, by its better insulator.
+        // Both faces of a solid, or both shells of a wall, are one wall: it counts once, by its better insulator.
         if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
             wall.join(&here);
         } else if walls.len() == MOST_WALLS {
@@ -60,15 +60,15 @@ pub(crate) fn transmitted(
     None
 }
 
-/// The far side of a wall that a ray meets.
+/// The far side of a wall that a ray hits.
 pub(crate) struct WallExit {
     /// Origin of the ray behind the wall.
     pub(crate) start: Vec3,
-    /// Energy that gets there. Shape (band,).
+    /// Transmitted energy. Shape (band,).
     pub(crate) passed: BandValues,
 }
 
-/// Returns where `ray`, which meets a wall at `hit`, comes out of it; `None` where nothing gets through.
+/// Returns the exit of `ray`, which hits a wall at `hit`; `None` where nothing is transmitted.
 pub(crate) fn beyond(
     data: &PropagationData,
     rays: &RayScene,
@@ -111,7 +111,7 @@ impl TransmittingWall {
         }
     }
 
-    /// Another face of it: it insulates as well as its better one.
+    /// Adds another face: the wall insulates as well as its better one.
     fn join(&mut self, face: &Self) {
         for (a, b) in self.passed.iter_mut().zip(face.passed) {
             *a = a.min(b);

@@ -11,21 +11,21 @@ use serde::{Deserialize, Serialize};
 const SLIP_RAD: f64 = 0.01;
 /// Radius of the pin, m.
 const PIN_M: f64 = 0.005;
-/// The share of the friction that is lost in a slip, and how long a slip takes, s: estimates.
+/// Share of the friction that is lost in a slip, and duration of a slip, s: estimates.
 const DROP: f64 = 0.15;
 const SLIP_S: f64 = 0.0006;
-/// The share of it that bends the leaf and the frame: the pin pulls along them, at their edge. Estimate.
+/// Share of that force that bends the leaf and the frame: the pin pulls along them, at their edge. Estimate.
 const BENDS: f64 = 0.02;
 /// The pin's speed above which it slides smoothly, m/s (Stribeck's curve): estimate.
 const SMOOTH_M_S: f64 = 0.012;
 
-/// A stretch of a hinge's turning. Slips stand at angles of their own, so that stretches that follow each other are one sound,
-/// and a hinge that stands is silent.
+/// A segment of a hinge's rotation. Slips are at fixed angles, so that consecutive segments are one sound, and a hinge at
+/// rest is silent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CreakSound {
     /// Position, m.
     pub position: Vec3,
-    /// The angles at the beginning and at the end of the stretch, rad.
+    /// Angles at the beginning and at the end of the segment, rad.
     pub angle_rad: [f32; 2],
     /// Duration, s; 0.001 to 2.
     pub length_s: f32,
@@ -33,7 +33,7 @@ pub struct CreakSound {
     pub friction_n_m: f32,
     /// The part that turns on the hinge, and the one that carries it.
     pub partners: [ContactPartner; 2],
-    /// The hinge.
+    /// Random key of the hinge.
     pub place: RandomKey,
 }
 
@@ -42,12 +42,12 @@ impl CreakSound {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
-    /// Returns how long it is heard, s.
+    /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
         self.length() + SLIP_S + Radiator::new(&self.partners, self.place).ring_s() + 0.012
     }
 
-    /// Returns when it slips, from the beginning of the stretch, s, and how hard, N·s.
+    /// Returns the times of its slips, from the beginning of the segment, s, and their impulses, N·s.
     fn slips(&self) -> Vec<(f64, f64)> {
         let [from, to] = self.angle_rad.map(f64::from);
         let turned = to - from;
@@ -76,7 +76,7 @@ impl CreakSound {
         slips
     }
 
-    /// The whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let radiator = Radiator::new(&self.partners, self.place);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
@@ -141,7 +141,7 @@ mod tests {
         for (a, b) in slow.iter().zip(&fast) {
             assert!((a.0 - 2.0 * b.0).abs() < 1e-6 && b.1 < a.1);
         }
-        // Two stretches are one; and the way back meets the same slips.
+        // Two segments are one sound; and the way back has the same slips.
         let parts = [door([0.2, 0.3], 0.4, 1.0), door([0.3, 0.5], 0.8, 1.0)];
         let count: usize = parts.iter().map(|part| part.slips().len()).sum();
         assert_eq!(count, slow.len());

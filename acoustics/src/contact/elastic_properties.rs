@@ -1,4 +1,4 @@
-//! The table of how substances ring, `assets/ringing.toml`.
+//! The table of substances' elastic properties, `assets/ringing.toml`.
 
 use dwell_scene::material::library;
 use serde::Deserialize;
@@ -12,7 +12,7 @@ pub struct ElasticProperties {
     pub young_pa: f64,
     /// Young's modulus of the surface that is hit, Pa.
     pub contact_pa: f64,
-    /// Of the solid, kg/m³.
+    /// Density of the solid, kg/m³.
     pub density_kg_m3: f64,
     /// Poisson's ratio.
     pub poisson: f64,
@@ -59,10 +59,10 @@ fn table() -> &'static BTreeMap<String, ElasticProperties> {
     })
 }
 
-/// Returns how the substance called `name` rings; one that the library does not know, as the library's default.
+/// Returns the properties of the substance called `name`; those of the library's default for an unknown one.
 ///
 /// # Panics
-/// Never: this crate's tests hold the table against the library.
+/// Never: tests check the table against the library.
 pub fn elastic(name: &str) -> ElasticProperties {
     let table = table();
     let found = table

@@ -8,18 +8,18 @@ use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Foot and shank, over the mass of the body (D. A. Winter, *Biomechanics and Motor Control of Human Movement*, 2009, table 4.1).
+/// Mass of foot and shank, over the mass of the body (D. A. Winter, *Biomechanics and Motor Control of Human Movement*, 2009, table 4.1).
 const LEG: f64 = 0.061;
 /// Speed of the heel at impact, over walking speed: 0.3 m/s at 1.3 m/s (D. A. Winter, Hum. Mov. Sci. 11, 1992, some 0.4 m/s
 /// along the ground and less across it).
 const HEEL: f64 = 0.23;
 /// Radius of the heel, m.
 const HEEL_M: f64 = 0.03;
-/// The sole's own hard edge: its mass over that of the leg (a third of the foot), and its radius, m: estimates, so that steps are
-/// as loud as steps are. It is what is heard above 200 Hz.
+/// Mass of the sole's hard edge over that of the leg (a third of the foot), and its radius, m: estimates that give steps
+/// their measured level. It determines the sound above 200 Hz.
 const EDGE: f64 = 0.08;
 const EDGE_M: f64 = 0.003;
-/// When the forefoot follows, over the time between steps, and how hard, over the heel.
+/// Delay of the forefoot, over the time between steps, and its impulse, over the heel's.
 const TOE_AFTER: f64 = 0.2;
 const TOE: f64 = 0.35;
 /// Duration of the sole's rubbing, s, and its speed over walking speed.
@@ -28,12 +28,12 @@ const RUB_SPEED: f32 = 0.15;
 const SOLE: &str = "rubber";
 const EDGE_OF: &str = "plastic";
 
-/// A step of somebody who walks.
+/// A footstep of a walking person.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FootstepSound {
     /// Position of the foot, m.
     pub position: Vec3,
-    /// Of the whole body, kg; 1 to 1,000.
+    /// Mass of the whole body, kg; 1 to 1,000.
     pub mass_kg: f32,
     /// Walking speed, m/s; at least 0.
     pub speed_m_s: f32,
@@ -41,7 +41,7 @@ pub struct FootstepSound {
     pub period_s: f32,
     /// The floor underfoot.
     pub floor: ContactPartner,
-    /// Tells steps apart.
+    /// Random key that distinguishes steps.
     pub key: RandomKey,
 }
 
@@ -50,7 +50,7 @@ impl FootstepSound {
         TOE_AFTER * f64::from(self.period_s).clamp(0.1, 2.0)
     }
 
-    /// Masses in kg, radii in m and substances of what hits: the leg behind its sole, and the sole's edge.
+    /// Returns masses in kg, radii in m and substances of the impacting parts: the leg behind its sole, and the sole's edge.
     fn parts(&self) -> [(f64, f64, &'static str); 2] {
         let leg = LEG * f64::from(self.mass_kg).clamp(1.0, 1_000.0);
         [(leg, HEEL_M, SOLE), (EDGE * leg, EDGE_M, EDGE_OF)]
@@ -72,13 +72,13 @@ impl FootstepSound {
         }
     }
 
-    /// Returns how long it is heard, s.
+    /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
         let ring_s = Radiator::new(std::slice::from_ref(&self.floor), self.key).ring_s();
         (self.toe_s() + 0.1 + ring_s + 0.012).max(self.rub().duration_s())
     }
 
-    /// The whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
         let speed = HEEL * f64::from(self.speed_m_s).clamp(0.0, 10.0);
@@ -146,7 +146,7 @@ mod tests {
         10.0 * (2.0 * power / 16_384.0 / 8_000.0 / 4e-10).log10()
     }
 
-    /// Walkers' steps at 1 m: some 40 to 60 dB(A) on hard floors, and 10 dB less and more on carpet.
+    /// Walking steps at 1 m: some 40 to 60 dB(A) on hard floors, and 10 dB less and more on carpet.
     #[test]
     fn steps_are_as_loud_as_steps_are() {
         let hard = level_dba(&step(75.0, 1.3, "oak", 150.0));

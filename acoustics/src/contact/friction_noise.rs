@@ -11,32 +11,31 @@ use std::f64::consts::{PI, TAU};
 /// The kind of relative motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FrictionSoundKind {
-    /// It slides.
+    /// Sliding.
     Slide,
-    /// It rolls.
+    /// Rolling.
     Roll,
 }
 
-/// The force between things that slide or roll, over the normal force, at 1 m/s and a roughness of 10 µm: estimate, so that a
-/// chair that is pushed over a wooden floor makes some 70 dB at 1 m.
+/// RMS force between sliding bodies, over the normal force, at 1 m/s and a roughness of 10 µm: estimate, so that a chair
+/// pushed over a wooden floor makes some 70 dB at 1 m.
 const SLIDE: f64 = 0.04;
-/// Of what rolls: the surface passes by without being torn, so that only its height matters.
+/// The same for rolling: the surface is not torn, so that only its height matters.
 const ROLL: f64 = 0.01;
-/// It grows with roughness and speed to these powers (H. Ben Abdelounis, A. Le Bot, J. Perret-Liaudet, H. Zahouani, Wear 268,
-/// 335, 2010: 0.8 to 1.16 and 0.7 to 0.96).
+/// Exponents of roughness and speed (H. Ben Abdelounis, A. Le Bot, J. Perret-Liaudet, H. Zahouani, Wear 268, 335, 2010: 0.8
+/// to 1.16 and 0.7 to 0.96).
 const BY_ROUGHNESS: f64 = 0.9;
 const BY_SPEED: f64 = 0.9;
-/// Fibres and soft rubber give way to what is rough: half of the force is left at this modulus, Pa. Estimate.
+/// Modulus at which the force is halved because fibres and soft rubber yield to roughness, Pa. Estimate.
 const GIVES_WAY_PA: f64 = 1e8;
-/// Nothing is pressed harder than it weighs, for long.
+/// Bound of the RMS force over the normal force.
 const MOST: f64 = 0.5;
-/// The length over which a surface is met, m: of asperities at the least, with so many roughnesses more, and of the patch
-/// that a rolling thing rests on.
+/// Contact length, m: of asperities at the least, with this many roughnesses more, and of the patch of a rolling body.
 const ASPERITY_M: f64 = 5e-6;
 const ROUGHNESSES: f64 = 5.0;
 const PATCH_M: f64 = 1.5e-3;
 
-/// A stretch of scraping or rolling; stretches that follow each other at half their length are one sound.
+/// A segment of sliding or rolling; segments that follow each other at half their length are one sound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionSound {
     /// Position, m.
@@ -49,7 +48,7 @@ pub struct FrictionSound {
     pub speed_m_s: f32,
     /// Duration, s: it swells over its first half and fades over its second; 0.001 to 2.
     pub length_s: f32,
-    /// The two.
+    /// The two bodies.
     pub partners: [ContactPartner; 2],
     /// Random key of the noise.
     pub key: RandomKey,
@@ -62,12 +61,12 @@ impl FrictionSound {
         f64::from(self.length_s).clamp(1e-3, 2.0)
     }
 
-    /// Returns how long it is heard, s.
+    /// Returns the duration of its sound, s.
     pub fn duration_s(&self) -> f64 {
         self.length() + Radiator::new(&self.partners, self.place).ring_s() + 0.012
     }
 
-    /// Root mean square of the force that varies, N.
+    /// Returns the root mean square of the varying force, N.
     fn variation_n(&self) -> f64 {
         let (normal, speed) = (
             f64::from(self.force_n).max(0.0),
@@ -89,7 +88,7 @@ impl FrictionSound {
         (a * a + b * b).sqrt()
     }
 
-    /// Above which frequency the force falls, Hz: how often the speed passes the length over which the surface is met.
+    /// Returns the corner frequency above which the force falls, Hz: speed over contact length.
     fn corner_hz(&self) -> f64 {
         let met_m = match self.kind {
             FrictionSoundKind::Slide => ASPERITY_M + ROUGHNESSES * self.roughness_m(),
@@ -98,13 +97,13 @@ impl FrictionSound {
         f64::from(self.speed_m_s).max(0.0) / (TAU * met_m)
     }
 
-    /// The whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let radiator = Radiator::new(&self.partners, self.place);
         let mut out = vec![0.0; samples(self.duration_s(), rate_hz)];
         let rate = f64::from(rate_hz);
-        // Noise through a pole at the corner, and one at 20 Hz below which nothing is heard; its mean square is that of the
-        // white noise times (1 - pole) / (1 + pole).
+        // Noise through a pole at the corner, and one at 20 Hz below which nothing is audible; its mean square is that of
+        // the white noise times (1 - pole) / (1 + pole).
         let pole = libm::exp(-TAU * self.corner_hz().min(0.45 * rate) / rate);
         let slow = libm::exp(-TAU * 20.0 / rate);
         let scale = self.variation_n() * ((1.0 - pole) * (1.0 + pole)).sqrt();
@@ -112,7 +111,7 @@ impl FrictionSound {
         let count = samples(self.length(), rate_hz);
         let (mut low, mut drift) = (0.0, 0.0);
         let mut force = vec![0.0; count];
-        // What comes before the stretch lets the filters settle.
+        // Samples before the segment let the filters settle.
         let settle = count.min(rate_hz as usize / 20);
         for k in 0..count + settle {
             low = pole * low + scale * stream.normal();
@@ -147,7 +146,7 @@ mod tests {
         }
     }
 
-    /// Level of stretches that overlap by half, dB SPL at 1 m.
+    /// Level of segments that overlap by half, dB SPL at 1 m.
     fn level_db(of: &FrictionSound) -> f64 {
         let rate_hz = 16_000;
         let mut sum = vec![0.0_f64; 3 * rate_hz as usize];
@@ -199,7 +198,7 @@ mod tests {
         }
     }
 
-    /// Stretches that overlap by half have the same loudness everywhere.
+    /// Segments that overlap by half have constant loudness.
     #[test]
     fn a_row_of_stretches_is_even() {
         let rate_hz = 16_000;

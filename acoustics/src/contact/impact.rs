@@ -7,14 +7,14 @@ use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// The share of a blow's energy that rings at the most: of compact bodies some percent (J. Reed, J. Phys. D 18, 2329, 1985;
-/// I. M. Hutchings, J. Phys. D 12, 1819, 1979); the rest bounces, dents and warms.
+/// Largest share of an impact's energy that goes into vibration: for compact bodies some percent (J. Reed, J. Phys. D 18,
+/// 2329, 1985; I. M. Hutchings, J. Phys. D 12, 1819, 1979); the rest is rebound, deformation and heat.
 const RINGS: f64 = 0.02;
 
-/// A blow between two things, as a sound of its own.
+/// An impact between two bodies as a sound.
 ///
-/// The blow is a half sine of its impulse that lasts as long as Hertz's contact does. Bodies ring with the modes of the bar,
-/// panel or shell that they are taken for, damped as their substance is; walls and floors give the force itself.
+/// The force is a half sine with the impact's impulse and the duration of Hertz's contact. Bodies ring with the modes of
+/// the bar, panel or shell that represents them, damped as their substance is; walls and floors radiate the force itself.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ImpactSound {
     /// Position, m.
@@ -23,20 +23,20 @@ pub struct ImpactSound {
     pub impulse_n_s: f32,
     /// Approach speed, m/s.
     pub speed_m_s: f32,
-    /// The two.
+    /// The two bodies.
     pub partners: [ContactPartner; 2],
-    /// Tells blows apart that are otherwise equal.
+    /// Random key that distinguishes equal impacts.
     pub key: RandomKey,
 }
 
 impl ImpactSound {
-    /// Returns how long it is heard, s: the blow, and the ringing down to 60 dB, at most 2.1.
+    /// Returns the duration of its sound, s: the impact, and the ringing down to 60 dB, at most 2.1.
     pub fn duration_s(&self) -> f64 {
         let radiator = Radiator::new(&self.partners, self.key);
         lasts_s(&self.partners, f64::from(self.speed_m_s)) + radiator.ring_s() + 0.012
     }
 
-    /// The whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    /// Returns the whole sound: pressure at 1 m, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     pub fn render(&self, rate_hz: u32) -> Vec<f32> {
         let mut radiator = Radiator::new(&self.partners, self.key);
         let speed = f64::from(self.speed_m_s).max(0.0);
@@ -100,7 +100,7 @@ mod tests {
         );
         let ratio = peak(&two) / peak(&one);
         assert!((1.9..3.0).contains(&ratio), "{ratio}");
-        // A blow too soft to ring with all it may is exactly as loud as its impulse.
+        // An impact too soft to reach the energy bound is exactly as loud as its impulse.
         let ball = || ContactPartner::body("rubber", 0.05, [0.04; 3]);
         let soft = |impulse| peak(&blow([ball(), floor("oak")], impulse, 1.0).render(16_000));
         let ratio = soft(0.1) / soft(0.05);

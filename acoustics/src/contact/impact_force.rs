@@ -1,15 +1,15 @@
-//! The force of a blow.
+//! The force of an impact.
 
 use super::{ContactPartner, elastic};
 use std::f64::consts::PI;
 
-/// The shortest and the longest blow, s.
+/// The shortest and the longest duration of an impact, s.
 const LASTS_S: (f64, f64) = (2e-5, 0.1);
-/// Radius of curvature where things hit, as a share of the smallest edge, and its bounds, m: estimate, things have rounded edges.
+/// Radius of curvature at the contact, as a share of the smallest edge, and its bounds, m: estimate for rounded edges.
 const CURVATURE: f64 = 0.1;
 const CURVATURE_M: (f64, f64) = (2e-3, 5e-2);
 
-/// Returns how long two things touch when they hit at `speed_m_s`, s.
+/// Returns the duration of contact of two bodies that hit at `speed_m_s`, s.
 ///
 /// # Source
 /// H. Hertz; K. L. Johnson, *Contact Mechanics* (1985), equation 11.24: T = 2.87 (m² / R E*² v)^(1/5).
@@ -19,7 +19,7 @@ pub(super) fn hertz_s(mass_kg: f64, radius_m: f64, modulus_pa: f64, speed_m_s: f
     (2.87 * libm::pow(inside, 0.2)).clamp(LASTS_S.0, LASTS_S.1)
 }
 
-/// The modulus of two surfaces in contact, Pa.
+/// Returns the effective modulus of two surfaces in contact, Pa.
 pub(super) fn modulus_pa(a: &str, b: &str) -> f64 {
     let yields = [a, b].map(|name| {
         let of = elastic(name);
@@ -28,14 +28,14 @@ pub(super) fn modulus_pa(a: &str, b: &str) -> f64 {
     1.0 / (yields[0] + yields[1])
 }
 
-/// Returns how long a blow between two things lasts, s.
+/// Returns the duration of an impact between two bodies, s.
 pub(super) fn lasts_s(partners: &[ContactPartner; 2], speed_m_s: f64) -> f64 {
     let inverse: f64 = partners
         .iter()
         .filter_map(ContactPartner::mass_kg)
         .map(f64::recip)
         .sum();
-    // Two walls do not hit.
+    // Two walls do not collide.
     let mass_kg = if inverse > 0.0 { 1.0 / inverse } else { 1.0 };
     let smallest = partners
         .iter()
@@ -62,7 +62,7 @@ pub(super) fn add_half_sine(
     let rate = f64::from(rate_hz);
     let first = (start_s * rate).floor().max(0.0) as usize;
     let last = ((start_s + lasts_s) * rate).ceil() as usize;
-    // The integral of the force from the start of the blow to a moment.
+    // The integral of the force from the start of the impact.
     let until = |t: f64| 0.5 * (1.0 - libm::cos(PI * ((t - start_s) / lasts_s).clamp(0.0, 1.0)));
     let end = last.min(force.len());
     for (k, sample) in force[first.min(end)..end].iter_mut().enumerate() {

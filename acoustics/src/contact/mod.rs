@@ -25,7 +25,7 @@ pub use impact::ImpactSound;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// A thing that moves, as sound knows it.
+/// A moving body, for its sound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactBody {
     /// kg; above 0.
@@ -34,7 +34,7 @@ pub struct ContactBody {
     pub size_m: [f32; 3],
 }
 
-/// One of two things that touch.
+/// One of two bodies in contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPartner {
     /// Its substance at the contact: a name of the materials' library; unknown ones count as its default.
@@ -46,14 +46,14 @@ pub struct ContactPartner {
 /// The kind of a body in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum PartnerKind {
-    /// A thing with modes of its own.
+    /// A body with modes.
     Body(ContactBody),
-    /// A wall, floor or ceiling, endless for the blow: kg/m² of the leaf that is struck.
+    /// A wall, floor or ceiling, infinite for the impact: surface density of the struck leaf, kg/m².
     Leaf(f32),
 }
 
 impl ContactPartner {
-    /// A thing that moves.
+    /// A moving body.
     pub fn body(substance: &str, mass_kg: f32, size_m: [f32; 3]) -> Self {
         Self {
             substance: substance.to_owned(),
@@ -69,7 +69,7 @@ impl ContactPartner {
         }
     }
 
-    /// kg; `None` for what does not yield.
+    /// Returns its mass, kg; `None` for a leaf.
     fn mass_kg(&self) -> Option<f64> {
         match self.kind {
             PartnerKind::Body(body) => Some(f64::from(body.mass_kg).max(1e-4)),
@@ -78,21 +78,21 @@ impl ContactPartner {
     }
 }
 
-/// A sound of touch.
+/// A contact sound.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ContactSound {
-    /// A blow.
+    /// An impact.
     Impact(ImpactSound),
-    /// A stretch of scraping or rolling.
+    /// A segment of sliding or rolling.
     Rub(FrictionSound),
-    /// A stretch of a hinge's creaking.
+    /// A segment of a hinge's creaking.
     Creak(CreakSound),
-    /// A step.
+    /// A footstep.
     Footstep(FootstepSound),
 }
 
 impl ContactSound {
-    /// Returns where it sounds, m.
+    /// Returns its position, m.
     pub fn position(&self) -> Vec3 {
         match self {
             Self::Impact(sound) => sound.position,
@@ -102,7 +102,7 @@ impl ContactSound {
         }
     }
 
-    /// Returns how long it lasts with its ringing, s; at most 6.
+    /// Returns its duration with ringing, s; at most 6.
     pub fn duration_s(&self) -> f64 {
         match self {
             Self::Impact(sound) => sound.duration_s(),
@@ -112,7 +112,7 @@ impl ContactSound {
         }
     }
 
-    /// The whole sound: pressure at 1 m in the free field, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
+    /// Returns the whole sound: pressure at 1 m in the free field, Pa. Shape (`duration_s` * `rate_hz`, rounded up,).
     ///
     /// # Determinism
     /// The samples depend on the sound and the rate alone.
@@ -126,7 +126,7 @@ impl ContactSound {
     }
 }
 
-/// Returns how many samples a sound of a duration has.
+/// Returns the number of samples of a sound of a duration.
 fn samples(duration_s: f64, rate_hz: u32) -> usize {
     (duration_s * f64::from(rate_hz)).ceil() as usize
 }

@@ -10,9 +10,9 @@ const BAR_ROOTS: [f64; 4] = [
     10.995_607_838_001_671,
     14.137_165_491_257_464,
 ];
-/// The most modes that sound; the lowest win.
+/// Most modes of a body; the lowest are used.
 const MOST_MODES: usize = 40;
-/// The most nodal lines across one direction.
+/// Most nodal lines across one direction.
 const MOST_LINES: u32 = 12;
 /// Width over length below which a body bends as a bar.
 const BAR_WIDTH: f64 = 0.25;
@@ -21,7 +21,7 @@ const SOLID_FILL: f64 = 0.4;
 /// The audible range, Hz.
 const AUDIBLE_HZ: (f64, f64) = (20.0, 20_000.0);
 
-/// Frequency of the `n`-th bending mode (from 1 on) of a free bar, Hz.
+/// Returns the frequency of the `n`-th bending mode (from 1 on) of a free bar, Hz.
 ///
 /// # Source
 /// Euler and Bernoulli's beam, as in L. Meirovitch, *Fundamentals of Vibrations* (2001), section 8.4:
@@ -34,8 +34,8 @@ pub fn bar_hz(n: u32, length_m: f64, thickness_m: f64, of: &ElasticProperties) -
     root * root / (TAU * length_m * length_m) * thickness_m / 12.0_f64.sqrt() * speed
 }
 
-/// Frequency of the mode of a free rectangular panel with `lines` nodal lines across its edges `sides_m`, Hz; 0 for those that
-/// do not bend it.
+/// Returns the frequency of the mode of a free rectangular panel with `lines` nodal lines across its edges `sides_m`, Hz; 0
+/// for rigid-body modes.
 ///
 /// # Source
 /// Kirchhoff's plate in the approximation of G. B. Warburton, *Proc. Inst. Mech. Eng.* 168, 371 (1954), table 1, edges free.
@@ -56,7 +56,7 @@ pub fn panel_hz(
     0.5 * PI / (a * a) * thickness_m * (stiffness * sum).sqrt()
 }
 
-/// G, H and J of a direction with `m` nodal lines across it.
+/// Returns G, H and J of a direction with `m` nodal lines across it.
 fn warburton(m: u32) -> (f64, f64, f64) {
     match m {
         0 => (0.0, 0.0, 0.0),
@@ -70,7 +70,7 @@ fn warburton(m: u32) -> (f64, f64, f64) {
     }
 }
 
-/// A body as the simplest thing of its size, mass and substance that bends.
+/// The simplest bending plate, bar or shell of a body's size, mass and substance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BendingPanel {
     /// Its two longer edges, m, the longest first.
@@ -95,10 +95,10 @@ pub struct BendingMode {
 }
 
 impl BendingPanel {
-    /// Returns what `body` of a substance is.
+    /// Returns the representation of `body`.
     ///
-    /// The box around it and its mass say how much of the box the substance fills: below 0.4 it is hollow, with walls of equal
-    /// thickness all around, one of which bends.
+    /// The box around it and its mass give the share of the box that the substance fills: below 0.4 it is hollow, with
+    /// walls of equal thickness all around, one of which bends.
     pub fn of(body: &ContactBody, of: &ElasticProperties) -> Self {
         let mut edges = body.size_m.map(|edge| f64::from(edge).clamp(1e-3, 20.0));
         edges.sort_by(|a, b| b.total_cmp(a));
@@ -114,7 +114,7 @@ impl BendingPanel {
             // The radius of gyration of a thin square tube is √2 times that of a solid bar.
             (true, true) => (2.0_f64.sqrt() * height, mass_kg, surface),
             (false, false) => (height, mass_kg, 2.0 * length * width),
-            // All walls move together, more or less.
+            // All walls move together, approximately.
             (false, true) => (wall, mass_kg, surface),
         };
         Self {
@@ -126,7 +126,7 @@ impl BendingPanel {
         }
     }
 
-    /// Its audible modes, the lowest first; at most 40.
+    /// Returns its audible modes, the lowest first; at most 40.
     pub fn modes(&self, of: &ElasticProperties) -> Vec<BendingMode> {
         let mut modes = Vec::new();
         if self.bar {

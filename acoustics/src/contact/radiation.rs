@@ -1,19 +1,19 @@
-//! From a force to pressure: modes that ring and radiate, walls that are pushed, small things that are jerked.
+//! From a force to pressure: modes that ring and radiate, walls under a force, and compact bodies that are accelerated.
 
 use super::modes::BendingPanel;
 use super::{ContactPartner, PartnerKind, elastic};
 use dwell_scene::random::RandomKey;
 use std::f64::consts::{LN_10, PI, TAU};
 
-/// Density of air, kg/m³, and speed of sound, m/s, at 20 degrees: what things radiate into hardly depends on the weather.
+/// Density of air, kg/m³, and speed of sound, m/s, at 20 degrees: radiation hardly depends on the weather.
 const AIR_KG_M3: f64 = 1.2;
 const SOUND_M_S: f64 = 343.0;
-/// The longest ringing that is followed, s.
+/// Longest ringing that is rendered, s.
 pub(super) const LONGEST_RING_S: f64 = 2.0;
-/// A thing in use is held, leans or lies: nothing rings longer than this, s (time constant of the amplitude).
+/// Longest time constant of the amplitude, s: a body in use is held, leans or lies.
 const LONGEST_DECAY_S: f64 = 0.4;
 
-/// A mode that rings: velocity after a unit impulse is e^(-δt) cos ωt.
+/// A decaying mode: velocity after a unit impulse is e^(-δt) cos ωt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DecayingMode {
     omega: f64,
@@ -35,7 +35,7 @@ pub(super) struct Radiator {
 }
 
 impl Radiator {
-    /// `key` says where on the things the force acts, and how uneven they are.
+    /// `key`: random key of the position of the force on the bodies, and of their irregularities.
     pub(super) fn new(partners: &[ContactPartner], key: RandomKey) -> Self {
         let mut all = Self {
             modes: Vec::new(),
@@ -45,8 +45,8 @@ impl Radiator {
         for (k, partner) in partners.iter().enumerate() {
             match partner.kind {
                 PartnerKind::Leaf(surface_density_kg_m2) => {
-                    // An endless limp leaf radiates the force itself: p = ρ F / 2π m'' r below its critical frequency (Cremer,
-                    // Heckl, Petersson, section 7.4).
+                    // An infinite limp leaf radiates the force itself: p = ρ F / 2π m'' r below its critical frequency
+                    // (Cremer, Heckl, Petersson, section 7.4).
                     let leaf = f64::from(surface_density_kg_m2).max(1.0);
                     all.push += AIR_KG_M3 / (TAU * leaf);
                 }
@@ -66,10 +66,10 @@ impl Radiator {
         let at = [stream.uniform(), stream.uniform()];
         let half_m = 0.5 * panel.sides_m[0];
         for mode in panel.modes(&of) {
-            // No two things are cut alike.
+            // No two bodies are exactly alike.
             let uneven = 0.985 + 0.03 * stream.uniform();
             let omega = TAU * mode.frequency_hz * uneven;
-            // Free shapes far from the edges are cosines; the mean square of each is 1.
+            // Mode shapes of free bodies far from the edges are cosines; the mean square of each is 1.
             let shape: f64 = (0..2)
                 .map(|axis| {
                     let lines = f64::from(mode.lines[axis]);
@@ -80,9 +80,9 @@ impl Radiator {
                     }
                 })
                 .product();
-            // Radiates fully above coincidence, where bending waves are longer than those of the air; less by the square of
-            // their ratio below it. What bends pushes no air on the whole: where it is smaller than a wave it is a dipole at the
-            // most. An interpolation between the limits of Cremer, Heckl, Petersson, section 7.
+            // Radiation is full above coincidence, where bending waves are longer than those of the air; less by the square
+            // of their ratio below it. A bending body displaces no net air: where it is smaller than a wavelength it is a
+            // dipole at most. An interpolation between the limits of Cremer, Heckl, Petersson, section 7.
             let wave = omega / SOUND_M_S;
             let [x, y] = [0, 1].map(|axis| f64::from(mode.lines[axis]) * PI / panel.sides_m[axis]);
             let coincidence = wave * wave / (x * x + y * y);
@@ -97,15 +97,15 @@ impl Radiator {
                 energy_j: 0.5 * shape * shape / panel.mass_kg,
             });
         }
-        // A rigid body that is jerked is a dipole with 1.5 times its volume (that of a sphere; R. Koss, R. Alfredson, J. Sound
-        // Vib. 27, 59, 1973): p = 1.5 ρ V ȧ cos θ / 4π c r, the mean over directions here.
+        // An accelerated rigid body is a dipole with 1.5 times its volume (that of a sphere; R. Koss, R. Alfredson, J.
+        // Sound Vib. 27, 59, 1973): p = 1.5 ρ V ȧ cos θ / 4π c r, here the mean over directions.
         let volume_m3 = f64::from(body.mass_kg) / of.density_kg_m3;
         self.jerk += 1.5 * AIR_KG_M3 * volume_m3
             / (4.0 * PI * SOUND_M_S * 3.0_f64.sqrt() * f64::from(body.mass_kg).max(1e-4));
     }
 
-    /// Makes the modes ring with `energy_j` at the most after a half sine of `impulse_n_s` that lasts `lasts_s`: the same impulse
-    /// cannot go whole into every mode.
+    /// Bounds the energy of the modes to `energy_j` after a half sine of `impulse_n_s` that lasts `lasts_s`: the same
+    /// impulse cannot go whole into every mode.
     pub(super) fn bound(&mut self, impulse_n_s: f64, lasts_s: f64, energy_j: f64) {
         let taken = |mode: &DecayingMode| {
             // The spectrum of a half sine re its impulse.
@@ -126,7 +126,7 @@ impl Radiator {
         }
     }
 
-    /// Returns how long it rings after the force has ended, until it has decayed by 60 dB, s.
+    /// Returns the time that it rings after the force has ended, until it has decayed by 60 dB, s.
     pub(super) fn ring_s(&self) -> f64 {
         let longest = self
             .modes
@@ -136,8 +136,8 @@ impl Radiator {
         longest.min(LONGEST_RING_S)
     }
 
-    /// Adds what `force` radiates to `out`. `force`: shape (sample,), N, the mean over each sample; `out`: Pa at 1 m, at least
-    /// as long. The last 10 ms of `out` fade.
+    /// Adds the pressure radiated under `force` to `out`. `force`: shape (sample,), N, the mean over each sample; `out`: Pa
+    /// at 1 m, at least as long. The last 10 ms of `out` fade.
     pub(super) fn respond(&self, force: &[f64], rate_hz: u32, out: &mut [f64]) {
         let rate = f64::from(rate_hz);
         let step_s = 1.0 / rate;
@@ -156,7 +156,7 @@ impl Radiator {
                 size * libm::cos(mode.omega * step_s),
                 size * libm::sin(mode.omega * step_s),
             );
-            // Behind the force the mode is followed down by 80 dB.
+            // After the force the mode is rendered down by 80 dB.
             let rest = (4.0 * LN_10 / mode.decay_per_s * rate) as usize;
             let end = out.len().min(force.len() + rest);
             let (mut x, mut y) = (0.0, 0.0);
@@ -215,7 +215,7 @@ mod tests {
         radiator.respond(&[500.0], 16_000, &mut out);
         assert!((out[0] - 1.2 * 500.0 / (TAU * 100.0)).abs() < 1e-12 && out[1] == 0.0);
         assert_eq!(radiator.ring_s(), 0.0);
-        // Half the mass at the same size: thinner, hollow or not, it moves more.
+        // Half the mass at the same size: thinner, hollow or not, it vibrates more.
         let loud = |mass_kg| {
             let tray = ContactPartner::body("steel", mass_kg, [0.4, 0.3, 0.004]);
             let out = rung(&[tray], 16_000, 8_000);

@@ -1,38 +1,38 @@
-//! Ways around one edge and around two.
+//! Paths around one edge and around two.
 
 use super::insertion_loss;
 use crate::bands::BAND_COUNT;
 use crate::planes::DiffractionEdge;
 use glam::{DVec2, DVec3, Vec3};
 
-/// Two edges whose directions differ by less bend sound like parallel ones: the cosine of 11 degrees.
+/// Two edges whose directions differ by less count as parallel: the cosine of 11 degrees.
 const PARALLEL: f64 = 0.98;
 
 /// Tolerance for a point in a face, as a difference of cosines.
 const AT_FACE: f64 = 0.01;
 
-/// An edge with axes of its own.
+/// An edge with its local axes.
 pub(super) struct EdgeFrame {
     start: DVec3,
     along: DVec3,
     length_m: f64,
-    /// Square to the edge: away from matter, and beside that.
+    /// Perpendicular to the edge: away from the solid, and to its side.
     outward: DVec3,
     beside: DVec3,
     /// Cosine of half the angle of the air around it.
     open_cosine: f64,
 }
 
-/// A point as an edge sees it.
+/// A point in an edge's local axes.
 #[derive(Clone, Copy)]
 struct EdgeCoordinates {
     /// Along the edge from its start, m.
     along_m: f64,
-    /// Outward and beside, m.
+    /// Outward and to the side, m.
     across: DVec2,
 }
 
-/// The shortest way from one point to another over the line of an edge.
+/// The shortest path from one point to another over the line of an edge.
 pub(super) struct EdgePath {
     /// Its point on the edge, m.
     pub(super) at: DVec3,
@@ -44,11 +44,11 @@ pub(super) struct EdgePath {
     pub(super) facing: f64,
     /// True for a point in the air around the edge: the first and the second.
     pub(super) open: [bool; 2],
-    /// Detours over the edge's ends against that over `at`, m; negative for an end that the way does not reach.
+    /// Detours over the edge's ends re that over `at`, m; negative for an end that the path does not reach.
     pub(super) ends_m: [f64; 2],
 }
 
-/// The shortest way over two edges.
+/// The shortest path over two edges.
 pub(super) struct DoubleEdgePath {
     pub(super) at: [DVec3; 2],
     pub(super) detour_m: f64,
@@ -84,7 +84,7 @@ impl EdgeFrame {
         self.start + self.along * along_m.clamp(0.0, self.length_m)
     }
 
-    /// A point on the line of the edge, or on it.
+    /// Returns a point on the line of the edge.
     fn on_line(&self, along_m: f64) -> DVec3 {
         self.start + self.along * along_m
     }
@@ -101,7 +101,7 @@ impl EdgeFrame {
         self.outward
     }
 
-    /// The way from `a` to `b` over this edge. Points on its line have none.
+    /// Returns the path from `a` to `b` over this edge; `None` for points on its line.
     pub(super) fn bend(&self, a: DVec3, b: DVec3) -> Option<EdgePath> {
         let (p, q) = (self.see(a), self.see(b));
         let (r, s) = (p.across.length(), q.across.length());
@@ -115,7 +115,7 @@ impl EdgeFrame {
         // Faces themselves count as air: waves run along them.
         let open =
             |seen: &EdgeCoordinates, far: f64| seen.across.x >= far * (self.open_cosine - AT_FACE);
-        // Where the straight line crosses the plane through the edge that points outward: behind the edge or before it.
+        // Where the straight line crosses the plane through the edge that points outward: behind the edge or in front of it.
         let crossing = p.across.x * q.across.y.abs() + q.across.x * p.across.y.abs();
         let ends = [
             (self.start, along_m),
@@ -134,8 +134,8 @@ impl EdgeFrame {
         })
     }
 
-    /// The way from `a` over this edge and then over `other`, which is parallel to it, to `b`; `None` where it does not bend
-    /// around matter at both.
+    /// Returns the path from `a` over this edge and then over `other`, which is parallel to it, to `b`; `None` where it
+    /// does not bend around the solid at both.
     pub(super) fn bend_twice(&self, other: &Self, a: DVec3, b: DVec3) -> Option<DoubleEdgePath> {
         let (p, q) = (self.see(a), self.see(b));
         let there = self.see(other.start);
@@ -166,12 +166,12 @@ impl EdgeFrame {
 }
 
 impl EdgePath {
-    /// Returns what an edge of this length stands for against an endless one. `n_per_m`: Fresnel number of a metre.
+    /// Returns the effect of an edge of this length over that of an infinite one. `n_per_m`: Fresnel number of a metre.
     pub(super) fn reach(&self, n_per_m: f64) -> f64 {
         reach(self.ends_m, n_per_m)
     }
 
-    /// The fraction of a free path's energy that gets around. Shape (band,).
+    /// Returns the fraction of a free path's energy that is diffracted. Shape (band,).
     pub(super) fn passed(&self, n_per_m: &[f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
         n_per_m.map(|n_per_m| insertion_loss::passed(n_per_m * self.detour_m) * self.reach(n_per_m))
     }
@@ -190,8 +190,8 @@ impl DoubleEdgePath {
     }
 }
 
-/// An edge's end is to the way around it as a screen: where the way passes far from the end, nothing is lost. The power makes the
-/// four sides of a plate that is small against the wave let all of it pass together.
+/// An edge's end acts on the path around it as a screen: where the path passes far from the end, nothing is lost. The power
+/// makes the four sides of a plate that is small against the wavelength together pass all of it.
 fn reach(ends_m: [f64; 2], n_per_m: f64) -> f64 {
     let [a, b] = ends_m.map(|end_m| insertion_loss::passed(-end_m * n_per_m));
     libm::pow(a * b, 0.7)

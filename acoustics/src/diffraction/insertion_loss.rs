@@ -13,8 +13,8 @@ pub(super) fn per_metre(speed_m_s: f64) -> [f64; BAND_COUNT] {
     NOMINAL_CENTRES_HZ.map(|centre_hz| 2.0 * f64::from(centre_hz) / speed_m_s)
 }
 
-/// The fraction of energy that a screen lets get to a point with Fresnel number `n = 2 detour / wavelength`; negative `n`: the
-/// point sees the source, and the detour is that over the edge. 1 from about -0.19 on.
+/// Returns the fraction of energy that a screen passes to a point with Fresnel number `n = 2 detour / wavelength`; negative
+/// `n`: the point sees the source, and the detour is that over the edge. 1 from about -0.19 on.
 ///
 /// # Source
 /// U. J. Kurze, G. S. Anderson, *Sound attenuation by barriers*, Applied Acoustics 4, 35 (1971): the loss is
@@ -37,8 +37,9 @@ pub(super) fn passed(n: f64) -> f64 {
     (AT_BORDER * ratio * ratio).min(1.0)
 }
 
-/// Returns what a second edge `apart_m` behind the first leaves of what one edge with the same detour lets pass: from 1 down to 1/3.
-/// `bends`: Fresnel numbers of the bend at each edge alone; it acts in full only where both are well in the shadow of the other.
+/// Returns the factor of a second edge `apart_m` behind the first on the energy that one edge with the same detour passes:
+/// from 1 down to 1/3. `bends`: Fresnel numbers of the bend at each edge alone; it acts in full only where both are well in
+/// the shadow of the other.
 ///
 /// # Source
 /// ISO 9613-2:1996, equations 14 and 15: the loss of a single edge is 10 lg(3 + 20 n), that of two 10 lg(3 + 20 `c_3` n).
@@ -80,7 +81,7 @@ mod tests {
     #[test]
     fn a_second_edge_takes_at_most_two_thirds_more() {
         for n in [0.0, 0.1, 1.0, 100.0] {
-            // Close together against the wave: one edge. Far apart, and well bent at both: the bound of the standard.
+            // Close together against the wavelength: one edge. Far apart, and well bent at both: the bound of the standard.
             assert!((second_edge(n, 1.0, 0.001, [9.0, 9.0]) - 1.0).abs() < 1e-4);
             assert!(second_edge(n, 1.0, 100.0, [1e6, 1e6]) >= 1.0 / 3.0);
             assert_eq!(second_edge(n, 1.0, 100.0, [0.0, 1e6]), 1.0);

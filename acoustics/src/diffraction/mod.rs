@@ -16,29 +16,29 @@ use dwell_scene::rays::RayScene;
 use edge_path::{EdgeFrame, EdgePath};
 use glam::{DVec3, Vec3};
 
-/// Ways that are this much longer than the straight line are not followed, m.
+/// Longest detour of a path over the straight line, m.
 const LONGEST_DETOUR_M: f64 = 4.0;
-/// Edges that are tried for one pair of points, those of the least detours.
+/// Most edges that are tried for one pair of points, those of the least detours.
 const MOST_EDGES: usize = 64;
-/// Pairs of edges that are tried.
+/// Most pairs of edges that are tried.
 const MOST_PAIRS: usize = 16;
-/// Ways that are followed, the strongest first.
+/// Most paths, the strongest first.
 const MOST_WAYS: usize = 6;
-/// Edges that are as close together and parallel are one rounded edge to sound, m.
+/// Distance within which parallel edges act as one rounded edge, m.
 const PROFILE_M: f64 = 0.3;
-/// Rays to and from an edge keep this far off it, m: finer profiles of frames do not hide it.
+/// Distance of rays from the edge that they lead to or from, m: finer profiles of frames do not hide it.
 const STAND_OFF_M: f64 = 0.02;
-/// The detour up to which an edge takes anything of the sound beside it, in wavelengths.
+/// Largest detour of an edge that attenuates the sound beside it, in wavelengths.
 const BESIDE_WAVES: f64 = 0.1;
-/// Ways with less energy than this fraction of a free path's in all bands are dropped.
+/// Paths with less energy than this fraction of a free path's in all bands are dropped.
 const FAINTEST: f64 = 1e-6;
 
-/// One way around what hides the source.
+/// One path around an obstacle.
 struct DiffractionPath {
-    /// From the source on.
+    /// Points on edges, from the source on.
     touches: Vec<EdgePoint>,
     detour_m: f64,
-    /// Amplitude against a free path of its length. Shape (band,).
+    /// Amplitude over that of a free path of its length. Shape (band,).
     amplitude: [f64; BAND_COUNT],
 }
 
@@ -47,7 +47,7 @@ struct DiffractionPath {
 struct EdgePoint {
     at: DVec3,
     along: DVec3,
-    /// From the straight line to it.
+    /// Offset from the straight line.
     aside: DVec3,
 }
 
@@ -70,7 +70,7 @@ impl EdgePoint {
     }
 }
 
-/// The paths from `source` around edges to `receiver`, which does not see it.
+/// Returns the paths from `source` around edges to `receiver`, which is out of sight.
 pub(crate) fn around_edges(
     data: &PropagationData,
     rays: &RayScene,
@@ -83,7 +83,7 @@ pub(crate) fn around_edges(
     let mut ways = Vec::new();
     let mut seen: Vec<(&EdgeFrame, &EdgePath, [bool; 2])> = Vec::new();
     let near = near_edges(data, from, to, LONGEST_DETOUR_M, |bend| {
-        // What lies within the matter of an edge may be reached over a second one.
+        // A point within the solid of an edge may be reached over a second one.
         bend.open[0] != bend.open[1] || (bend.hidden && bend.open == [true; 2])
     });
     for (frame, bend) in &near {
@@ -163,7 +163,7 @@ pub(crate) fn around_edges(
     paths.collect()
 }
 
-/// Returns what edges beside the straight line leave of the sound from a `source` in sight. Shape (band,).
+/// Returns the share of the sound from a `source` in sight that edges beside the straight line pass. Shape (band,).
 pub(crate) fn in_sight(
     data: &PropagationData,
     rays: &RayScene,
@@ -173,8 +173,8 @@ pub(crate) fn in_sight(
     beside_edges(data, rays, source, receiver, &[])
 }
 
-/// Returns what edges that hide nothing but are close to the straight line leave of the sound, but for those of profiles that are `touched`
-/// anyway. Shape (band,).
+/// Returns the share of the sound that edges close to the straight line pass that hide nothing, except those of profiles
+/// that are `touched` anyway. Shape (band,).
 fn beside_edges(
     data: &PropagationData,
     rays: &RayScene,
@@ -213,7 +213,7 @@ fn is_free(rays: &RayScene, a: DVec3, b: DVec3) -> bool {
     !rays.occluded(&Ray::segment(a.as_vec3(), b.as_vec3(), 0.0), RayMask::EAR)
 }
 
-/// The edges over which the way is at most `longest_m` longer and that are `wanted`, by their detours.
+/// Returns the edges with a detour of at most `longest_m` that are `wanted`, by their detours.
 fn near_edges(
     data: &PropagationData,
     from: DVec3,
@@ -244,7 +244,7 @@ fn near_edges(
     near
 }
 
-/// The strongest ways, one of each profile.
+/// Returns the strongest paths, one of each profile.
 fn strongest(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
     let power = |way: &DiffractionPath| way.amplitude.iter().map(|a| a * a).sum::<f64>();
     ways.sort_by(|a, b| power(b).total_cmp(&power(a)));
@@ -264,7 +264,7 @@ fn strongest(mut ways: Vec<DiffractionPath>) -> Vec<DiffractionPath> {
     kept
 }
 
-/// Adds, in each band, the waves that come within a quarter of their length of the strongest one to it.
+/// Adds, in each band, the waves whose lengths differ by less than a quarter wavelength from the strongest one to it.
 fn unite(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT]) {
     for (band, n_per_m) in n_per_m.iter().enumerate() {
         let amplitude = |way: &DiffractionPath| way.amplitude[band];
@@ -285,7 +285,7 @@ fn unite(ways: &mut [DiffractionPath], n_per_m: &[f64; BAND_COUNT]) {
             ways[k].amplitude[band] *= (1.0 - share * share).sqrt();
         }
         ways[main].amplitude[band] = sum;
-        // Together they carry no more than a free path does.
+        // Together they carry no more energy than a free path.
         let all = ways
             .iter()
             .map(|way| way.amplitude[band] * way.amplitude[band]);

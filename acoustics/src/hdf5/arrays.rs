@@ -1,9 +1,9 @@
-//! Arrays of chunks: of a fixed length, and such as grow.
+//! Arrays of chunks: fixed and extensible.
 
 use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 use super::grid::StoredChunk;
 
-/// Bytes of the check sum behind a block.
+/// Bytes of the checksum behind a block.
 const CHECK_SUM: u64 = 4;
 /// Largest exponent of a length.
 const MOST_BITS: u8 = 40;
@@ -16,7 +16,7 @@ pub(super) struct ArrayEntry {
 }
 
 impl ArrayEntry {
-    /// The next entry, which stands at `place`; none for a chunk that was never written.
+    /// Reads the next entry, at `place`; `None` for a chunk that was never written.
     pub(super) fn read(
         self,
         cursor: &mut Cursor<'_>,
@@ -37,7 +37,7 @@ impl ArrayEntry {
         }))
     }
 
-    /// Entries in a row.
+    /// Reads consecutive entries.
     fn row(
         self,
         cursor: &mut Cursor<'_>,
@@ -50,7 +50,7 @@ impl ArrayEntry {
         Ok(())
     }
 
-    /// Entries in pages of a power of two of them, each with a check sum; those that were written have a bit.
+    /// Reads entries in pages of a power of two of them, each with a checksum; written pages have a bit set.
     fn pages(
         self,
         cursor: &mut Cursor<'_>,
@@ -78,7 +78,7 @@ impl ArrayEntry {
     }
 }
 
-/// The entries of an array of a fixed length.
+/// Returns the entries of a fixed array.
 pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
@@ -111,8 +111,8 @@ pub(super) fn fixed(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<Stor
     Ok(found)
 }
 
-/// An array that grows: some entries in its index block, the others in blocks, whose number and length double in turn from group
-/// to group. The blocks of later groups are listed in a block of their own.
+/// An extensible array: some entries in its index block, the others in blocks, whose number and length double in turn from
+/// group to group. The blocks of later groups are listed in a block of their own.
 struct ExtensibleArray {
     entry: ArrayEntry,
     /// Entries in the index block.
@@ -123,11 +123,11 @@ struct ExtensibleArray {
     listed_groups: u32,
     groups: u32,
     page_bits: u8,
-    /// Bytes of a place.
+    /// Bytes of an address.
     place_width: usize,
 }
 
-/// The entries of an array that grows.
+/// Returns the entries of an extensible array.
 pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec<StoredChunk>> {
     let mut found = Vec::new();
     let mut header = source.at(address)?;
@@ -168,7 +168,7 @@ pub(super) fn extensible(source: &FileBytes<'_>, address: u64) -> Hdf5Result<Vec
 }
 
 impl ExtensibleArray {
-    /// Blocks of a group, and entries of each.
+    /// Returns the blocks of a group, and the entries of each.
     fn group(&self, group: u32) -> (u64, u64) {
         (1 << (group / 2), self.shortest << group.div_ceil(2))
     }
@@ -204,7 +204,7 @@ impl ExtensibleArray {
         Ok(())
     }
 
-    /// A block that lists those of a group.
+    /// Reads a block that lists those of a group.
     fn read_list(
         &self,
         source: &FileBytes<'_>,
@@ -241,7 +241,7 @@ impl ExtensibleArray {
         Ok(())
     }
 
-    /// A block of entries; those in pages have a bit for each page that was written.
+    /// Reads a block of entries; those in pages have a bit for each written page.
     fn read_block(
         &self,
         source: &FileBytes<'_>,

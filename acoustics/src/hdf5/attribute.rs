@@ -1,4 +1,4 @@
-//! Attributes: texts beside a group or a variable.
+//! Attributes: texts of a group or a variable.
 
 use super::btree2;
 use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
@@ -8,7 +8,7 @@ use super::global_heap;
 use super::header::{ObjectHeader, kind};
 use super::shape::Dataspace;
 
-/// The text of an attribute; none where there is no such attribute.
+/// Returns the text of an attribute; `None` where there is no such attribute.
 pub(super) fn text(
     source: &FileBytes<'_>,
     header: &ObjectHeader<'_>,
@@ -37,7 +37,7 @@ pub(super) fn text(
     let mut found = None;
     btree2::records(source, tree, &mut |mut record| {
         let id = record.part(heap.id_length())?;
-        // Attributes by name, not those that several objects share.
+        // Attributes by name, except those that several objects share.
         if found.is_none()
             && let Some(object) = heap.object(source, id)?
         {
@@ -48,7 +48,7 @@ pub(super) fn text(
     Ok(found)
 }
 
-/// The text of this attribute if it has that name.
+/// Returns the text of this attribute if it has that name.
 fn text_of(
     source: &FileBytes<'_>,
     mut cursor: Cursor<'_>,

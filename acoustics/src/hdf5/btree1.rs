@@ -1,8 +1,8 @@
-//! B-trees of version 1: the entries of a group, and where chunks are.
+//! B-trees of version 1: the entries of a group, and addresses of chunks.
 
 use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
 
-/// Hands every leaf's entry to `each`: its key, and the address that it stands for.
+/// Calls `each` with every leaf's entry: its key, and its address.
 ///
 /// `kind` is 0 for groups and 1 for chunks, `key` the bytes of a key.
 pub(super) fn entries(

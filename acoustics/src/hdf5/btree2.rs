@@ -1,4 +1,4 @@
-//! B-trees of version 2: names of links and attributes, and where chunks are.
+//! B-trees of version 2: names of links and attributes, and addresses of chunks.
 
 use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 
@@ -16,7 +16,7 @@ struct BTreeLayout {
 /// Deepest tree: one of nodes with two children holds more records than a file has bytes.
 const MOST_LEVELS: u16 = 40;
 
-/// Hands every record of a tree to `each`.
+/// Calls `each` with every record of a tree.
 pub(super) fn records(
     source: &FileBytes<'_>,
     address: u64,
@@ -65,7 +65,7 @@ pub(super) fn records(
 }
 
 impl BTreeLayout {
-    /// The widths follow from how many records fit into a node of each level. None where that is none.
+    /// Computes the widths from the number of records that fit into a node of each level; `None` where none fits.
     fn new(
         kind: u8,
         node_size: u64,
@@ -73,7 +73,7 @@ impl BTreeLayout {
         depth: u16,
         address: usize,
     ) -> Option<Self> {
-        // Signature, version, kind; at the end a check sum.
+        // Signature, version, kind; at the end a checksum.
         const FRAME: u64 = 10;
         let room = node_size.checked_sub(FRAME)?;
         if record_size == 0 || depth > MOST_LEVELS {
@@ -100,7 +100,7 @@ impl BTreeLayout {
     }
 }
 
-/// Bytes of a number up to this one.
+/// Returns the bytes of a number up to this one.
 fn width(most: u64) -> usize {
     most.checked_ilog2().unwrap_or(0) as usize / 8 + 1
 }

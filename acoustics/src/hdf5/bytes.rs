@@ -1,9 +1,9 @@
-//! The bytes of a file, with bounds: nothing outside of it is read, and no more of its structure than a budget.
+//! The bytes of a file, with bounds: nothing outside is read, and no more of its structure than a budget.
 
 use dwell_scene::interrupt;
 use std::cell::Cell;
 
-/// Most bytes of structure (headers, trees, heaps; values not counted) that one question may read. Trees that loop or share
+/// Most bytes of structure (headers, trees, heaps; values not counted) that one query may read. Trees that loop or share
 /// their nodes end here.
 const MOST_STRUCTURE_BYTES: u64 = 32 << 20;
 
@@ -25,7 +25,7 @@ pub(super) struct FieldWidths {
     pub(super) length: usize,
 }
 
-/// A file's bytes from its superblock on, and what may still be read of its structure.
+/// A file's bytes from its superblock on, and the remaining budget of structure.
 #[derive(Debug)]
 pub(super) struct FileBytes<'a> {
     bytes: &'a [u8],
@@ -42,12 +42,12 @@ impl<'a> FileBytes<'a> {
         }
     }
 
-    /// A cursor at an address, up to the end of the file.
+    /// Returns a cursor at an address, up to the end of the file.
     pub(super) fn at(&self, address: u64) -> Hdf5Result<Cursor<'_>> {
         self.block(address, (self.bytes.len() as u64).saturating_sub(address))
     }
 
-    /// A cursor at an address, over `length` bytes.
+    /// Returns a cursor at an address, over `length` bytes.
     pub(super) fn block(&self, address: u64, length: u64) -> Hdf5Result<Cursor<'_>> {
         interrupt::check();
         Ok(Cursor {
@@ -59,7 +59,7 @@ impl<'a> FileBytes<'a> {
         })
     }
 
-    /// Values: bytes that the budget does not count.
+    /// Returns the bytes of values, which the budget does not count.
     pub(super) fn values(&self, address: u64, length: u64) -> Hdf5Result<&'a [u8]> {
         let range = || {
             let start = usize::try_from(address).ok()?;
@@ -75,7 +75,7 @@ impl<'a> FileBytes<'a> {
     }
 }
 
-/// A place in a file, from which bytes are taken in order.
+/// A position in a file, from which bytes are read in order.
 #[derive(Debug, Clone)]
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
@@ -87,17 +87,17 @@ pub(super) struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    /// Returns where the next byte stands in the file.
+    /// Returns the offset of the next byte in the file.
     pub(super) fn position(&self) -> u64 {
         self.start + self.at as u64
     }
 
-    /// Returns how many bytes are left.
+    /// Returns the number of remaining bytes.
     pub(super) fn remaining(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// Takes `length` bytes as a cursor of their own.
+    /// Reads `length` bytes as a cursor of their own.
     pub(super) fn part(&mut self, length: usize) -> Hdf5Result<Self> {
         let start = self.position();
         Ok(Self {
@@ -135,7 +135,7 @@ impl<'a> Cursor<'a> {
         self.skip(self.at.next_multiple_of(8) - self.at)
     }
 
-    /// An unsigned integer of at most 8 bytes.
+    /// Reads an unsigned integer of at most 8 bytes.
     pub(super) fn uint(&mut self, width: usize) -> Hdf5Result<u64> {
         if width > 8 {
             return refuse(format!(
@@ -159,19 +159,19 @@ impl<'a> Cursor<'a> {
         Ok(self.uint(4)? as u32)
     }
 
-    /// A length in the file's width.
+    /// Reads a length in the file's width.
     pub(super) fn length(&mut self) -> Hdf5Result<u64> {
         self.uint(self.widths.length)
     }
 
-    /// An address in the file's width; none where all bits are set.
+    /// Reads an address in the file's width; `None` where all bits are set.
     pub(super) fn address(&mut self) -> Hdf5Result<Option<u64>> {
         let width = self.widths.address;
         let found = self.uint(width)?;
         Ok((found != u64::MAX >> (64 - 8 * width)).then_some(found))
     }
 
-    /// An address that must be one.
+    /// Reads an address that must be defined.
     pub(super) fn place(&mut self) -> Hdf5Result<u64> {
         let at = self.position();
         let found = self.address()?;
@@ -182,7 +182,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Takes a signature and a version.
+    /// Reads a signature and a version.
     pub(super) fn signed(&mut self, signature: &[u8; 4], version: u8) -> Hdf5Result<()> {
         let at = self.position();
         let name = String::from_utf8_lossy(signature);

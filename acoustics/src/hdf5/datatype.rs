@@ -1,4 +1,4 @@
-//! Datatypes: what a value is.
+//! Datatypes of values.
 
 use super::bytes::{Cursor, Hdf5Result, refuse};
 
@@ -14,7 +14,7 @@ pub(super) enum Datatype {
         size: usize,
         big: bool,
     },
-    /// Text of so many bytes.
+    /// Text of a fixed number of bytes.
     Text {
         size: usize,
     },
@@ -62,7 +62,7 @@ impl Datatype {
         }
     }
 
-    /// Bytes of a number; none for what is no number.
+    /// Returns the bytes of a number; `None` for another type.
     pub(super) fn number_size(self) -> Option<usize> {
         match self {
             Self::Integer { size, .. } | Self::Float { size, .. } => Some(size),
@@ -70,7 +70,7 @@ impl Datatype {
         }
     }
 
-    /// A number, from as many bytes as it has.
+    /// Returns a number from its bytes.
     pub(super) fn number(self, bytes: &[u8]) -> f64 {
         let big = matches!(
             self,

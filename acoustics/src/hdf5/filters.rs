@@ -1,4 +1,4 @@
-//! Filters: what was done to a chunk before it was stored.
+//! Filters applied to a chunk before it was stored.
 
 use super::bytes::{Cursor, Hdf5Result, refuse};
 use dwell_scene::interrupt;
@@ -13,7 +13,7 @@ const PIECE: u64 = 1 << 20;
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ChunkFilter {
     Deflate,
-    /// Bytes of values, sorted by their place in the value: so many bytes a value.
+    /// Bytes of values, grouped by their place in the value: this many bytes a value.
     Shuffle(usize),
     Fletcher32,
 }
@@ -67,7 +67,7 @@ impl FilterPipeline {
         self.0.is_empty()
     }
 
-    /// The bytes of a chunk that has `size` of them, from those that are stored; the filters of `skipped` were not applied.
+    /// Returns the `size` bytes of a chunk from those stored; the filters of `skipped` were not applied.
     pub(super) fn undo(&self, stored: &[u8], skipped: u32, size: usize) -> Hdf5Result<Vec<u8>> {
         let mut bytes = stored.to_vec();
         for (k, filter) in self.0.iter().enumerate().rev() {
@@ -75,7 +75,7 @@ impl FilterPipeline {
                 continue;
             }
             bytes = match filter {
-                // Behind the values there may be a check sum.
+                // A checksum may follow the values.
                 ChunkFilter::Deflate => inflate(&bytes, size as u64 + 64)?,
                 ChunkFilter::Shuffle(width) => in_order(&bytes, *width),
                 ChunkFilter::Fletcher32 => checked(bytes)?,
@@ -108,7 +108,7 @@ fn inflate(bytes: &[u8], most: u64) -> Hdf5Result<Vec<u8>> {
     Ok(inflated)
 }
 
-/// Values whose first bytes stand first, then their second bytes, and so on; what is left at the end stays.
+/// Reverses the shuffle filter: first bytes of all values, then second bytes, and so on; the remainder at the end stays.
 fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
     let count = bytes.len() / width.max(1);
     if width < 2 || count < 2 {
@@ -125,7 +125,7 @@ fn in_order(bytes: &[u8], width: usize) -> Vec<u8> {
     ordered
 }
 
-/// The bytes before their check sum, if it is theirs.
+/// Returns the bytes before their checksum, if it is valid.
 fn checked(mut bytes: Vec<u8>) -> Hdf5Result<Vec<u8>> {
     let Some(at) = bytes.len().checked_sub(4) else {
         return refuse("damaged: a chunk without its check sum");

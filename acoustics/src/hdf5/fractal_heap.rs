@@ -1,4 +1,4 @@
-//! Heaps for links and attributes where there are many.
+//! Fractal heaps, which hold links and attributes where there are many.
 
 use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result, refuse};
 
@@ -71,7 +71,7 @@ impl FractalHeap {
         self.id_length
     }
 
-    /// An object; none for one that is kept elsewhere because of its size.
+    /// Returns an object; `None` for one that is stored elsewhere because of its size.
     pub(super) fn object<'s>(
         &self,
         source: &'s FileBytes<'_>,
@@ -89,12 +89,12 @@ impl FractalHeap {
         source.block(start, length).map(Some)
     }
 
-    /// The block's address that holds an offset of the heap, and the offset in that block.
+    /// Returns the address of the block that holds an offset of the heap, and the offset in that block.
     fn block_of(&self, source: &FileBytes<'_>, offset: u64) -> Hdf5Result<(u64, u64)> {
         let damaged = || Hdf5Fault(format!("damaged: a heap has nothing at {offset}"));
         let mut address = self.root.ok_or_else(damaged)?;
         let (mut rows, mut inside) = (self.rows, offset);
-        // Each block in blocks is smaller than the one it stands in.
+        // Each nested block is smaller than the one that contains it.
         while rows > 0 {
             let (row, begin, size) = self.row_of(inside);
             if row >= rows {
@@ -118,7 +118,7 @@ impl FractalHeap {
         Ok((address, inside))
     }
 
-    /// The row that holds an offset, where the row begins, and the size of its blocks.
+    /// Returns the row that holds an offset, the row's offset, and the size of its blocks.
     fn row_of(&self, offset: u64) -> (u32, u64, u64) {
         let first_row = self.first_block * self.columns;
         if offset < first_row {

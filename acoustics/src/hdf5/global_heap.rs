@@ -1,9 +1,9 @@
-//! The heap for texts of any length.
+//! The global heap, which holds texts of any length.
 
 use super::bytes::{FileBytes, Hdf5Result, refuse};
 use super::header::as_size;
 
-/// The first `length` bytes of an object of a collection.
+/// Returns the first `length` bytes of an object of a collection.
 pub(super) fn object<'a>(
     source: &'a FileBytes<'_>,
     address: u64,
@@ -21,7 +21,7 @@ pub(super) fn object<'a>(
         let found = u32::from(objects.u16()?);
         objects.skip(6)?;
         let size = as_size(objects.length()?)?;
-        // Number 0 is the room that is left.
+        // Number 0 is the free space.
         if found == 0 {
             break;
         }

@@ -17,9 +17,9 @@ pub(super) struct StoredChunk {
     /// Its number in the grid, the last axis first.
     pub(super) number: u64,
     pub(super) address: u64,
-    /// Bytes as stored; none where nothing was compressed.
+    /// Bytes as stored; `None` where nothing was compressed.
     pub(super) size: Option<u64>,
-    /// Which filters were not applied, a bit each.
+    /// Filters that were not applied, a bit each.
     pub(super) skipped: u32,
 }
 
@@ -30,9 +30,9 @@ pub(super) struct ChunkGrid {
     chunk: Vec<u64>,
     /// Chunks along each axis.
     counts: Vec<u64>,
-    /// Chunks along each axis when it has grown to its longest; none without an end.
+    /// Chunks along each axis at its maximum size; `None` if unlimited.
     longest: Vec<Option<u64>>,
-    /// All chunks.
+    /// Number of all chunks.
     pub(super) count: u64,
     /// Bytes of a chunk.
     pub(super) bytes: u64,
@@ -77,7 +77,7 @@ impl ChunkGrid {
         self.chunk.len()
     }
 
-    /// The number of the chunk at these coordinates, in chunks; none outside.
+    /// Returns the number of the chunk at these coordinates, in chunks; `None` outside.
     pub(super) fn number(&self, at: &[u64]) -> Option<u64> {
         let mut axes = at.iter().zip(&self.counts);
         axes.try_fold(0, |number, (at, count)| {
@@ -85,15 +85,15 @@ impl ChunkGrid {
         })
     }
 
-    /// The number of the chunk that begins with the value at `start`; none outside.
+    /// Returns the number of the chunk that begins with the value at `start`; `None` outside.
     pub(super) fn number_from(&self, start: &[u64]) -> Option<u64> {
         let axes = start.iter().zip(&self.chunk);
         let at = axes.map(|(start, chunk)| (start % chunk == 0).then_some(start / chunk));
         self.number(&at.collect::<Option<Vec<_>>>()?)
     }
 
-    /// The number of the chunk that stands at a place of an array of all chunks that the variable may ever have; none outside.
-    /// An axis without an end comes first there.
+    /// Returns the number of the chunk at a place of an array of all chunks that the variable may ever have; `None`
+    /// outside. An unlimited axis comes first there.
     pub(super) fn number_in_array(&self, place: u64) -> Option<u64> {
         let endless = self.longest.iter().position(Option::is_none);
         let others = (0..self.axes()).filter(|axis| Some(*axis) != endless);
@@ -110,7 +110,7 @@ impl ChunkGrid {
         if rest > 0 { None } else { self.number(&at) }
     }
 
-    /// The first value of a chunk along each axis.
+    /// Returns the first value of a chunk along each axis.
     fn start(&self, number: u64) -> Vec<u64> {
         let mut rest = number;
         let mut start = vec![0; self.axes()];
@@ -121,7 +121,7 @@ impl ChunkGrid {
         start
     }
 
-    /// Puts the values of a chunk where they belong.
+    /// Copies the values of a chunk to their places.
     fn place(
         &self,
         number: u64,
@@ -157,7 +157,7 @@ impl ChunkGrid {
     }
 }
 
-/// The numbers of a variable in chunks.
+/// Returns the numbers of a chunked variable.
 pub(super) fn numbers(
     source: &FileBytes<'_>,
     shape: &Dataspace,
@@ -178,7 +178,7 @@ pub(super) fn numbers(
         ));
     }
     let whole = usize::try_from(grid.bytes).or_else(|_| refuse("chunks too large"))?;
-    // What stands in the file as it is must be there before memory is taken.
+    // Uncompressed chunks must be within the file before memory is allocated.
     for chunk in &chunks {
         source.values(chunk.address, chunk.size.unwrap_or(grid.bytes))?;
     }

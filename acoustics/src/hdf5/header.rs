@@ -1,4 +1,4 @@
-//! Headers of objects: lists of messages, in two versions of the format.
+//! Object headers: lists of messages, in two versions of the format.
 
 use super::bytes::{Cursor, FileBytes, Hdf5Result, refuse};
 use std::collections::VecDeque;
@@ -18,14 +18,14 @@ pub(super) mod kind {
     pub(in super::super) const ATTRIBUTE_INFO: u16 = 0x15;
 }
 
-/// Most messages of a header: with more, it has too many attributes, or blocks that name each other.
+/// Most messages of a header: with more, it has too many attributes, or blocks that refer to each other.
 const MOST_MESSAGES: usize = 65_536;
 
 /// A message of a header.
 #[derive(Debug, Clone)]
 pub(super) struct HeaderMessage<'a> {
     pub(super) kind: u16,
-    /// Its content stands elsewhere.
+    /// Set if its content is stored elsewhere.
     pub(super) shared: bool,
     content: Cursor<'a>,
 }
@@ -84,7 +84,7 @@ impl<'a> ObjectHeader<'a> {
                     if more.take(4)? != b"OCHK" {
                         return refuse(format!("damaged at byte {place}: expected a block OCHK"));
                     }
-                    // Behind the messages stands a check sum.
+                    // A checksum follows the messages.
                     let length = more.remaining().saturating_sub(4);
                     more = more.part(length)?;
                 }
@@ -94,28 +94,28 @@ impl<'a> ObjectHeader<'a> {
         Ok(Self { messages })
     }
 
-    /// The messages of a kind.
+    /// Returns the messages of a kind.
     pub(super) fn all(&self, kind: u16) -> impl Iterator<Item = &HeaderMessage<'a>> {
         self.messages
             .iter()
             .filter(move |message| message.kind == kind)
     }
 
-    /// The first message of a kind.
+    /// Returns the first message of a kind.
     pub(super) fn first(&self, kind: u16) -> Option<&HeaderMessage<'a>> {
         self.all(kind).next()
     }
 }
 
 impl<'a> HeaderMessage<'a> {
-    /// The next of a block; `tracked` says for headers of version 2 whether messages have numbers.
+    /// Reads the next message of a block; `tracked`: for headers of version 2, whether messages have numbers.
     fn next(block: &mut Cursor<'a>, tracked: Option<bool>) -> Hdf5Result<Option<Self>> {
         let prefix = match tracked {
             None => 8,
             Some(false) => 4,
             Some(true) => 6,
         };
-        // What is left of a block of version 2 may be too little for a message.
+        // The rest of a block of version 2 may be too short for a message.
         if block.remaining() < prefix {
             return Ok(None);
         }
@@ -138,7 +138,7 @@ impl<'a> HeaderMessage<'a> {
         }))
     }
 
-    /// Its content.
+    /// Returns its content.
     pub(super) fn content(&self) -> Hdf5Result<Cursor<'a>> {
         if self.shared {
             return refuse("it shares its description with another object; not read");
@@ -147,7 +147,7 @@ impl<'a> HeaderMessage<'a> {
     }
 }
 
-/// A number of bytes.
+/// Converts a number of bytes.
 pub(super) fn as_size(found: u64) -> Hdf5Result<usize> {
     usize::try_from(found).or_else(|_| refuse(format!("damaged: a size of {found} bytes")))
 }

@@ -7,7 +7,7 @@ use super::bytes::{Cursor, FileBytes, Hdf5Fault, Hdf5Result};
 use super::grid::{ChunkGrid, StoredChunk};
 use super::layout::{ChunkIndex, ChunkedStorage};
 
-/// All chunks that an index knows; numbers may be missing.
+/// Returns all chunks of an index; numbers may be missing.
 pub(super) fn chunks(
     source: &FileBytes<'_>,
     chunked: &ChunkedStorage,
@@ -19,7 +19,7 @@ pub(super) fn chunks(
     let mut found = Vec::new();
     match chunked.index {
         ChunkIndex::Tree1 => {
-            // Size, filters, and where it begins, with an axis for the bytes of a value.
+            // Size, filters, and offset, with an axis for the bytes of a value.
             let key = 8 + 8 * (grid.axes() + 1);
             btree1::entries(source, address, 1, key, &mut |mut key, address| {
                 let (size, skipped) = (Some(u64::from(key.u32()?)), key.u32()?);
@@ -52,7 +52,7 @@ pub(super) fn chunks(
             skipped,
         }),
         ChunkIndex::Implicit => {
-            // All are there or none is.
+            // All are stored or none is.
             let length = grid.count.checked_mul(grid.bytes);
             let length = length.ok_or_else(|| Hdf5Fault("damaged: too many chunks".to_owned()))?;
             source.values(address, length)?;

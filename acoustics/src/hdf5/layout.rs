@@ -7,19 +7,19 @@ use super::bytes::{Cursor, Hdf5Result, refuse};
 pub(super) enum StorageLayout<'a> {
     /// In the header.
     Compact(Cursor<'a>),
-    /// In one piece of so many bytes.
+    /// Contiguous, with this many bytes.
     Contiguous(Option<u64>, u64),
     /// In chunks.
     Chunked(ChunkedStorage),
 }
 
-/// Chunks: their shape, and how to find them.
+/// Chunks: their shape, and their index.
 #[derive(Debug)]
 pub(super) struct ChunkedStorage {
     /// Values of a chunk along each axis.
     pub(super) shape: Vec<u64>,
     pub(super) index: ChunkIndex,
-    /// Of the index; none where nothing was ever written.
+    /// Address of the index; `None` where nothing was ever written.
     pub(super) address: Option<u64>,
 }
 
@@ -28,12 +28,12 @@ pub(super) struct ChunkedStorage {
 pub(super) enum ChunkIndex {
     /// A B-tree of version 1.
     Tree1,
-    /// One chunk: bytes as stored, if not as many as it has, and which filters it skipped.
+    /// One chunk: bytes as stored, if not its full size, and the filters that it skipped.
     Single {
         size: Option<u64>,
         skipped: u32,
     },
-    /// One behind the other, in order.
+    /// Consecutive chunks, in order.
     Implicit,
     Fixed,
     Extensible,
@@ -77,7 +77,7 @@ impl<'a> StorageLayout<'a> {
                         skipped: 0,
                     },
                     2 => ChunkIndex::Implicit,
-                    // What follows stands in the index's header, too.
+                    // The following fields are repeated in the index's header.
                     3 => cursor.skip(1).map(|()| ChunkIndex::Fixed)?,
                     4 => cursor.skip(5).map(|()| ChunkIndex::Extensible)?,
                     5 => cursor.skip(6).map(|()| ChunkIndex::Tree2)?,

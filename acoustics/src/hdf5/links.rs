@@ -14,11 +14,11 @@ enum LinkTarget {
     Name,
     /// A name in another file.
     OtherFile,
-    /// A kind that users define.
+    /// A user-defined kind.
     Unknown,
 }
 
-/// The address of the header that `name` stands for; none where the group has no such name.
+/// Returns the address of the header of `name`; `None` where the group has no such name.
 pub(super) fn find(
     source: &FileBytes<'_>,
     group: &ObjectHeader<'_>,
@@ -53,7 +53,7 @@ pub(super) fn find(
     }
 }
 
-/// Groups of older files: a tree of tables, with names in a heap.
+/// Searches groups of older files: a tree of tables, with names in a heap.
 fn in_table(
     source: &FileBytes<'_>,
     mut table: Cursor<'_>,
@@ -97,7 +97,7 @@ fn in_table(
     Ok(found)
 }
 
-/// Groups with many links.
+/// Searches groups with many links.
 fn in_heap(
     source: &FileBytes<'_>,
     mut info: Cursor<'_>,
@@ -126,7 +126,7 @@ fn in_heap(
     Ok(found)
 }
 
-/// Returns what a link message stands for if it has that name.
+/// Returns the target of a link message if it has that name.
 fn link_of(mut cursor: Cursor<'_>, name: &str) -> Hdf5Result<Option<LinkTarget>> {
     let version = cursor.u8()?;
     if version != 1 {

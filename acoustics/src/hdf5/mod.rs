@@ -38,7 +38,7 @@ pub const MOST_BYTES: u64 = 1 << 30;
 /// Most numbers of a variable.
 pub const MOST_NUMBERS: u64 = 1 << 26;
 
-/// The bytes of a file, and where its root is.
+/// The bytes of a file, and the address of its root.
 #[derive(Debug)]
 pub struct Hdf5 {
     bytes: Vec<u8>,
@@ -58,14 +58,14 @@ impl Hdf5 {
     /// Opens a file by its bytes.
     ///
     /// # Errors
-    /// [`AcousticsError::Hdf5`] when they are none of an HDF5 file.
+    /// [`AcousticsError::Hdf5`] when they are no HDF5 file.
     pub fn open(bytes: Vec<u8>) -> Result<Self, AcousticsError> {
         let superblock =
             superblock::read(&bytes).map_err(|Hdf5Fault(why)| AcousticsError::Hdf5(why))?;
         Ok(Self { bytes, superblock })
     }
 
-    /// The lengths of the axes of a variable; none where there is no variable of that name.
+    /// Returns the lengths of the axes of a variable; `None` where there is no variable of that name.
     ///
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, or the name leads elsewhere.
@@ -82,7 +82,7 @@ impl Hdf5 {
         })
     }
 
-    /// The text of an attribute of a variable, or of the file; none where there is none of that name.
+    /// Returns the text of an attribute of a variable, or of the file; `None` where there is none of that name.
     ///
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, the name leads elsewhere, or the attribute is no text.
@@ -96,11 +96,11 @@ impl Hdf5 {
         })
     }
 
-    /// The numbers of a variable.
+    /// Returns the numbers of a variable.
     ///
     /// # Errors
-    /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or no numbers, its values stand elsewhere, or it has more
-    /// than [`MOST_NUMBERS`].
+    /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or not numeric, its values are in another
+    /// file, or it has more than [`MOST_NUMBERS`].
     pub fn numbers(&self, name: &str) -> Result<Hdf5Array, AcousticsError> {
         self.told(name, |source| match self.variable(source, name)? {
             Some(header) => numbers(source, &header),

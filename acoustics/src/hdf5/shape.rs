@@ -1,21 +1,21 @@
-//! Dataspaces: how many values there are.
+//! Dataspaces: numbers of values along axes.
 
 use super::bytes::{Cursor, Hdf5Result, refuse};
 
 /// Most axes of a variable; SOFA's have at most 4.
 const MOST_AXES: u8 = 8;
 
-/// The axes of a variable; none for one value alone.
+/// The axes of a variable; empty for a scalar.
 #[derive(Debug, Clone)]
 pub(super) struct Dataspace {
     /// Their lengths.
     pub(super) lengths: Vec<u64>,
-    /// To what they may grow; none without an end.
+    /// Their maximum lengths; `None` if unlimited.
     pub(super) longest: Vec<Option<u64>>,
 }
 
 impl Dataspace {
-    /// The axes; none of what has no values at all.
+    /// Reads the axes; `None` for a null dataspace.
     pub(super) fn read(mut cursor: Cursor<'_>) -> Hdf5Result<Option<Self>> {
         let version = cursor.u8()?;
         let axes = cursor.u8()?;
@@ -51,13 +51,13 @@ impl Dataspace {
         Ok(Some(Self { lengths, longest }))
     }
 
-    /// Returns how many values that are, if the number can be held.
+    /// Returns the number of values, if it can be represented.
     pub(super) fn count(&self) -> Option<u64> {
         product(&self.lengths)
     }
 }
 
-/// The product, if the number can be held.
+/// Returns the product, if it can be represented.
 pub(super) fn product(numbers: &[u64]) -> Option<u64> {
     numbers.iter().try_fold(1_u64, |all, n| all.checked_mul(*n))
 }

@@ -3,7 +3,7 @@
 use super::bytes::{Cursor, FieldWidths, FileBytes, Hdf5Result, refuse};
 
 const SIGNATURE: [u8; 8] = *b"\x89HDF\r\n\x1a\n";
-/// Before the superblock there may be a block of the user's: 512 bytes, or a power of two above.
+/// Largest user block before the superblock: 512 bytes, or a power of two above.
 const LONGEST_USER_BLOCK: usize = 1 << 16;
 
 /// The contents of the superblock.
@@ -29,7 +29,7 @@ pub(super) fn read(bytes: &[u8]) -> Hdf5Result<Superblock> {
     else {
         return refuse("no HDF5, which SOFA files are: found no signature of it");
     };
-    // Until the widths are known, none is asked for.
+    // No field of variable width is read before the widths are known.
     let (address, length) = (8, 8);
     let source = FileBytes::new(&bytes[start..], FieldWidths { address, length });
     let mut cursor = source.at(SIGNATURE.len() as u64)?;

@@ -9,7 +9,7 @@ use realfft::num_complex::Complex;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The heads of a scene, ready for its sample rate and its air.
+/// The heads of a scene, tabulated for its sample rate and air.
 #[derive(Clone, Debug)]
 pub(crate) struct HeadSet {
     rate_hz: f64,
@@ -20,7 +20,7 @@ pub(crate) struct HeadSet {
 }
 
 impl HeadSet {
-    /// The built-in head alone.
+    /// The set of the built-in head alone.
     pub(crate) fn new(config: &AcousticConfig) -> Self {
         let rate_hz = f64::from(config.rate_hz);
         let speed_m_s = config.air.speed_of_sound_m_s();
@@ -32,7 +32,7 @@ impl HeadSet {
         )
     }
 
-    /// A sphere alone, for spectra of `bins` values.
+    /// A set of a sphere alone, for spectra of `bins` values.
     pub(crate) fn with_bins(radius_m: f64, speed_m_s: f64, rate_hz: f64, bins: usize) -> Self {
         let sphere = SphericalHead::new(radius_m, speed_m_s, rate_hz, bins);
         Self {
@@ -44,7 +44,7 @@ impl HeadSet {
         }
     }
 
-    /// One more head that receivers may wear.
+    /// Adds a head that receivers may use.
     pub(crate) fn add(&mut self, head: &Head) {
         if !self.knows(head.id()) {
             let tables = head.tables(self.speed_m_s, self.rate_hz, self.bins);
@@ -52,12 +52,12 @@ impl HeadSet {
         }
     }
 
-    /// Returns whether a head is here.
+    /// Returns whether a head is in the set.
     pub(crate) fn knows(&self, id: HeadId) -> bool {
         self.others.contains_key(&id)
     }
 
-    /// The same heads in other air.
+    /// Returns the same heads in other air.
     pub(crate) fn in_air(&self, config: &AcousticConfig) -> Self {
         let mut heads = Self::new(config);
         for (head, _) in self.others.values() {
@@ -66,7 +66,7 @@ impl HeadSet {
         heads
     }
 
-    /// The ears of a head that is turned by `rotation`: left, right. `None`: the built-in head, as for one that is not here.
+    /// Returns the ears of a head with orientation `rotation`: left, right. `None`: the built-in head, as for an unknown one.
     pub(crate) fn ears(&self, id: Option<HeadId>, rotation: Quat) -> [PlacedEar; 2] {
         let known = id.and_then(|id| self.others.get(&id));
         let head = known.map_or(&self.built_in, |(_, tables)| tables);
@@ -90,7 +90,7 @@ pub(crate) struct PlacedEar {
 }
 
 impl PlacedEar {
-    /// Gain of amplitude and delay against the head's centre (s) in each band, of a wave from `towards`, unit length, world.
+    /// Returns gain of amplitude and delay re the head's centre (s) in each band, for a wave from `towards`, unit length, world.
     pub(crate) fn banded(&self, towards: Vec3) -> (BandValues, BandValues) {
         match &self.head {
             HeadTables::Sphere(sphere) => sphere.banded(f64::from(self.axis.dot(towards))),
@@ -100,7 +100,7 @@ impl PlacedEar {
         }
     }
 
-    /// Multiplies a path's spectrum by what the delay leaves over, and returns the delay against the head's centre, s.
+    /// Multiplies a path's spectrum by the response without its delay, and returns the delay re the head's centre, s.
     pub(crate) fn shade(&self, towards: Vec3, spectrum: &mut [Complex<f32>]) -> f64 {
         match &self.head {
             HeadTables::Sphere(sphere) => {

@@ -1,7 +1,7 @@
-//! Heads: what they do to sound before it is at the ears.
+//! Heads: filters between a sound field and the ears.
 //!
-//! A [`Head`] is a rigid sphere or what was measured on a person or a manikin. A scene has a built-in sphere, and every other head
-//! that was given to it by [`AcousticScene::add_head`](crate::AcousticScene::add_head); receivers name theirs by its [`HeadId`].
+//! A [`Head`] is a rigid sphere or a measurement of a person or a manikin. A scene has a built-in sphere, and every head
+//! added by [`AcousticScene::add_head`](crate::AcousticScene::add_head); receivers refer to one by its [`HeadId`].
 
 mod head_set;
 mod measured;
@@ -35,7 +35,7 @@ impl Ear {
     /// Both, in the order of the channels.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// Returns where the ear points, in head space (forward -Z, right +X).
+    /// Returns the direction of the ear, in head space (forward -Z, right +X).
     pub fn axis_in_head(self) -> glam::Vec3 {
         match self {
             Self::Left => glam::Vec3::NEG_X,
@@ -44,11 +44,11 @@ impl Ear {
     }
 }
 
-/// Names a head by what it is: equal heads have equal ids, in every process.
+/// The id of a head, a hash of its contents: equal heads have equal ids, in every process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct HeadId(pub u64);
 
-/// A head that a receiver can wear. A clone is the same head.
+/// A head of a receiver. A clone is the same head.
 #[derive(Clone)]
 pub struct Head {
     id: HeadId,
@@ -92,10 +92,10 @@ impl Head {
         })
     }
 
-    /// A head as it was measured; [`HrirMeasurement`] says how it is heard.
+    /// A measured head; [`HrirMeasurement`] describes the processing.
     ///
     /// # Errors
-    /// [`AcousticsError::Head`] says what is wrong with the measurement.
+    /// [`AcousticsError::Head`] names the fault of the measurement.
     ///
     /// # Determinism
     /// Equal measurements give equal bits.
@@ -110,12 +110,12 @@ impl Head {
         })
     }
 
-    /// Its name in receivers.
+    /// Returns its id.
     pub fn id(&self) -> HeadId {
         self.id
     }
 
-    /// Returns what was found in the measurement; `None` for a sphere.
+    /// Returns the summary of the measurement; `None` for a sphere.
     pub fn about(&self) -> Option<&HeadSummary> {
         match &self.shape {
             HeadModel::Sphere { .. } => None,
@@ -123,7 +123,7 @@ impl Head {
         }
     }
 
-    /// Tables for spectra of `bins` values up to half of `rate_hz`, in air with `speed_m_s`; those of a measurement are made once.
+    /// Returns tables for spectra of `bins` values up to half of `rate_hz`, in air with `speed_m_s`; those of a measurement are made once.
     fn tables(&self, speed_m_s: f64, rate_hz: f64, bins: usize) -> HeadTables {
         match &self.shape {
             HeadModel::Sphere { radius_m } => {

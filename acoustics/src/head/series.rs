@@ -2,7 +2,7 @@
 
 use realfft::num_complex::Complex;
 
-/// Pressure on a rigid sphere over the pressure at its centre without the sphere, for a plane wave.
+/// Returns the pressure on a rigid sphere over the pressure at its centre without the sphere, for a plane wave.
 ///
 /// `ka`: wave number times radius, at least 0. `cos_incidence`: cosine of the angles between the point's and the wave's
 /// direction of origin. Returns one value for each angle, for signals that go as exp(+i omega t). Shape (angle,).

@@ -1,4 +1,4 @@
-//! A head that is a rigid sphere.
+//! Heads as rigid spheres.
 
 use super::series::sphere_response;
 use crate::bands::{self, BAND_COUNT, BandValues};
@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Angles of incidence in the table: every 3 degrees.
 const ANGLES: usize = 61;
 
-/// Returns when a wave from far away reaches a point on a sphere, s, against when it would pass the centre.
+/// Returns the arrival time of a plane wave at a point on a sphere, s, re its arrival at the centre.
 ///
 /// # Source
 /// R. S. Woodworth, H. Schlosberg, *Experimental Psychology* (1954): straight on the lit side, along the great circle on
@@ -25,17 +25,17 @@ pub fn woodworth_delay_s(cos_incidence: f64, radius_m: f64, speed_m_s: f64) -> f
 
 /// The filters of a spherical head, tabulated over the angle of incidence.
 ///
-/// The exact response is split into the delay of [`woodworth_delay_s`], which paths carry with sub-sample precision, and a
-/// smooth rest: head shadow, the doubling on the near side, and the longer delay of long waves.
+/// The exact response is split into the delay of [`woodworth_delay_s`], which paths have with sub-sample precision, and a
+/// smooth remainder: head shadow, the doubling on the near side, and the longer delay of long waves.
 #[derive(Debug)]
 pub(crate) struct SphericalHead {
     radius_m: f64,
     speed_m_s: f64,
-    /// The rest at each bin of the path filters. Shape (angle, bin).
+    /// The remainder at each bin of the path filters. Shape (angle, bin).
     rest: Vec<Vec<Complex<f32>>>,
     /// Gain of amplitude in each band. Shape (angle, band).
     gain: Vec<BandValues>,
-    /// Whole delay in each band, s. Shape (angle, band).
+    /// Total delay in each band, s. Shape (angle, band).
     delay_s: Vec<BandValues>,
 }
 
@@ -86,7 +86,7 @@ impl SphericalHead {
         }
     }
 
-    /// Place between two rows of the tables.
+    /// Returns the place between two rows of the tables.
     fn place(cos_incidence: f64) -> (usize, f32) {
         let angle = dwell_scene::math::acos(cos_incidence as f32);
         let place = angle * ((ANGLES - 1) as f32 / std::f32::consts::PI);
@@ -94,12 +94,12 @@ impl SphericalHead {
         (below, place - below as f32)
     }
 
-    /// Delay of a path against the head's centre, s; negative on the near side.
+    /// Returns the delay of a path re the head's centre, s; negative on the near side.
     pub(crate) fn delay_s(&self, cos_incidence: f64) -> f64 {
         woodworth_delay_s(cos_incidence, self.radius_m, self.speed_m_s)
     }
 
-    /// Multiplies a path's spectrum by what the delay leaves over.
+    /// Multiplies a path's spectrum by the response without its delay.
     pub(crate) fn shade(&self, cos_incidence: f64, spectrum: &mut [Complex<f32>]) {
         let (below, way) = Self::place(cos_incidence);
         let rows = self.rest[below].iter().zip(&self.rest[below + 1]);
@@ -108,7 +108,7 @@ impl SphericalHead {
         }
     }
 
-    /// Gain of amplitude and delay against the head's centre (s) in each band.
+    /// Returns gain of amplitude and delay re the head's centre (s) in each band.
     pub(crate) fn banded(&self, cos_incidence: f64) -> (BandValues, BandValues) {
         let (below, way) = Self::place(cos_incidence);
         let mix = |table: &[BandValues]| {
@@ -136,7 +136,7 @@ mod tests {
         ];
         for (azimuth_deg, microseconds) in printed {
             let sin = libm::sin(f64::to_radians(azimuth_deg));
-            // The source stands to the left: the left ear's incidence has the positive cosine.
+            // The source is at the left: the left ear's incidence has the positive cosine.
             let left = woodworth_delay_s(sin, 0.0875, 343.2);
             let right = woodworth_delay_s(-sin, 0.0875, 343.2);
             assert!(

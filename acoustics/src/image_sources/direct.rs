@@ -8,7 +8,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use glam::Vec3;
 
-/// The direct path; `None` when nothing gets through.
+/// Returns the direct path; `None` when nothing is transmitted.
 pub(super) fn direct(
     data: &PropagationData,
     rays: &RayScene,

@@ -1,5 +1,4 @@
-//! Early sound: the direct path or the ways around what hides it, and mirror images up to a low order, each checked against the
-//! geometry.
+//! Early sound: the direct path or diffracted ones, and image sources up to a low order, each checked against the geometry.
 
 mod corners;
 mod direct;
@@ -16,7 +15,7 @@ use dwell_scene::rays::RayScene;
 use glam::{DVec3, Vec3};
 use visibility::ImageValidator;
 
-/// All audible paths of order 0 to the configured order, by length.
+/// Returns all audible paths of order 0 to the configured order, by length.
 pub(crate) fn find(
     data: &PropagationData,
     rays: &RayScene,
@@ -28,7 +27,7 @@ pub(crate) fn find(
     paths
 }
 
-/// Gives paths of a source that radiates equally in all directions what it radiates into each.
+/// Applies the source's directivity to paths of an omnidirectional source.
 fn radiate(data: &PropagationData, source: &SoundSourcePose, paths: &mut Vec<PropagationPath>) {
     let speed_m_s = data.config().air.speed_of_sound_m_s();
     let (axis, pattern) = data.effects().radiation(source, speed_m_s);
@@ -44,7 +43,7 @@ fn radiate(data: &PropagationData, source: &SoundSourcePose, paths: &mut Vec<Pro
     }
 }
 
-/// The same for a source that radiates equally in all directions.
+/// The same for an omnidirectional source.
 fn find_omnidirectional(
     data: &PropagationData,
     rays: &RayScene,
@@ -81,7 +80,7 @@ fn find_omnidirectional(
     kept.into_iter().map(|(path, _)| path).collect()
 }
 
-/// The straight way, in sight or through walls, and where it is not in sight, those around what hides it.
+/// Returns the direct path, in sight or through walls, and where it is not in sight, the diffracted ones.
 fn straight(
     data: &PropagationData,
     rays: &RayScene,
@@ -110,7 +109,7 @@ fn straight(
     paths
 }
 
-/// Takes what comes `wall_chance` a screen off the paths around it: it is not missing behind it (Babinet's principle).
+/// Subtracts the sound transmitted through a screen from the paths around it: it is not missing behind it (Babinet's principle).
 fn subtract_transmitted(
     data: &PropagationData,
     wall_chance: &PropagationPath,
@@ -118,7 +117,7 @@ fn subtract_transmitted(
 ) {
     let whole = data.spread(wall_chance.length_m);
     let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
-        // Over a long way air leaves nothing at all of high notes.
+        // Over a long distance air absorbs high frequencies completely.
         let passed = f64::from(wall_chance.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
         let left = 1.0 - passed.min(1.0).sqrt();
         (left * left) as f32
@@ -131,8 +130,8 @@ fn subtract_transmitted(
     around.retain(|path| path.energy.iter().any(|e| *e > 0.0));
 }
 
-/// Returns what becomes of `known` paths between points that have moved, for a source that radiates equally: the straight ways, and the
-/// reflections that are still there.
+/// Returns `known` paths between points that have moved, for an omnidirectional source: the direct paths, and the
+/// reflections that still exist.
 pub(crate) fn follow(
     data: &PropagationData,
     rays: &RayScene,

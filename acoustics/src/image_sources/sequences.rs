@@ -1,4 +1,4 @@
-//! Which sequences of mirrors are worth a look.
+//! Candidate sequences of mirrors.
 
 use crate::planes::{NO_PLANE, Plane};
 use crate::propagation_data::PropagationData;
@@ -12,13 +12,13 @@ use std::collections::BTreeSet;
 /// Most sequences of one order that are tried exhaustively.
 const EXHAUSTIVE_LIMIT: usize = 20_000;
 
-/// A mirror this close to a source has no image of it, m.
+/// Distance below which a source on a mirror has no image in it, m.
 const ON_PLANE_M: f64 = 1e-6;
 
 /// Calls `visit(planes, images)` once for each sequence: the mirrors from the source on, and the image behind each.
 ///
-/// Tried are all sequences of the largest planes, as long as an order has not too many of them, and those that rays from
-/// the receiver run through.
+/// Candidates are all sequences of the largest planes, as long as an order has not too many of them, and those of rays from
+/// the receiver.
 pub(super) fn for_each(
     data: &PropagationData,
     rays: &RayScene,
@@ -55,7 +55,7 @@ pub(super) fn for_each(
     }
 }
 
-/// The images of `source` behind each mirror in turn; false where one lies on its mirror.
+/// Computes the images of `source` behind each mirror in turn; false where one lies on its mirror.
 pub(super) fn mirror(
     planes: &[Plane],
     source: DVec3,
@@ -108,7 +108,7 @@ impl SequenceSearch<'_> {
     }
 }
 
-/// The sequences, from the source on, that specular rays from the receiver run through backwards.
+/// Returns the sequences, from the source on, of specular rays from the receiver.
 fn discover(data: &PropagationData, rays: &RayScene, receiver: Vec3) -> BTreeSet<Vec<u32>> {
     let config = data.config();
     let mut found = BTreeSet::new();

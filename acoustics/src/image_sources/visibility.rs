@@ -32,7 +32,7 @@ impl<'a> ImageValidator<'a> {
         }
     }
 
-    /// The path from the source over `planes` to the receiver, if it exists. `images`: the source's image behind each.
+    /// Returns the path from the source over `planes` to the receiver, if it exists. `images`: the source's image behind each.
     ///
     /// # Source
     /// J. B. Allen, D. A. Berkley, JASA 65, 943 (1979) for the amplitudes; visibility after L. Savioja, U. P. Svensson,
@@ -71,7 +71,7 @@ impl<'a> ImageValidator<'a> {
             let material = self.data.surface(surface.material);
             let incoming = (from - points[k]).normalize_or_zero().as_vec3();
             let cosine = incoming.dot(surface.normal).abs();
-            // The way from the source, unfolded.
+            // The distance from the source, unfolded.
             let straight_m = images[k].distance(points[k]);
             let scattering = self.data.scattering(material, &hit, cosine, straight_m);
             // Allen and Berkley's product over mirrors, of energy: (1 - alpha)(1 - s).
@@ -99,7 +99,7 @@ impl<'a> ImageValidator<'a> {
         })
     }
 
-    /// The surface at `to`, if it is the first that a ray from `from` meets.
+    /// Returns the surface at `to`, if it is the first that a ray from `from` hits.
     fn leg(&self, from: DVec3, to: DVec3, leaves_surface: bool) -> Option<Hit> {
         let ray = Self::segment(from, to, leaves_surface, false);
         let hit = self.rays.closest(&ray, RayMask::EAR)?;

@@ -1,4 +1,4 @@
-//! Recorders that turn themselves up and down.
+//! Automatic gain control of recorders.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory};
 use super::{AcousticLaw, LawNumbers, SignalStage};
@@ -135,7 +135,7 @@ mod tests {
         (power / samples.len() as f64).sqrt()
     }
 
-    /// A steady tone of any level comes out as loud as the strength says; within 0.2 dB, as the control ripples within a period.
+    /// A steady tone of any level comes out at the level set by the strength; within 0.2 dB, as the control ripples within a period.
     #[test]
     fn steady_tones_come_out_at_the_target() {
         for (strength, amplitude) in [(1.0, 0.02), (1.0, 1.5), (0.5, 0.02), (0.5, 1.5)] {
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Silence after a loud sound is lifted with the release's time constant, up to the most.
+    /// Silence after a loud sound is amplified with the release's time constant, up to the maximum.
     #[test]
     fn what_follows_a_loud_sound_is_lifted_slowly() {
         let mut sound = vec![1.0_f32; 16_000];

@@ -1,4 +1,4 @@
-//! The noise of the place itself: ventilation, traffic, the hum of mains.
+//! Background noise of a place: ventilation, traffic, mains hum.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory};
 use super::{AcousticLaw, LawNumbers, SignalStage};
@@ -71,15 +71,15 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Field(install),
 };
 
-/// Time of half a frame, s, at least.
+/// Least half frame, s.
 const HOP_S: f64 = 0.064;
-/// Directions that a frame's noise comes from.
+/// Directions of arrival of a frame's noise.
 const DIRECTIONS: usize = 8;
 /// Lower limit of the noise, Hz.
 const LOWEST_HZ: f64 = 20.0;
 
-/// The field at one receiver, made of frames that overlap by half. Each is a sum of plane waves from directions and with phases
-/// of its own, under half a period of a sine: the powers of two neighbours add up to a constant.
+/// The field at one receiver, made of frames that overlap by half. Each is a sum of plane waves with its own directions and
+/// phases, under half a period of a sine: the powers of two neighbours sum to a constant.
 #[derive(Debug)]
 struct NoiseField {
     rate_hz: f64,
@@ -89,7 +89,7 @@ struct NoiseField {
     hop: usize,
     /// Amplitude of one direction at each bin. Shape (bin,).
     amplitude: Vec<f32>,
-    /// The octave band below each bin, and how far it is to the next. Shape (bin,).
+    /// The octave band below each bin, and the fraction to the next. Shape (bin,).
     place: Vec<(usize, f32)>,
     /// Samples so far.
     time: u64,
@@ -111,7 +111,7 @@ fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     };
     let shapes: Vec<f64> = (0..fft.bins()).map(shape).collect();
     let power: f64 = shapes.iter().map(|a| a * a).sum();
-    // What an inverse transform of so many samples makes of amplitudes, by Parseval.
+    // Scale of an inverse transform of this length, by Parseval.
     let scale = (0.5 / (power * DIRECTIONS as f64)).sqrt() * fft.len() as f64;
     let scale = values.get("level_pa") * scale;
     let last = (BAND_COUNT - 1) as f64;
@@ -136,7 +136,7 @@ fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 }
 
 impl NoiseField {
-    /// A frame at every channel, under its window. Shape (channel, 2 hop).
+    /// Returns a frame at every channel, under its window. Shape (channel, 2 hop).
     fn frame(&mut self, number: u64, listener: &StageContext<'_>) -> Vec<Vec<f32>> {
         let key = listener.room.child("background noise").child(number);
         let channels = ReceiverChannel::of(listener.receiver, listener.heads, listener.speed_m_s);
@@ -147,7 +147,7 @@ impl NoiseField {
             let mut stream = key.child(wave as u64).stream();
             let from = stream.direction();
             let centre = listener.receiver.position().as_dvec3();
-            // Earlier where the wave comes from.
+            // Earlier on the side of arrival.
             let early_s = centre.dot(DVec3::from(from)) / listener.speed_m_s;
             let turns: Vec<f32> = (0..bins).map(|_| stream.uniform_f32()).collect();
             for (channel, spectrum) in channels.iter().zip(&mut spectra) {
@@ -182,7 +182,7 @@ impl NoiseField {
             .collect()
     }
 
-    /// Makes the samples of the hop that begins now.
+    /// Makes the samples of the next hop.
     fn next_hop(&mut self, listener: &StageContext<'_>) {
         let number = self.time / self.hop as u64;
         if self.made.is_empty() {
@@ -305,7 +305,8 @@ mod tests {
         }
     }
 
-    /// Coherence of two places at `frequency_hz`, its real part: the mean over 5000 frames, whose standard error is at most 0.015.
+    /// Returns the real part of the coherence of two signals at `frequency_hz`: the mean over 5000 frames, whose standard
+    /// error is at most 0.015.
     fn coherence(one: &[f32], other: &[f32], frequency_hz: f64) -> f64 {
         let omega = TAU * frequency_hz / RATE_HZ;
         let (mut cross, mut powers) = (0.0, [0.0, 0.0]);
@@ -335,7 +336,7 @@ mod tests {
         })
     }
 
-    /// Two microphones of one place hear a diffuse field (Cook 1955), those of two places nothing in common. 5 standard errors.
+    /// Two microphones of one place are in a diffuse field (Cook 1955), those of two places are uncorrelated. 5 standard errors.
     #[test]
     fn two_microphones_hear_one_diffuse_field() {
         let n = 5000 * 256;
@@ -353,7 +354,7 @@ mod tests {
         }
     }
 
-    /// Two ears have most in common where waves are long, and hear neither louder.
+    /// Two ears are most coherent at long waves, and equally loud.
     #[test]
     fn ears_hear_one_field() {
         let n = 600 * 256;

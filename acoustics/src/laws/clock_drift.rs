@@ -1,4 +1,4 @@
-//! Recorders whose clock goes fast or slow.
+//! Recorders whose clock is fast or slow.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, fade, rise};
 use super::{AcousticLaw, LawNumbers, SignalStage};
@@ -43,9 +43,9 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Microphones(install),
 };
 
-/// Taps on either side of a place between samples.
+/// Taps on either side of a point between samples.
 const HALF: usize = 32;
-/// Places between two samples for which there are weights.
+/// Tabulated points between two samples.
 const PHASES: usize = 256;
 /// Lag after a skip back where the recording would overtake the world, s.
 const BACK_S: f64 = 0.01;
@@ -56,7 +56,7 @@ const AHEAD_S: f64 = 0.5;
 /// Crossfade of a skip, s.
 const FADE_S: f64 = 0.005;
 
-/// Weights of the 64 samples around places between two samples. Shape (phase, tap).
+/// Weights of the 64 samples around points between two samples. Shape (phase, tap).
 static SINC: LazyLock<Vec<[f32; 2 * HALF]>> = LazyLock::new(|| {
     use std::f64::consts::{FRAC_PI_2, PI};
     let row = |phase: usize| {
@@ -80,7 +80,7 @@ static SINC: LazyLock<Vec<[f32; 2 * HALF]>> = LazyLock::new(|| {
 
 #[derive(Debug)]
 struct DriftingClock {
-    /// By how much the lag grows in one sample.
+    /// Growth of the lag in one sample.
     growth: f64,
     /// All below in samples.
     offset: f64,
@@ -92,7 +92,7 @@ struct DriftingClock {
     lag: f64,
     /// Lag before it skipped.
     old_lag: f64,
-    /// For how long it is still crossfaded.
+    /// Remaining samples of its crossfade.
     fading: usize,
     /// The last samples heard, newest at the end. Shape (channel, any).
     history: Vec<Vec<f32>>,
@@ -116,13 +116,13 @@ fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
 }
 
 impl DriftingClock {
-    /// The lag of each sample of a block, that of before a skip, and the weight of the new one.
+    /// Returns the lag of each sample of a block, that before a skip, and the weight of the new one.
     fn lags(&mut self, length: usize, whole: bool) -> Vec<(f64, f64, f32)> {
         let weights: Vec<f32> = fade(self.fade).collect();
-        // So much is needed until the end of a crossfade.
+        // Lag needed until the end of a crossfade.
         let least = HALF as f64 + 1.0 + self.growth.abs() * self.fade as f64;
         let mut lags = Vec::with_capacity(length);
-        // Nothing clicks in what was never heard.
+        // A skip before anything was heard needs no crossfade.
         let mut silent = self.history.is_empty();
         for _ in 0..length {
             if self.fading == 0 && !whole {
@@ -154,9 +154,9 @@ impl DriftingClock {
     }
 }
 
-/// The signal `lag` samples before sample `now`; zero outside.
+/// Returns the signal `lag` samples before sample `now`; zero outside.
 fn read(samples: &[f32], now: usize, lag: f64) -> f32 {
-    // Of the lag alone, so that blocks give the bits of the whole.
+    // By the lag alone, so that blocks give the bits of the whole.
     let back = lag.ceil();
     let phase = (back - lag) * PHASES as f64;
     let row = (phase as usize).min(PHASES - 1);
@@ -181,7 +181,7 @@ impl MicrophoneStage for DriftingClock {
         let length = block.len();
         let lags = self.lags(length, block.whole);
         self.history.resize_with(block.channels, Vec::new);
-        // What a skip may look back to.
+        // The longest look-back of a skip.
         let reach = self.lag.max(self.old_lag) + self.back + 2.0 * HALF as f64;
         let mut heard = Vec::new();
         for (history, channel) in self.history.iter_mut().zip(block.channels_mut()) {
@@ -213,7 +213,7 @@ impl MicrophoneStage for DriftingClock {
         self.fading = (fading as usize).min(self.fade);
         self.history.clone_from(&memory.samples);
         if later > 0.0 {
-            // What is older is not known any more.
+            // Older samples are unknown.
             for history in &mut self.history {
                 let ramp = history.len().min(self.fade);
                 rise(&mut history[..ramp]);
@@ -275,7 +275,7 @@ mod tests {
         }
     }
 
-    /// With an offset that leaves it room, the stream has the bits of the whole; without, it is 10 ms late where it cannot know.
+    /// With a sufficient offset, the stream has the bits of the whole; without, it is 10 ms late where the future is unknown.
     #[test]
     fn streams_give_what_recordings_give() {
         let sound = tone(777.0, 40_000);

@@ -1,8 +1,8 @@
-//! Filters of finite length that remember the end of the last block.
+//! FIR filters with state between blocks.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, rise};
 
-/// A filter: so many samples of delay, then taps.
+/// A filter: a delay in samples, then taps.
 #[derive(Clone, Debug)]
 pub(super) struct FirFilter {
     delay: usize,
@@ -36,7 +36,7 @@ impl MicrophoneStage for FirFilter {
             heard.extend_from_slice(channel);
             channel.fill(0.0);
             for (k, tap) in self.taps.iter().enumerate() {
-                // Newest first: tap k looks k samples further back.
+                // Newest first: tap k is k samples further back.
                 let start = self.taps.len() - 1 - k;
                 for (y, x) in channel.iter_mut().zip(&heard[start..]) {
                     *y += tap * x;
@@ -56,7 +56,7 @@ impl MicrophoneStage for FirFilter {
                 let used = old.len().min(reach);
                 history[reach - used..].copy_from_slice(&old[old.len() - used..]);
                 if used < reach {
-                    // What is older is not known any more.
+                    // Older samples are unknown.
                     rise(&mut history[reach - used..]);
                 }
                 history

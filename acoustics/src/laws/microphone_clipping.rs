@@ -1,4 +1,4 @@
-//! Microphones that give out no more than so much.
+//! Clipping of microphones.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, LawNumbers, SignalStage};
@@ -76,7 +76,7 @@ mod tests {
             assert_eq!(clip(1.0, 0.0, x), x.clamp(-1.0, 1.0));
             assert!((clip(2.0, 1.0, x) - 2.0 * (x / 2.0).tanh()).abs() < 1e-6);
         }
-        // Half soft: straight up to the knee, below the limit beyond it, without a kink.
+        // Half soft: linear up to the knee, below the limit beyond it, without a kink.
         assert_eq!(clip(1.0, 0.5, 0.5), 0.5);
         assert!((clip(1.0, 0.5, 0.51) - 0.51).abs() < 1e-4);
         assert!((clip(1.0, 0.5, -1.0) + (0.5 + 0.5 * 1.0_f32.tanh())).abs() < 1e-6);

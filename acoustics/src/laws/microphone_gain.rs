@@ -1,4 +1,4 @@
-//! Microphones that are more sensitive than they are said to be.
+//! Sensitivity error of microphones.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, LawNumbers, SignalStage};

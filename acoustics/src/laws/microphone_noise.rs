@@ -1,4 +1,4 @@
-//! The noise that a microphone adds of itself.
+//! Self-noise of microphones.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
 use super::{AcousticLaw, LawNumbers, SignalStage};

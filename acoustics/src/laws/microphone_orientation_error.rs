@@ -1,4 +1,4 @@
-//! Microphones and heads that face elsewhere than they are said to.
+//! Orientation error of microphones and heads.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
 use dwell_scene::LawInfo;

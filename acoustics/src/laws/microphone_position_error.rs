@@ -1,10 +1,10 @@
-//! Microphones that are elsewhere than they are said to be.
+//! Position error of microphones.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 
-/// Returns how far a microphone is off along one axis.
+/// The parameter of the offset along one axis.
 const fn offset(name: &'static str) -> ParamInfo {
     ParamInfo {
         name,

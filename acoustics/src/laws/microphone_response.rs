@@ -1,4 +1,4 @@
-//! Microphones that do not hear all frequencies alike.
+//! Frequency response of microphones.
 
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
@@ -7,7 +7,7 @@ use crate::minimum_phase::PathFilters;
 use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
 
-/// Time that the transform spans, s: the lowest band is as wide as one over this.
+/// Duration of the transform, s: the lowest band is as wide as its inverse.
 const SPAN_S: f64 = 0.064;
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -45,7 +45,7 @@ mod tests {
     use crate::bands::exact_centre_hz;
     use realfft::num_complex::Complex;
 
-    /// The response of an impulse has the decibels that were asked for at the bands' centres, within 0.3 dB (half a decibel in the
+    /// The response of an impulse has the requested levels at the bands' centres, within 0.3 dB (half a decibel in the
     /// lowest band, which is as narrow as the filter is long).
     #[test]
     fn bands_have_their_levels() {

@@ -12,7 +12,7 @@ pub(crate) struct StageContext<'a> {
     pub(crate) receiver: &'a Receiver,
     /// Head filters, if the receiver is a head.
     pub(crate) heads: &'a HeadSet,
-    /// Of sound, m/s.
+    /// Speed of sound, m/s.
     pub(crate) speed_m_s: f64,
     /// Random key of the place, the same for all receivers in it.
     pub(crate) room: RandomKey,
@@ -20,7 +20,7 @@ pub(crate) struct StageContext<'a> {
     pub(crate) own: RandomKey,
 }
 
-/// A block of pressure and where it stands.
+/// A block of pressure and its context.
 #[derive(Debug)]
 pub(crate) struct SampleBlock<'a> {
     pub(crate) listener: &'a StageContext<'a>,
@@ -35,12 +35,12 @@ pub(crate) struct SampleBlock<'a> {
 }
 
 impl SampleBlock<'_> {
-    /// Samples of a channel.
+    /// Returns the samples of a channel.
     pub(crate) fn len(&self) -> usize {
         self.samples.len() / self.channels.max(1)
     }
 
-    /// The channels, one after the other.
+    /// Returns the channels, one after the other.
     pub(crate) fn channels_mut(&mut self) -> std::slice::ChunksExactMut<'_, f32> {
         let length = self.len().max(1);
         self.samples.chunks_exact_mut(length)
@@ -50,13 +50,13 @@ impl SampleBlock<'_> {
 /// The state of a stage that a snapshot holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StageMemory {
-    /// Few numbers, by the stage's own order.
+    /// A few numbers, in the stage's own order.
     pub(crate) numbers: Vec<f64>,
     /// Samples of each channel, the newest last. Shape (channel, any).
     pub(crate) samples: Vec<Vec<f32>>,
 }
 
-/// The weight of what begins over `length` samples: a raised cosine, so that neither level nor slope has a step.
+/// Returns the weights of a fade-in over `length` samples: a raised cosine, so that neither level nor slope has a step.
 pub(crate) fn fade(length: usize) -> impl Iterator<Item = f32> {
     (1..=length).map(move |k| {
         let turn = std::f64::consts::PI * k as f64 / length as f64;
@@ -72,31 +72,31 @@ pub(crate) fn rise(samples: &mut [f32]) {
     }
 }
 
-/// One installed law of microphones at work.
+/// A stage of an installed microphone law.
 pub(crate) trait MicrophoneStage: fmt::Debug + Send + Sync {
-    /// Changes a block.
+    /// Processes a block.
     fn hear(&mut self, block: &mut SampleBlock<'_>);
 
-    /// Goes on from what another stage of the same law remembered, possibly with other numbers.
+    /// Takes over the state of another stage of the same law, possibly with other numbers.
     fn recall(&mut self, _memory: &StageMemory) {}
 
-    /// Returns what it remembers.
+    /// Returns its state.
     fn memory(&self) -> StageMemory {
         StageMemory::default()
     }
 
-    /// Returns how many samples what it gives out is longer than what it is given, for `length` samples.
+    /// Returns the number of samples by which its output is longer than its input of `length` samples.
     fn longer(&self, _length: usize) -> usize {
         0
     }
 
-    /// Returns whether the first block it hears must fade in when it is put to work amid sound: what comes late would begin with a step.
+    /// Returns whether its first block must fade in when it is installed during sound: a late output would begin with a step.
     fn starts_softly(&self) -> bool {
         false
     }
 }
 
-/// A stage without memory.
+/// A stage without state.
 pub(crate) struct StatelessStage<F>(pub(crate) F);
 
 impl<F> fmt::Debug for StatelessStage<F> {

@@ -1,8 +1,8 @@
 //! Effects on sound that the basic model lacks: one file and one line each.
 //!
-//! Laws of air, of sources and of where microphones are change the energies between the two (`PathEffects`); other laws of microphones change
-//! pressure, block by block in a stream and at once in an impulse response (`MicrophoneStage`). A law at its default is not installed, so
-//! that no bit changes.
+//! Laws of air, of sources and of microphones' poses change the energies between the two (`PathEffects`); other microphone
+//! laws change pressure, block by block in a stream and at once in an impulse response (`MicrophoneStage`). A law at its
+//! default is not installed, so that no bit changes.
 
 mod automatic_gain;
 mod background_noise;
@@ -33,7 +33,7 @@ use dwell_scene::{LawInfo, LawSpec};
 use microphone_stage::MicrophoneStage;
 use std::sync::LazyLock;
 
-/// A law of this engine: what is known about it, and where it acts.
+/// A law of this engine: its description, and its stage.
 struct AcousticLaw {
     info: LawInfo,
     acts: SignalStage,
@@ -41,11 +41,11 @@ struct AcousticLaw {
 
 /// The stage at which a law acts.
 enum SignalStage {
-    /// On air, on sources, and on where receivers are.
+    /// Air, sources, and poses of receivers.
     Propagation(fn(LawNumbers<'_>, &mut PathEffects)),
-    /// On the pressure at microphones, before all laws of microphones, at so many samples a second.
+    /// Pressure at microphones, before all microphone laws, at this many samples a second.
     Field(fn(LawNumbers<'_>, f64) -> Box<dyn MicrophoneStage>),
-    /// On what microphones give out, in the order in which laws were installed.
+    /// Output of microphones, in the order of installation.
     Microphones(fn(LawNumbers<'_>, f64) -> Box<dyn MicrophoneStage>),
 }
 
@@ -68,7 +68,7 @@ static LAWS: &[AcousticLaw] = &[
     clock_drift::LAW,
 ];
 
-/// Returns what is known about each law of sound.
+/// Returns the descriptions of all laws of sound.
 ///
 /// ```
 /// assert!(dwell_acoustics::laws::all().iter().any(|law| law.id == "microphone_noise"));
@@ -79,7 +79,7 @@ pub fn all() -> &'static [LawInfo] {
     &INFOS
 }
 
-/// The numbers of an installed law.
+/// The parameters of an installed law.
 #[derive(Clone, Copy)]
 struct LawNumbers<'a> {
     spec: &'a LawSpec,
@@ -91,7 +91,7 @@ impl LawNumbers<'_> {
         self.spec.value(self.info, name).unwrap_or(0.0)
     }
 
-    /// The values of [`BAND_DB`].
+    /// Returns the values of [`BAND_DB`].
     fn bands(&self) -> BandValues {
         std::array::from_fn(|band| self.get(BAND_DB[band].name) as f32)
     }
@@ -133,14 +133,14 @@ static BAND_DB: [ParamInfo; BAND_COUNT] = [
     band_db("db_8000"),
 ];
 
-/// The law of a spec, unless it does nothing.
+/// Returns the law of a spec, unless it has no effect.
 fn acting(spec: &LawSpec) -> Option<(&'static AcousticLaw, LawNumbers<'_>)> {
     let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
     let info = &law.info;
     (!spec.is_default(info)).then_some((law, LawNumbers { spec, info }))
 }
 
-/// Returns what the installed laws do to air and sources.
+/// Returns the installed laws' effects on air and sources.
 pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
     let mut effects = PathEffects::default();
     for (law, values) in installed.iter().filter_map(acting) {
@@ -151,7 +151,7 @@ pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
     effects
 }
 
-/// Puts a law to work if it acts on pressure and does something.
+/// Returns the stage of a law that acts on pressure and has an effect.
 pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn MicrophoneStage>> {
     let (law, values) = acting(spec)?;
     match law.acts {
@@ -162,7 +162,7 @@ pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn M
     }
 }
 
-/// The laws that act on pressure and do something, with their places in the list, in the order in which they act.
+/// Returns the laws with an effect on pressure, with their indices in the list, in the order in which they act.
 pub(crate) fn of_pressure(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
     let those = move |wanted: fn(&SignalStage) -> bool| {
         let numbered = (0_u64..).zip(installed);

@@ -1,4 +1,4 @@
-//! Air that absorbs less than it should, or not at all.
+//! Reduced absorption by air.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;

@@ -10,14 +10,14 @@ use dwell_scene::math::sin_cos;
 use glam::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// All that laws do to air and sources; the default changes nothing.
+/// All effects of laws on air and sources; the default changes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PathEffects {
     /// Difference of the true from the stated air temperature, K.
     pub(super) warmer_k: f64,
-    /// The share of the air's absorption that there is, 0 to 1.
+    /// Share of the air's absorption, 0 to 1.
     pub(super) air_absorption: f64,
-    /// Level of all sources above what it is said to be, dB. Shape (band,).
+    /// Level of all sources above the stated one, dB. Shape (band,).
     pub(super) source_db: BandValues,
     /// Rotation of sources against their stated orientation, degrees: yaw (to the left), pitch (up), in their own axes.
     pub(super) source_turn_deg: [f32; 2],
@@ -31,7 +31,7 @@ pub(crate) struct PathEffects {
     pub(super) receiver_turn_deg: [f32; 3],
 }
 
-/// A turn about the vertical (to the left), then about the sideways axis (up), then about the axis to the back.
+/// Returns the rotation about the vertical (to the left), then about the sideways axis (up), then about the axis to the back.
 fn turn([yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Quat {
     let about = |axis: Vec3, degrees: f32| {
         let (s, c) = sin_cos(0.5 * degrees.to_radians());
@@ -56,7 +56,7 @@ impl Default for PathEffects {
 }
 
 impl PathEffects {
-    /// The settings with the air as it is, kept within what [`Air::check`] allows.
+    /// Returns the settings with the true air, kept within the range of [`Air::check`].
     pub(crate) fn config(&self, stated: &AcousticConfig) -> AcousticConfig {
         let temperature_c = stated.air.temperature_c + self.warmer_k;
         AcousticConfig {
@@ -68,17 +68,17 @@ impl PathEffects {
         }
     }
 
-    /// Energy decay in air, 1/m, as far as there is any. Shape (band,).
+    /// Returns the energy decay in air, 1/m, with this share. Shape (band,).
     pub(crate) fn air_decay_per_m(&self, whole: [f64; BAND_COUNT]) -> [f64; BAND_COUNT] {
         whole.map(|m| self.air_absorption * m)
     }
 
-    /// The share of the air's absorption that there is, 0 to 1.
+    /// Returns the share of the air's absorption, 0 to 1.
     pub(crate) fn air_absorption(&self) -> f64 {
         self.air_absorption
     }
 
-    /// Returns where a source's axis points, unit length, and its gains around that, in air with `speed_m_s`.
+    /// Returns the direction of a source's axis, unit length, and its gains around it, in air with `speed_m_s`.
     pub(crate) fn radiation(
         &self,
         source: &SoundSourcePose,
@@ -113,7 +113,7 @@ impl PathEffects {
         (axis, pattern)
     }
 
-    /// A receiver where it is, as it is turned.
+    /// Returns a receiver at its true pose.
     pub(crate) fn placed(&self, receiver: &Receiver) -> Receiver {
         let mut placed = receiver.clone();
         let rotation = receiver.pose.rotation;
@@ -126,7 +126,7 @@ impl PathEffects {
         placed
     }
 
-    /// The energies of sources as they are.
+    /// Applies sources' effects to all energies.
     pub(crate) fn at_source(&self, echogram: &mut Echogram) {
         if self.source_db == [0.0; BAND_COUNT] {
             return;
@@ -140,7 +140,7 @@ impl PathEffects {
         }
     }
 
-    /// The energies of early paths from sources as they are.
+    /// Applies sources' effects to the energies of early paths.
     pub(crate) fn on_paths(&self, paths: &mut [PropagationPath]) {
         if self.source_db == [0.0; BAND_COUNT] {
             return;

@@ -1,4 +1,4 @@
-//! Recordings that begin early, so that all in them comes late.
+//! Delay of a recording.
 
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
@@ -55,8 +55,8 @@ fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     Box::new(FirFilter::new(whole + 1 - half, taps))
 }
 
-/// Weights of the samples around a place `fraction` after one of them, `half` on either side, that are exact for polynomials:
-/// the best there are for few samples and low frequencies.
+/// Returns weights of the samples around a point `fraction` after one of them, `half` on either side, that are exact for
+/// polynomials: the best for few samples and low frequencies.
 fn lagrange(fraction: f64, half: usize) -> Vec<f32> {
     let place = half as f64 - 1.0 + fraction;
     let weight = |k: usize| {
@@ -68,7 +68,7 @@ fn lagrange(fraction: f64, half: usize) -> Vec<f32> {
     (0..2 * half).map(|k| weight(k) as f32).collect()
 }
 
-/// The same by a windowed sinc, which holds for high frequencies, too.
+/// Returns the same by a windowed sinc, which holds for high frequencies, too.
 fn sinc(fraction: f64, half: usize) -> Vec<f32> {
     use std::f64::consts::{FRAC_PI_2, PI};
     let value = |k: usize| {

@@ -1,4 +1,4 @@
-//! Sources that face elsewhere, or radiate another pattern, than they are said to.
+//! Orientation and directivity errors of sources.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
 use dwell_scene::LawInfo;

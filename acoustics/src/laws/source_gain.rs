@@ -1,4 +1,4 @@
-//! Sources that are louder than they are said to be.
+//! Level error of sources.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;

@@ -1,4 +1,4 @@
-//! Sources whose spectrum is another than it is said to be.
+//! Spectrum error of sources.
 
 use super::{AcousticLaw, BAND_DB, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;

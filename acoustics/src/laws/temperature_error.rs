@@ -1,4 +1,4 @@
-//! Air that is warmer than it is said to be.
+//! Error of the air temperature.
 
 use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
 use dwell_scene::LawInfo;

@@ -21,7 +21,7 @@ pub(super) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
     }
 }
 
-/// Returns who listens at `receiver` in the place `room`, in the block `own`.
+/// Calls a test with the context of `receiver` in the place `room`, in the block `own`.
 pub(super) fn with_listener<T>(
     receiver: &Receiver,
     room: u64,
@@ -40,7 +40,7 @@ pub(super) fn with_listener<T>(
     })
 }
 
-/// Returns what one microphone gives out, its ringing included.
+/// Returns the output of one microphone, its ringing included.
 pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32> {
     let here = Receiver::omni(glam::Vec3::ZERO);
     with_listener(&here, seed, RandomKey::root(seed), |listener| {
@@ -48,7 +48,7 @@ pub(super) fn recorded(laws: &[LawSpec], seed: u64, pressure: &[f32]) -> Vec<f32
     })
 }
 
-/// The same block by block.
+/// Returns the same block by block.
 pub(super) fn streamed(laws: &[LawSpec], pressure: &[f32], block: usize) -> Vec<f32> {
     let mut microphones = MicrophoneChain::new(RATE_HZ);
     let here = Receiver::omni(glam::Vec3::ZERO);

@@ -5,15 +5,15 @@ use super::response::{DIRECT_S, energy, start};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Early sound ends here, s after the start.
+/// End of early sound, s after the start.
 const EARLY_S: f64 = 0.08;
-/// The largest difference of times that counts, s: the way around a head.
+/// Largest time difference, s: the path around a head.
 const LARGEST_S: f64 = 0.001;
-/// Differences of times are heard in waves up to here, Hz.
+/// Highest frequency at which time differences are heard, Hz.
 const FINE_HZ: f64 = 1500.0;
-/// Places between two samples at which a correlation is looked at, before a parabola.
+/// Subdivisions of a sample at which a correlation is evaluated, before a parabola.
 const FINER: usize = 8;
-/// Samples to either side that tell a value between two samples.
+/// Samples on either side used to interpolate between two samples.
 const SINC: usize = 16;
 
 /// The binaural measures of an impulse response. Left is positive: a source to the left is earlier and louder there.
@@ -43,10 +43,10 @@ pub struct BinauralBandMetrics {
     pub ild_db: Option<f64>,
 }
 
-/// The parameters of two ears, by octave or third octave.
+/// Returns the parameters of two ears, by octave or third octave.
 ///
-/// `left`, `right`: shape (sample,). Times count from where one of both first rises to -20 dB of the peak of both; the direct
-/// sound is what arrives within 2.5 ms of that.
+/// `left`, `right`: shape (sample,). Times count from the first rise of either to -20 dB of the peak of both; the direct
+/// sound is that within 2.5 ms of that.
 ///
 /// # Source
 /// ISO 3382-1:2009, annex B: the largest magnitude of the normalized cross-correlation over lags up to 1 ms. IEC 61260-1:2014
@@ -74,7 +74,7 @@ pub fn of_ears(left: &[f32], right: &[f32], rate_hz: f64, width: BandWidth) -> B
         let Some(heard) = pair(&mut filters, &whole) else {
             continue;
         };
-        // What rings before the start belongs to the early sound.
+        // Ringing before the start belongs to the early sound.
         let end = heard[0].len() - filters.before();
         let [l, r] = heard.map(|ear| in_time(&ear, end));
         let early = (early + filters.before()).min(l.len());
@@ -97,13 +97,14 @@ pub fn of_ears(left: &[f32], right: &[f32], rate_hz: f64, width: BandWidth) -> B
     metrics
 }
 
-/// A filtered signal with what rings before its first sample, which stood at the end from `end` on, before it.
+/// Returns a filtered signal with its ringing before the first sample, which was at the end from `end` on, moved to the front.
 fn in_time(samples: &[f32], end: usize) -> Vec<f32> {
     [&samples[end..], &samples[..end]].concat()
 }
 
-/// The lag of `right` behind `left` (s) at which their normalized cross-correlation, over lags of up to `lags` samples, is
-/// largest, and its value; `upside_down`: whether a negative one counts by its magnitude. Nothing where an ear hears nothing.
+/// Returns the lag of `right` behind `left` (s) at which their normalized cross-correlation, over lags of up to `lags`
+/// samples, is largest, and its value; `upside_down`: whether a negative one counts by its magnitude. `None` where an ear
+/// is silent.
 fn peak(
     left: &[f32],
     right: &[f32],
@@ -138,7 +139,7 @@ fn peak(
     Some((lag_s, values[best].min(1.0)))
 }
 
-/// The sum of left at t times right at t + lag.
+/// Returns the sum of left at t times right at t + lag.
 fn correlation(left: &[f32], right: &[f32], lag: isize) -> f64 {
     let skip = lag.unsigned_abs();
     let (left, right) = if lag >= 0 {
@@ -150,7 +151,7 @@ fn correlation(left: &[f32], right: &[f32], lag: isize) -> f64 {
     both.map(|(l, r)| f64::from(*l) * f64::from(*r)).sum()
 }
 
-/// The value of a band-limited row between its samples, by a sinc under von Hann's window.
+/// Returns the value of a band-limited row between its samples, by a sinc under von Hann's window.
 fn between(row: &[f64], place: f64) -> f64 {
     let below = place as usize;
     if place - below as f64 == 0.0 {

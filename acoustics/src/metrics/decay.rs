@@ -1,28 +1,28 @@
-//! Energy over time, and the numbers of ISO 3382-1 that follow from it.
+//! Energy over time, and the parameters of ISO 3382-1.
 
 use serde::Serialize;
 use std::f64::consts::LN_10;
 
-/// The time between two samples of a decay curve, s.
+/// Sampling interval of a decay curve, s.
 const STEP_S: f64 = 1e-3;
-/// Windows in the last third of a response, whose levels tell how it goes on.
+/// Windows in the last third of a response, whose levels are extrapolated.
 const WINDOWS: usize = 8;
-/// Slots that a window must have, for less is no decay.
+/// Least slots of a window for a decay to be estimated.
 const SLOTS_A_WINDOW: usize = 4;
-/// A last third that falls by less than this may be noise, dB.
+/// Fall of the last third below which it may be noise, dB.
 const FALL_DB: f64 = 2.0;
-/// The first third of a response that ends in noise has at least so many times the energy of the last.
+/// Least ratio of the energies of the first and the last third of a response that ends in noise.
 const RANGE: f64 = 10.0;
 
-/// Energies of one band over time: pulses and stretches of constant power.
+/// Energies of one band over time: pulses and intervals of constant power.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EnergyCurve {
-    /// Start, end (s) and energy of every piece; a pulse ends where it starts. By start.
+    /// Start, end (s) and energy of every interval; a pulse ends where it starts. Sorted by start.
     pieces: Vec<(f64, f64, f64)>,
 }
 
-/// Room-acoustic parameters of one band. `None` where nothing is heard, or the decay is too short for one: a response that ends
-/// before it has fallen by 25 dB has no T20, one that ends before 35 dB no T30.
+/// Room-acoustic parameters of one band. `None` where nothing is heard, or the decay is too short for one: a response that
+/// ends before it has fallen by 25 dB has no T20, one that ends before 35 dB no T30.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct BandMetrics {
     /// Early decay time (0 to -10 dB), s for 60 dB.
@@ -51,19 +51,19 @@ impl EnergyCurve {
         Self::default()
     }
 
-    /// Adds `energy` between `start_s` and `end_s`, evenly spread. Energies that are not positive are left out.
+    /// Adds `energy` between `start_s` and `end_s`, evenly spread. Energies that are not positive are ignored.
     pub fn add(&mut self, start_s: f64, end_s: f64, energy: f64) {
         if energy > 0.0 && energy.is_finite() {
             self.pieces.push((start_s, end_s.max(start_s), energy));
         }
     }
 
-    /// All energy.
+    /// Returns the total energy.
     pub fn total(&self) -> f64 {
         self.pieces.iter().map(|piece| piece.2).sum()
     }
 
-    /// Energy from `time_s` on: the backward integral.
+    /// Returns the energy from `time_s` on: the backward integral.
     ///
     /// # Source
     /// M. R. Schroeder, JASA 37, 409 (1965).
@@ -80,12 +80,12 @@ impl EnergyCurve {
         self.pieces.iter().map(part).sum()
     }
 
-    /// The energy that is left from a time on, in dB re all, sampled every millisecond from `arrival_s` until it ends.
+    /// Returns the remaining energy from a time on, in dB re all, sampled every millisecond from `arrival_s` until it ends.
     /// Shape (time,): time since `arrival_s`, s, and level, dB.
     ///
-    /// A response that ends while it still decays is taken to go on at the rate of its last third, so that the curve does not dive
-    /// where it was cut. What does not fall there is the noise of a recording: it is left as it is. Nothing where neither can be
-    /// told, since all of the response falls too little.
+    /// A response that ends while it still decays is extrapolated at the rate of its last third, so that the curve does not
+    /// dive at the cut. A last third that does not fall is the noise of a recording: it is left as it is. Empty where
+    /// neither can be determined, since all of the response falls too little.
     ///
     /// # Source
     /// ISO 3382-1:2009, clause 5.3.3 (the constant C).
@@ -134,7 +134,7 @@ impl EnergyCurve {
         curve
     }
 
-    /// All parameters; times count from `arrival_s`, and `direct` is the energy of the direct sound.
+    /// Returns all parameters; times count from `arrival_s`, and `direct` is the energy of the direct sound.
     ///
     /// # Source
     /// ISO 3382-1:2009, clause 5 and annex A.
@@ -169,8 +169,8 @@ impl EnergyCurve {
     }
 }
 
-/// The energy that a response of these energies, shape (slot,), the last above 0, would still have after its end; `None` where that
-/// can't be told.
+/// Returns the energy that a response of these energies, shape (slot,), the last above 0, would still have after its end;
+/// `None` where that cannot be determined.
 fn energy_beyond(slots: &[f64]) -> Option<f64> {
     let end = slots.len();
     let width = end / (3 * WINDOWS);
@@ -183,7 +183,7 @@ fn energy_beyond(slots: &[f64]) -> Option<f64> {
         // Single reflections, not a decay.
         return Some(0.0);
     }
-    // The straight line through the levels, in nepers of energy a window.
+    // The line fitted to the levels, in nepers of energy a window.
     let n = WINDOWS as f64;
     let middle = 0.5 * (n - 1.0);
     let level: Vec<f64> = last.iter().map(|energy| libm::log(*energy)).collect();
@@ -203,9 +203,9 @@ fn energy_beyond(slots: &[f64]) -> Option<f64> {
     (third(0) >= RANGE * third(2)).then_some(0.0)
 }
 
-/// Time for 60 dB along the straight line through the levels between `high` and `low` (least squares), s.
+/// Returns the time for 60 dB along the line fitted to the levels between `high` and `low` (least squares), s.
 fn slope(curve: &[(f64, f64)], high: f64, low: f64) -> Option<f64> {
-    // The curve must go on below, or its own end bends the line.
+    // The curve must continue below, or its own end bends the line.
     curve.last().filter(|(_, level)| *level < low)?;
     let inside = || {
         curve
@@ -279,7 +279,7 @@ mod tests {
         curve
     }
 
-    /// However early an exponential decay is cut: its own time, or none.
+    /// Wherever an exponential decay is cut: its own time, or none.
     #[test]
     fn a_decay_that_is_cut_has_its_own_time_or_none() {
         let t60 = 10.0;
@@ -307,7 +307,7 @@ mod tests {
         }
     }
 
-    /// Steady noise at the end of a recording is no decay that goes on.
+    /// Steady noise at the end of a recording is no decay.
     #[test]
     fn noise_at_the_end_stays_noise() {
         let mut curve = exponential(0.5, 2.0);

@@ -27,7 +27,7 @@ const THIRDS_HZ: [f64; 10] = [
 ];
 
 impl BandWidth {
-    /// Returns how many bands there are.
+    /// Returns the number of bands.
     pub fn count(self) -> usize {
         match self {
             Self::Octave => 8,
@@ -35,7 +35,7 @@ impl BandWidth {
         }
     }
 
-    /// Bands in an octave.
+    /// Returns the number of bands in an octave.
     fn per_octave(self) -> f64 {
         match self {
             Self::Octave => 1.0,
@@ -43,7 +43,7 @@ impl BandWidth {
         }
     }
 
-    /// Place of the 1 kHz band.
+    /// Returns the position of the 1 kHz band.
     fn of_1_khz(self) -> f64 {
         match self {
             Self::Octave => 4.0,
@@ -51,7 +51,7 @@ impl BandWidth {
         }
     }
 
-    /// Exact midband frequency, Hz.
+    /// Returns the exact midband frequency, Hz.
     ///
     /// # Source
     /// IEC 61260-1:2014: 1000 G^(k/b), with the octave ratio G = 10^0.3.
@@ -63,7 +63,7 @@ impl BandWidth {
             )
     }
 
-    /// The frequency by which a band is called, Hz.
+    /// Returns the nominal frequency of a band, Hz.
     pub fn nominal_centre_hz(self, band: usize) -> f64 {
         match self {
             Self::Octave => 62.5 * libm::pow(2.0, band as f64),
@@ -75,14 +75,14 @@ impl BandWidth {
         }
     }
 
-    /// Its lower and upper edge, Hz.
+    /// Returns its lower and upper edge, Hz.
     pub fn edges_hz(self, band: usize) -> (f64, f64) {
         let half = libm::pow(10.0, 0.15 / self.per_octave());
         let centre_hz = self.exact_centre_hz(band);
         (centre_hz / half, centre_hz * half)
     }
 
-    /// The power that a band's filter passes at a frequency, 0 to 1.
+    /// Returns the power that a band's filter passes at a frequency, 0 to 1.
     ///
     /// 1 around the centre, 1/2 at the edges, with slopes that are raised cosines in the logarithm of frequency: within the limits
     /// of class 1, and neighbours sum to 1.
@@ -101,7 +101,7 @@ impl BandWidth {
     }
 }
 
-/// Filters without delay for signals of one length.
+/// Zero-phase filters for signals of one length.
 pub(super) struct ZeroPhaseFilters {
     fft: RealFft,
     rate_hz: f64,
@@ -117,7 +117,7 @@ impl ZeroPhaseFilters {
         }
     }
 
-    /// A signal's spectrum, for [`Self::band`].
+    /// Returns a signal's spectrum, for [`Self::band`].
     pub(super) fn spectrum(&mut self, signal: &[f32]) -> Vec<Complex<f32>> {
         self.fft.forward(signal)
     }
@@ -134,7 +134,7 @@ impl ZeroPhaseFilters {
             .map(|bin| self.width.power(band, self.frequency_hz(bin)))
             .collect();
         let passed = powers.iter().sum::<f64>() / (spectrum.len() - 1) as f64;
-        // A band of which no more than the foot of a slope is below half the rate says nothing.
+        // A band with no more than the foot of a slope below half the rate gives nothing.
         if self.width.edges_hz(band).0 >= 0.5 * self.rate_hz || passed <= 0.0 {
             return None;
         }
@@ -146,7 +146,7 @@ impl ZeroPhaseFilters {
         Some(self.fft.inverse(&mut filtered))
     }
 
-    /// Returns what a spectrum holds below a frequency, in samples as those of [`Self::band`].
+    /// Returns a spectrum low-passed at a frequency, in samples as those of [`Self::band`].
     pub(super) fn low_pass(&mut self, spectrum: &[Complex<f32>], edge_hz: f64) -> Vec<f32> {
         let gain = |bin: usize| {
             // A slope of half an octave, so that it rings little.
@@ -160,7 +160,7 @@ impl ZeroPhaseFilters {
         self.fft.inverse(&mut filtered)
     }
 
-    /// Samples of what [`Self::band`] gives that belong to the time before the signal.
+    /// Returns the number of samples of [`Self::band`] before the signal.
     pub(super) fn before(&self) -> usize {
         (0.5 * RING_S * self.rate_hz) as usize
     }

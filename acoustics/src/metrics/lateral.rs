@@ -6,13 +6,13 @@ use crate::echogram::Echogram;
 use crate::receiver::{Receiver, ReceiverKind};
 use glam::Vec3;
 
-/// Lateral sound counts from here, s after the first arrival: earlier is the direct sound.
+/// Start of lateral sound, s after the first arrival: earlier is the direct sound.
 const FROM_S: f64 = 0.005;
-/// Early sound ends here, s.
+/// End of early sound, s.
 const UP_TO_S: f64 = 0.08;
 
-/// The axis through the ears of a listener: that of a receiver that is turned; a microphone is turned to the source, as a
-/// figure-of-eight microphone in a measurement is. Unit length, world.
+/// Returns the axis through the ears of a listener: that of an oriented receiver; a microphone is turned to the source, as
+/// a figure-of-eight microphone in a measurement is. Unit length, world.
 pub fn lateral_axis(receiver: &Receiver, source: Vec3) -> Vec3 {
     if receiver.kind != ReceiverKind::Omni {
         return receiver.pose.rotation * Vec3::X;
@@ -23,10 +23,10 @@ pub fn lateral_axis(receiver: &Receiver, source: Vec3) -> Vec3 {
         .unwrap_or(Vec3::X)
 }
 
-/// The early lateral energy fraction LF, 0 to 1: the energy that a figure of eight along `axis` takes up between 5 and 80 ms
+/// Returns the early lateral energy fraction LF, 0 to 1: the energy in a figure of eight along `axis` between 5 and 80 ms
 /// after the first arrival, over all energy of the first 80 ms. `None` where nothing is heard. Shape (band,).
 ///
-/// A sound from all sides gives 1/3. Of the tail the cells' mean squares of the cosine are taken.
+/// A diffuse field gives 1/3. Of the tail the cells' mean squares of the cosine are taken.
 ///
 /// # Source
 /// ISO 3382-1:2009, annex A (early lateral energy).
@@ -52,7 +52,7 @@ pub fn lateral_fraction(echogram: &Echogram, axis: Vec3) -> [Option<f64>; BAND_C
             }
         }
         for (k, bin) in tail.bins.iter().enumerate() {
-            // Nothing scattered comes before the direct sound, though its bin may begin earlier.
+            // Nothing scattered precedes the direct sound, though its bin may begin earlier.
             let start = (k as f64 * tail.bin_s - first).max(0.0);
             let end = (k + 1) as f64 * tail.bin_s - first;
             if start > UP_TO_S {
@@ -69,7 +69,7 @@ pub fn lateral_fraction(echogram: &Echogram, axis: Vec3) -> [Option<f64>; BAND_C
     })
 }
 
-/// The mean square of the cosine to the axis of what arrives in a bin; 1/3 where directions are unknown.
+/// Returns the mean square of the cosine to the axis of the energy in a bin; 1/3 where directions are unknown.
 fn from_the_side(echogram: &Echogram, bin: usize, band: usize, squares: &[f64]) -> f64 {
     let Some(directions) = echogram.tail.directions_at(bin) else {
         return 1.0 / 3.0;
@@ -86,7 +86,7 @@ fn from_the_side(echogram: &Echogram, bin: usize, band: usize, squares: &[f64]) 
         / all
 }
 
-/// The mean over a cell of the squared cosine to an axis, by Gauss's rule of three points each way.
+/// Returns the mean over a cell of the squared cosine to an axis, by Gauss's rule of three points each way.
 fn mean_square(cell: usize, axis: Vec3) -> f64 {
     const PLACES: [(f32, f64); 3] = [
         (0.112_701_66, 5.0 / 18.0),
@@ -143,7 +143,7 @@ mod tests {
         assert!(lateral_fraction(&found, Vec3::Y)[3].unwrap() < 1e-8);
     }
 
-    /// Direct sound of 1, then 0.5 at 20 ms from 60 degrees off the axis; what comes within 5 ms or after 80 ms counts not.
+    /// Direct sound of 1, then 0.5 at 20 ms from 60 degrees off the axis; energy within 5 ms or after 80 ms does not count.
     #[test]
     fn paths_count_by_the_square_of_their_cosine_and_by_time() {
         let slanted = Vec3::new(0.5, 0.0, -(0.75_f32).sqrt());
@@ -159,7 +159,7 @@ mod tests {
         }
     }
 
-    /// A tail of constant power from all sides: 75 of 80 ms count, a third of each.
+    /// A tail of constant power in a diffuse field: 75 of 80 ms count, a third of each.
     #[test]
     fn sound_from_all_sides_gives_a_third() {
         let even = DirectionalEnergy {

@@ -1,4 +1,4 @@
-//! Reverberation, clarity and kin, per band: from energies (no noise), or from an impulse response; what two ears make of it.
+//! Room-acoustic parameters per band: from energies (no noise), or from an impulse response; and binaural measures.
 
 mod binaural;
 mod decay;
@@ -18,7 +18,7 @@ use crate::echogram::{Echogram, PropagationPath};
 /// The parameters of every band. Shape (band,).
 pub type Metrics = [BandMetrics; BAND_COUNT];
 
-/// The parameters of an echogram: exact paths and the traced tail, without any noise realisation.
+/// Returns the parameters of an echogram: exact paths and the traced tail, without any noise realisation.
 ///
 /// Times count from the first arrival.
 pub fn of_echogram(echogram: &Echogram) -> Metrics {
@@ -44,7 +44,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
             curve.add(time, time, energy);
         }
         for (start, energy) in bins() {
-            // Nothing scattered comes before the direct sound, though its bin may begin earlier.
+            // Nothing scattered precedes the direct sound, though its bin may begin earlier.
             curve.add(start.max(first), (start + tail.bin_s).max(first), energy);
         }
         let direct = echogram.direct();
@@ -55,7 +55,7 @@ pub fn of_echogram(echogram: &Echogram) -> Metrics {
     })
 }
 
-/// Returns when the first sound of a band arrives, s; nothing in silence.
+/// Returns the time of a band's first arrival, s; `None` in silence.
 fn first_arrival(echogram: &Echogram, band: usize) -> Option<f64> {
     let heard = |path: &&PropagationPath| path.energy[band] > 0.0;
     let paths = echogram.paths.iter().filter(heard);
@@ -67,7 +67,7 @@ fn first_arrival(echogram: &Echogram, band: usize) -> Option<f64> {
     })
 }
 
-/// A ratio of energies, dB; nothing where one of them is nothing.
+/// Returns a ratio of energies, dB; `None` where one of them is zero.
 fn decibels(a: f64, b: f64) -> Option<f64> {
     (a > 0.0 && b > 0.0).then(|| 10.0 * libm::log10(a / b))
 }

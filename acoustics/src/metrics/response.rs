@@ -1,16 +1,16 @@
-//! The parameters of an impulse response, however it was made.
+//! Room-acoustic parameters of any impulse response.
 
 use super::decay::{BandMetrics, EnergyCurve};
 use super::filters::{BandWidth, ZeroPhaseFilters};
 
-/// The direct sound is what arrives within this after the start, s.
+/// Duration of the direct sound after the start, s.
 pub(super) const DIRECT_S: f64 = 0.0025;
 
-/// The parameters of an impulse response, by octave or third octave. Shape (band,).
+/// Returns the parameters of an impulse response, by octave or third octave. Shape (band,).
 ///
-/// `samples`: shape (sample,), re a pulse of 1 at 1 m. Times count from where the response first rises to -20 dB of its peak; the
-/// direct sound is what arrives within 2.5 ms of that. A band above half the rate, and silence, give nothing. White noise in the
-/// recording is not compensated for. A band B Hz wide rings itself: decays shorter than 16 / B are the filter's.
+/// `samples`: shape (sample,), re a pulse of 1 at 1 m. Times count from the first rise of the response to -20 dB of its
+/// peak; the direct sound is that within 2.5 ms of that. A band above half the rate, and silence, give `None`. White noise
+/// in the recording is not compensated for. A band B Hz wide rings itself: decays shorter than 16 / B are the filter's.
 ///
 /// # Source
 /// ISO 3382-1:2009, clause 5.3.3 (backward integration) and annex A.3.4 (start); IEC 61260-1:2014 (bands); F. Jacobsen, J. Sound
@@ -24,7 +24,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
     let mut rest = samples.to_vec();
     rest[..direct].fill(0.0);
     let mut filters = ZeroPhaseFilters::new(width, rate_hz, samples.len());
-    // Cut before it is filtered: a narrow filter spreads the direct sound over far more than its 2.5 ms.
+    // Cut before filtering: a narrow filter spreads the direct sound over far more than its 2.5 ms.
     let [all, direct, rest] =
         [samples, &samples[..direct], &rest[..]].map(|part| filters.spectrum(part));
     let arrival_s = start as f64 / rate_hz;
@@ -35,7 +35,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
         let mut curve = EnergyCurve::new();
         let end = filtered.len() - filters.before();
         for (k, x) in filtered.iter().enumerate() {
-            // A filter spreads a pulse to both sides; the time before the start belongs to it.
+            // A filter spreads a pulse to both sides; energy before the start belongs to it.
             let sample = if k < end { k.max(start) } else { start };
             let time_s = sample as f64 / rate_hz;
             curve.add(time_s, time_s, f64::from(*x) * f64::from(*x));
@@ -50,7 +50,7 @@ pub fn of_impulse_response(samples: &[f32], rate_hz: f64, width: BandWidth) -> V
     metrics
 }
 
-/// The sample at which the first of several channels rises to -20 dB of the peak of all; nothing in silence.
+/// Returns the first sample at which one of several channels rises to -20 dB of the peak of all; `None` in silence.
 pub(super) fn start(channels: &[&[f32]]) -> Option<usize> {
     let all = channels.iter().flat_map(|channel| channel.iter());
     let peak = all.fold(0.0_f32, |peak, x| peak.max(x.abs()));
@@ -115,7 +115,7 @@ mod tests {
                     "{band}: {drr_db}"
                 );
                 let (low_hz, high_hz) = width.edges_hz(band);
-                // Echoes meet in narrow bands.
+                // Echoes overlap in narrow bands.
                 if high_hz - low_hz > 300.0 {
                     let g_db = found.g_db.unwrap();
                     assert!(

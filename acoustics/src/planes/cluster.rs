@@ -1,4 +1,4 @@
-//! Coplanar triangles become one plane.
+//! Clustering of coplanar triangles into planes.
 
 use super::TRIANGLES_PER_CHECK;
 use dwell_scene::Aabb;
@@ -6,18 +6,18 @@ use dwell_scene::interrupt::PollEvery;
 use glam::{DVec3, Vec3};
 use std::collections::BTreeMap;
 
-/// Furthest that a corner may lie off a plane, m.
+/// Largest distance of a corner from its plane, m.
 const OFFSET_M: f64 = 2e-3;
 /// Cosine of the largest angle between a triangle and its plane: 1 degree.
 const COS_ANGLE: f64 = 0.999_847_7;
-/// Corners closer than this are one, m: flatter triangles than that have no plane.
+/// Distance below which corners are one, m: flatter triangles than that have no plane.
 const WELD_M: f64 = 1e-4;
 /// Normals are sorted into cells of this width.
 const CELL: f64 = 0.1;
 /// Planes of one orientation are sorted into slots of this width, m.
 const SLOT_M: f64 = 2.0 * OFFSET_M;
 
-/// A mirror: all coplanar triangles together, whatever their material. It has no front.
+/// A mirror: all coplanar triangles together, whatever their material. It is two-sided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plane {
     /// Unit length.
@@ -31,18 +31,18 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Signed distance of a point, m.
+    /// Returns the signed distance of a point, m.
     pub fn distance_m(&self, point: DVec3) -> f64 {
         self.normal.dot(point) - self.offset_m
     }
 
-    /// The mirror image of a point.
+    /// Returns the mirror image of a point.
     pub fn mirror(&self, point: DVec3) -> DVec3 {
         point - self.normal * (2.0 * self.distance_m(point))
     }
 }
 
-/// Sorts triangles into planes.
+/// Clusters triangles into planes.
 ///
 /// Returns the planes, the largest triangle's first, and the plane of each triangle; [`NO_PLANE`] for triangles without area.
 ///
@@ -56,7 +56,7 @@ pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
         let (ab, ac) = ((*b - *a).as_dvec3(), (*c - *a).as_dvec3());
         let cross = ab.cross(ac);
         let longest = ab.length().max(ac.length()).max((ac - ab).length());
-        // The height over the longest edge tells slivers from triangles.
+        // The height over the longest edge distinguishes slivers from triangles.
         if cross.is_finite() && cross.length() > WELD_M * longest {
             order.push((index, 0.5 * cross.length(), cross.normalize()));
         }
@@ -68,7 +68,7 @@ pub(super) fn cluster(corners: &[[Vec3; 3]]) -> (Vec<Plane>, Vec<u32>) {
     let mut finder = PlaneFinder::default();
     for (index, area_m2, normal) in order {
         pace.turn();
-        // One of two opposite normals stands for both.
+        // One of two opposite normals represents both.
         let first = normal.to_array().into_iter().find(|x| x.abs() > 1e-9);
         let normal = if first.is_some_and(|x| x < 0.0) {
             -normal
@@ -129,7 +129,7 @@ impl PlaneFinder {
                 && points.iter().all(|p| plane.distance_m(*p).abs() < OFFSET_M)
         };
         // A normal near the border of its cell may have its plane in the next one, or, near the edge of the half of the
-        // directions that stand for both, on the other side.
+        // directions that represent both, on the other side.
         let mut best: Option<usize> = None;
         let mut seen: Vec<NormalCell> = Vec::with_capacity(4);
         for sign in [1.0, -1.0] {

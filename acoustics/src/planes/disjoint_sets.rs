@@ -1,6 +1,6 @@
-//! Disjoint sets.
+//! Union-find.
 
-/// Sets of numbers from 0 on; at first each is alone. The least of a set stands for it.
+/// Disjoint sets of numbers from 0 on; at first each is a set of its own. The least of a set represents it.
 pub(super) struct DisjointSets {
     parent: Vec<usize>,
 }
@@ -12,7 +12,7 @@ impl DisjointSets {
         }
     }
 
-    /// Returns which number stands for the set of `k`.
+    /// Returns the number that represents the set of `k`.
     pub(super) fn root(&mut self, mut k: usize) -> usize {
         while self.parent[k] != k {
             self.parent[k] = self.parent[self.parent[k]];

@@ -1,4 +1,4 @@
-//! Which edges of triangles are sharp.
+//! Detection of the sharp edges of triangles.
 
 use super::disjoint_sets::DisjointSets;
 use super::edges::DiffractionEdge;
@@ -8,25 +8,25 @@ use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
 
-/// Corners in one cell of a grid this fine are one, m.
+/// Cell size of the grid in which equal corners are merged, m.
 const WELD_M: f32 = 1e-4;
-/// Shorter edges bend too little sound, m.
+/// Shortest edge that diffracts, m.
 const SHORTEST_M: f32 = 0.2;
-/// Edges whose faces are folded by less count as smooth, rad: 30 degrees.
+/// Angle of a fold below which an edge counts as smooth, rad: 30 degrees.
 const LEAST_FOLD_RAD: f32 = PI / 6.0;
 /// Distance beside an edge at which its plane is looked for, m.
 const BESIDE_M: f32 = 5e-3;
-/// Pieces of an edge that turn less than this go on straight: the cosine of 1 degree.
+/// Largest bend of consecutive pieces of a straight edge: the cosine of 1 degree.
 const STRAIGHT: f32 = 0.999_85;
 
-/// Rims this close together lie on one another, m.
+/// Distance within which rims coincide, m.
 const ON_LINE_M: f32 = 2e-3;
-/// Rims are sorted into cells of this size by points half a cell apart, m.
+/// Size of the cells into which rims are sorted by points half a cell apart, m.
 const CELL_M: f32 = 0.5;
 /// Search radius around each of these points for its rim, m: so that none of its points is missed.
 const PADDING_M: f32 = 0.25 * CELL_M + ON_LINE_M;
 
-/// Sides that are sorted in one go.
+/// Sides that are sorted between checks for cancellation.
 const SIDES_PER_CHECK: usize = 1 << 14;
 
 /// A side of a triangle.
@@ -34,7 +34,7 @@ struct TriangleSide {
     key: [[i32; 3]; 2],
     ends: [Vec3; 2],
     plane: u32,
-    /// From the edge into the triangle, unit length, square to the edge.
+    /// From the edge into the triangle, unit length, perpendicular to the edge.
     into: Vec3,
 }
 
@@ -42,18 +42,18 @@ fn weld(point: Vec3) -> [i32; 3] {
     (point / WELD_M).round().to_array().map(|x| x as i32)
 }
 
-/// A straight line at which one face ends.
+/// A straight line that bounds a face.
 struct FaceRim {
     ends: [Vec3; 2],
-    /// From the line into the face, unit length, square to the line.
+    /// From the line into the face, unit length, perpendicular to the line.
     into: Vec3,
 }
 
-/// The sharp edges of triangles that lie in planes.
+/// Returns the sharp edges of triangles that lie in planes.
 ///
-/// A side that two triangles share, or that lies within another triangle of its plane (a T-junction), is no rim. Rims that lie on
-/// one another are one edge, however their triangles are cut. A rim that lies within a face of another plane counts as that of a
-/// sheet: rays tell later whether it lies open.
+/// A side that two triangles share, or that lies within another triangle of its plane (a T-junction), is no rim. Rims that
+/// coincide are one edge, however their triangles are cut. A rim that lies within a face of another plane counts as that of
+/// a sheet: rays later determine whether it is exposed.
 ///
 /// # Determinism
 /// Equal input, equal output.
@@ -87,8 +87,8 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<Diffractio
     merge(&edges)
 }
 
-/// Returns which triangles to look at: of equal ones the first two. Whether a side is shared or lies open needs no third, and things that
-/// stand at one place by the thousand are not compared with each other.
+/// Returns the triangles to test: of equal ones the first two. Whether a side is shared or open needs no third, and
+/// thousands of coincident objects are not compared with each other.
 fn two_of_each(corners: &[[Vec3; 3]]) -> Vec<usize> {
     let mut counts: HashMap<[[u32; 3]; 3], u8> = HashMap::with_capacity(corners.len());
     let mut kept = Vec::with_capacity(corners.len());
@@ -104,7 +104,7 @@ fn two_of_each(corners: &[[Vec3; 3]]) -> Vec<usize> {
     kept
 }
 
-/// The edges that rims make together.
+/// Returns the edges formed by rims.
 fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
     let cells = |point: Vec3| {
         let corners = (0..8).map(move |k| {
@@ -130,7 +130,7 @@ fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
             let point = a.lerp(b, step as f32 / steps as f32);
             own.extend(cells(point));
         }
-        // Mostly a few, told many times.
+        // Mostly a few, many times.
         own.sort_unstable();
         own.dedup();
         places.extend(own.drain(..).map(|cell| (cell, k)));
@@ -149,7 +149,7 @@ fn join(rims: &[FaceRim]) -> Vec<DiffractionEdge> {
             let there = &rims[*other];
             if there.passes(middle) && there.is_parallel(rim) {
                 into.push(there.into);
-                // Of rims that lie on one another the longest stays, of equal ones the first.
+                // Of coincident rims the longest stays, of equal ones the first.
                 let longer = there.length_m().total_cmp(&rim.length_m());
                 within |= longer.is_gt() || (longer.is_eq() && *other < k);
             }
@@ -183,7 +183,7 @@ impl FaceRim {
     }
 }
 
-/// All sides of triangles, those of equal ends together.
+/// Returns all sides of triangles, those of equal ends together.
 fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<TriangleSide> {
     let mut sides = Vec::with_capacity(3 * corners.len());
     let mut pace = PollEvery::new(TRIANGLES_PER_CHECK);
@@ -213,8 +213,8 @@ fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<TriangleSide> {
             });
         }
     }
-    // Stable, so that triangles of one edge stay in order. First in parts, which only need to be joined then, so that a large house
-    // is not sorted in one go.
+    // Stable, so that triangles of one edge stay in order. In parts first, which only need to be merged then, so that a
+    // large house is not sorted in one go.
     for part in sides.chunks_mut(SIDES_PER_CHECK) {
         interrupt::check();
         part.sort_by_key(|side| side.key);
@@ -223,7 +223,7 @@ fn sides(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> Vec<TriangleSide> {
     sides
 }
 
-/// The widest angle without a face around an edge, if it is wide enough to bend sound.
+/// Returns the widest angle without a face around an edge, if it is wide enough to diffract.
 fn widest_gap(ends: &[Vec3; 2], into: &[Vec3]) -> Option<DiffractionEdge> {
     let first = *into.first()?;
     let along = (ends[1] - ends[0]).normalize_or_zero();
@@ -251,7 +251,7 @@ fn widest_gap(ends: &[Vec3; 2], into: &[Vec3]) -> Option<DiffractionEdge> {
     })
 }
 
-/// Joins pieces that go on straight, and keeps what is long enough.
+/// Joins pieces along a straight line, and keeps those that are long enough.
 fn merge(pieces: &[DiffractionEdge]) -> Vec<DiffractionEdge> {
     let along = |edge: &DiffractionEdge| (edge.ends[1] - edge.ends[0]).normalize_or_zero();
     let mut ends: Vec<([i32; 3], usize)> = pieces
@@ -298,10 +298,10 @@ fn merge(pieces: &[DiffractionEdge]) -> Vec<DiffractionEdge> {
     edges
 }
 
-/// Finds whether a plane goes on beyond a side.
+/// Finds whether a plane continues beyond a side.
 struct PlaneCoverage<'a> {
     corners: &'a [[Vec3; 3]],
-    /// Triangles by plane and by where they begin along x.
+    /// Triangles by plane and by their lowest x.
     order: Vec<(u32, f32, u32)>,
 }
 
@@ -319,7 +319,7 @@ impl<'a> PlaneCoverage<'a> {
         Self { corners, order }
     }
 
-    /// Returns whether most of what lies beside a side belongs to other triangles of its plane.
+    /// Returns whether most of the area beside a side belongs to other triangles of its plane.
     fn is_covered_beyond(&self, side: &TriangleSide) -> bool {
         let from = self.order.partition_point(|entry| entry.0 < side.plane);
         let to = self.order.partition_point(|entry| entry.0 <= side.plane);
@@ -423,7 +423,7 @@ mod tests {
         }
     }
 
-    /// However often a box stands at one place, from twice on it has the edges that it has when it stands there twice.
+    /// Any number of coincident boxes from two on has the edges of two.
     #[test]
     fn copies_at_one_place_have_the_edges_of_two() {
         let one: Vec<[Vec3; 3]> = grid(2, |u, v| Vec3::new(u, v, 0.0))

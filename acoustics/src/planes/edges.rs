@@ -1,16 +1,16 @@
-//! The edges of a house that sound bends around: made once and shared by all worlds.
+//! The diffraction edges of a house: made once and shared by all worlds.
 
 use dwell_scene::{House, PartId, Pose, State};
 use glam::Vec3;
 
-/// A straight edge with more air than matter around it: the rim of a sheet, or a convex corner.
+/// A straight edge with more air than solid around it: the rim of a sheet, or a convex corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiffractionEdge {
     /// Its ends, m.
     pub ends: [Vec3; 2],
-    /// Away from what it belongs to, in the middle of the air around it, unit length, square to the edge.
+    /// Away from the solid, in the middle of the air around it, unit length, perpendicular to the edge.
     pub outward: Vec3,
-    /// The angle of the air around it, rad; from 210 degrees up to a full turn, which is a sheet's.
+    /// Angle of the air around it, rad; from 210 degrees up to a full turn, which is a sheet's.
     pub open_rad: f32,
 }
 
@@ -55,12 +55,12 @@ impl EdgeTable {
         }
     }
 
-    /// The edges of the moving parts where they stand at the start.
+    /// Returns the edges of the moving parts at their initial poses.
     pub(crate) fn at_start(&self, house: &House) -> Vec<DiffractionEdge> {
         self.moved(|part| house.parts[part].world_from_part)
     }
 
-    /// The same in a state.
+    /// Returns the same in a state.
     pub(crate) fn in_state(&self, house: &House, state: &State) -> Vec<DiffractionEdge> {
         let start = |part| house.parts[part].world_from_part;
         self.moved(|part| {

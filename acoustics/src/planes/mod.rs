@@ -15,11 +15,11 @@ use dwell_scene::bvh::Hit;
 use dwell_scene::{Aabb, House, Id, PartId, Pose, State};
 use glam::Vec3;
 
-/// The plane of a triangle that has none: it reflects rays, but has no images.
+/// Marks a triangle without a plane: it reflects rays, but has no images.
 pub const NO_PLANE: u32 = u32::MAX;
-/// Triangles between looks at whether the planes are still wanted.
+/// Triangles between checks for cancellation.
 const TRIANGLES_PER_CHECK: usize = 512;
-/// Panels at least this large are walls of rooms, m².
+/// Least area of the walls of rooms, m².
 pub(crate) const WALL_M2: f32 = 4.0;
 
 /// The piece of a plane that a triangle belongs to.
@@ -51,18 +51,18 @@ struct MovingPlanes {
     bounds: Aabb,
 }
 
-/// Which plane every triangle of a house lies in.
+/// The plane of every triangle of a house.
 #[derive(Clone, Debug)]
 pub struct PlaneTable {
-    /// Planes of everything that never moves, then of the moving parts where they stand at the start.
+    /// Static planes, then those of the moving parts at their initial poses.
     pub(crate) at_start: Vec<Plane>,
     /// Position of the first triangle of each placed mesh in `of_triangle`. Shape (placed,).
     first_triangle: Vec<u32>,
     of_triangle: Vec<u32>,
-    /// The panel that each triangle belongs to. As `of_triangle`.
+    /// The panel of each triangle. As `of_triangle`.
     panels: Vec<ReflectorPanel>,
     moving: Vec<MovingPlanes>,
-    /// Planes of everything that never moves, the largest first.
+    /// Static planes, the largest first.
     largest: Vec<u32>,
     edges: EdgeTable,
 }
@@ -106,7 +106,7 @@ impl PlaneTable {
             let area = |k: &u32| at_start[*k as usize].area_m2;
             area(b).total_cmp(&area(a)).then(a.cmp(b))
         });
-        // Nobody asks for more than the configuration's upper limit.
+        // No more are needed than the configuration's upper limit.
         largest.truncate(200);
 
         let structures = house.structure.len();
@@ -159,12 +159,12 @@ impl PlaneTable {
         self.at_start.len()
     }
 
-    /// Returns whether nothing reflects.
+    /// Returns whether there are no planes.
     pub fn is_empty(&self) -> bool {
         self.at_start.is_empty()
     }
 
-    /// The largest planes of what never moves, largest first, at most 200.
+    /// Returns the largest static planes, largest first, at most 200.
     pub(crate) fn largest(&self) -> &[u32] {
         &self.largest
     }
@@ -173,19 +173,19 @@ impl PlaneTable {
         &self.edges
     }
 
-    /// The plane that a hit lies in; [`NO_PLANE`] where it has none.
+    /// Returns the plane of a hit; [`NO_PLANE`] where it has none.
     pub(crate) fn of_hit(&self, house: &House, hit: &Hit) -> u32 {
         let place = self.place_of(house, hit);
         place.map_or(NO_PLANE, |place| self.of_triangle[place])
     }
 
-    /// The panel that a hit lies in.
+    /// Returns the panel of a hit.
     pub(crate) fn panel(&self, house: &House, hit: &Hit) -> ReflectorPanel {
         let place = self.place_of(house, hit);
         place.map_or(ReflectorPanel::NONE, |place| self.panels[place])
     }
 
-    /// Returns where the triangle of a hit stands in the tables.
+    /// Returns the index of a hit's triangle in the tables.
     fn place_of(&self, house: &House, hit: &Hit) -> Option<usize> {
         let geometry = house.geometry();
         let (placed, triangle) = if let Some(instance) = hit.instance {
@@ -199,7 +199,7 @@ impl PlaneTable {
         (place < self.of_triangle.len()).then_some(place)
     }
 
-    /// Returns where the moving parts stand at the start. Shape (moving part,).
+    /// Returns the initial poses of the moving parts. Shape (moving part,).
     pub(crate) fn poses_at_start(&self, house: &House) -> Vec<Pose> {
         let parts = self.moving.iter();
         parts
@@ -207,8 +207,8 @@ impl PlaneTable {
             .collect()
     }
 
-    /// Moves the planes of the parts that `state` has elsewhere than `poses`, and notes where they are now. Returns whether any
-    /// has moved.
+    /// Moves the planes of the parts whose poses in `state` differ from `poses`, and updates these. Returns whether any has
+    /// moved.
     pub(crate) fn update(&self, planes: &mut [Plane], poses: &mut [Pose], state: &State) -> bool {
         let mut any = false;
         for (moving, pose) in self.moving.iter().zip(poses) {
@@ -225,7 +225,7 @@ impl PlaneTable {
         any
     }
 
-    /// The moving parts whose box measures at least `size_m` from corner to corner: those that change what is heard.
+    /// Returns the moving parts whose box measures at least `size_m` from corner to corner: those that affect sound.
     pub(crate) fn parts_larger_than(&self, size_m: f32) -> impl Iterator<Item = PartId> + '_ {
         self.moving
             .iter()

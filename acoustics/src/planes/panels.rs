@@ -8,13 +8,13 @@ use glam::Vec3;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// Triangles of one plane whose boxes come this near are one panel, m.
+/// Distance of boxes within which triangles of one plane are one panel, m.
 const GAP_M: f32 = 0.005;
 
 /// The panels of a set of triangles.
 #[derive(Debug)]
 pub(super) struct PanelTable {
-    /// The panel that each triangle belongs to, named by one of its triangles; triangles without a plane by themselves. Shape
+    /// The panel of each triangle, named by one of its triangles; triangles without a plane by themselves. Shape
     /// (triangle,).
     pub(super) of_triangle: Vec<usize>,
     /// The area of that panel, m²; 0 for triangles without a plane. Shape (triangle,).
@@ -23,7 +23,7 @@ pub(super) struct PanelTable {
 
 /// Joins triangles to panels.
 ///
-/// Touching is judged by boxes along the world's axes: panels that stand askew and close together may count as one.
+/// Contact is tested by axis-aligned boxes: panels that are oblique and close together may count as one.
 pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
     let boxes: Vec<Aabb> = corners
         .iter()
@@ -43,7 +43,7 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
     let apart = join_equal(&order, &boxes, of_triangle, &mut sets);
     for (place, &a) in apart.iter().enumerate() {
         pace.turn();
-        // Boxes are sorted by where they begin: those further on overlap until one begins after this one's end.
+        // Boxes are sorted by their lower ends: later ones overlap until one begins after this one's end.
         for &b in &apart[place + 1..] {
             if of_triangle[b] != of_triangle[a] || boxes[b].min.x > boxes[a].max.x {
                 break;
@@ -66,8 +66,8 @@ pub(super) fn find(corners: &[[Vec3; 3]], of_triangle: &[u32]) -> PanelTable {
     }
 }
 
-/// Joins triangles of one plane whose boxes are equal, and returns one of each, in the order given: what touches one of them
-/// touches all, so that things that stand at one place are not compared with each other.
+/// Joins triangles of one plane whose boxes are equal, and returns one of each, in the order given: a triangle that touches
+/// one of them touches all, so that coincident objects are not compared with each other.
 fn join_equal(
     order: &[usize],
     boxes: &[Aabb],
@@ -92,7 +92,7 @@ fn join_equal(
     apart
 }
 
-/// The area of a triangle, m².
+/// Returns the area of a triangle, m².
 pub(super) fn area_m2(corners: &[Vec3; 3]) -> f64 {
     let [a, b, c] = corners.map(Vec3::as_dvec3);
     0.5 * (b - a).cross(c - a).length()
@@ -128,7 +128,7 @@ mod tests {
         }
     }
 
-    /// The same panel ten thousand times at one place is one panel of all their area, and its neighbour belongs to it.
+    /// Ten thousand copies of a panel at one place are one panel of all their area, and its neighbour belongs to it.
     #[test]
     fn panels_at_one_place_are_one() {
         let mut corners: Vec<[Vec3; 3]> = (0..10_000).flat_map(|_| square(0.0, 1.0)).collect();

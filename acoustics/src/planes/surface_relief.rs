@@ -6,9 +6,9 @@ use dwell_scene::Aabb;
 use dwell_scene::interrupt::PollEvery;
 use glam::{DVec3, Vec3};
 
-/// Walls further away than this are not looked for, m: only waves below 50 Hz would take both for one.
+/// Largest distance of a wall from its panels, m: only waves below 50 Hz would take both for one.
 const FURTHEST_M: f32 = 1.0;
-/// Cosine of the largest angle between a panel and its wall, 60 degrees: what stands out more steeply is no part of a rough wall.
+/// Cosine of the largest angle between a panel and its wall, 60 degrees: steeper panels are no part of a rough wall.
 const LEAST_COS: f64 = 0.5;
 /// Largest overhang of a panel beyond its wall, m.
 const BEYOND_M: f32 = 0.01;
@@ -19,7 +19,7 @@ struct RelievedWall<'a> {
     bounds: Aabb,
 }
 
-/// Returns how far the panel of each triangle stands out of the wall that it stands least out of, m, as [`of_panel`] has it; infinite
+/// Returns the relief of each triangle's panel over the wall that it stands least out of, m, as in [`of_panel`]; infinite
 /// where no wall is near, and for walls. Shape (triangle,).
 pub(super) fn reliefs(
     corners: &[[Vec3; 3]],
@@ -54,7 +54,7 @@ pub(super) fn reliefs(
     reliefs
 }
 
-/// The walls of each plane that has any.
+/// Returns the walls of each plane that has any.
 fn walls<'a>(
     corners: &[[Vec3; 3]],
     planes: &'a [Plane],
@@ -75,8 +75,8 @@ fn walls<'a>(
         .collect()
 }
 
-/// The rms height of a surface of two equal halves, one a panel's and one a wall's, over their mean, m: half the distance of a
-/// panel that is parallel to its wall. The smallest over the walls before or behind the panel's middle.
+/// Returns the rms height of a surface of two equal halves, one a panel's and one a wall's, over their mean, m: half the
+/// distance of a panel that is parallel to its wall. The smallest over the walls before or behind the panel's middle.
 fn of_panel<'a>(pieces: &[[Vec3; 3]], walls: impl Iterator<Item = &'a RelievedWall<'a>>) -> f32 {
     let areas = || pieces.iter().map(panels::area_m2);
     let area_m2: f64 = areas().sum();

@@ -1,7 +1,6 @@
 //! Sound files: WAV, FLAC and Ogg Vorbis as sources.
 //!
-//! A file is hostile until it is read: what a header claims allocates nothing, and what comes out is finite, of known length
-//! and not silent.
+//! Files are untrusted: header fields allocate nothing, and the output is finite, of known length and not silent.
 
 mod flac;
 mod resample;
@@ -15,13 +14,13 @@ use crate::error::AcousticsError;
 use crate::signals::Signal;
 use std::fmt::Display;
 
-/// The most bytes that a sound file may have.
+/// Largest size of a sound file, bytes.
 pub const MOST_BYTES: u64 = 64 << 20;
-/// The most samples a channel that a sound may have, in its file and at the rate it is asked for: 35 minutes at 16 kHz.
+/// Most samples a channel, in the file and at the requested rate: 35 minutes at 16 kHz.
 pub const MOST_SAMPLES: usize = 1 << 25;
-/// The most channels.
+/// Most channels.
 const MOST_CHANNELS: u32 = 64;
-/// The allowed samples a second.
+/// Range of sample rates, Hz.
 const RATES_HZ: (u32, u32) = (1_000, 768_000);
 
 /// A sound file's samples: the mean of its channels, full scale 1.
@@ -39,13 +38,13 @@ struct MonoMix<'a> {
     rate_hz: u32,
     channels: u32,
     samples: Vec<f32>,
-    /// Of the frame that is not complete.
+    /// Sum of the incomplete frame.
     sum: f64,
     taken: u32,
 }
 
 impl<'a> MonoMix<'a> {
-    /// Checks what the header says.
+    /// Checks the header's values.
     fn new(name: &'a str, rate_hz: u32, channels: u32) -> Result<Self, AcousticsError> {
         let (low, high) = RATES_HZ;
         if !(low..=high).contains(&rate_hz) {
@@ -68,7 +67,7 @@ impl<'a> MonoMix<'a> {
 
     /// Takes the next sample of the interleaved channels.
     fn push(&mut self, sample: f64) -> Result<(), AcousticsError> {
-        // What is beyond 24 times full scale in 32-bit float files is damage, and would overflow what comes after.
+        // Samples beyond 24 times full scale in 32-bit float files are damage, and would overflow later.
         if !sample.is_finite() || sample.abs() > 1e6 {
             let at = format!("sample {}", self.samples.len());
             return Err(fault(self.name, &at, &sample, "finite numbers to 1e6"));
@@ -103,19 +102,19 @@ fn fault(
     }
 }
 
-/// The file says of itself what is not so.
+/// The error of a damaged file.
 fn damaged(name: &str, error: &dyn Display) -> AcousticsError {
     fault(name, "data", error, "a whole, undamaged file")
 }
 
 impl Recording {
-    /// Decodes a file that was read: WAV (PCM of 8, 16, 24 and 32 bits, float of 32), FLAC, Ogg Vorbis, told apart by
-    /// their first bytes. `name`: stands in errors.
+    /// Decodes the bytes of a file: WAV (PCM of 8, 16, 24 and 32 bits, float of 32), FLAC, Ogg Vorbis, recognized by their
+    /// first bytes. `name`: for errors.
     ///
     /// # Errors
-    /// [`AcousticsError::SoundFile`] says what was found and what is allowed: another format, damage, more than
-    /// [`MOST_BYTES`] or [`MOST_SAMPLES`], 1 to 64 channels, 1,000 to 768,000 samples a second, numbers that are not finite,
-    /// silence.
+    /// [`AcousticsError::SoundFile`] names the value found and the allowed ones: another format, damage, more than
+    /// [`MOST_BYTES`] or [`MOST_SAMPLES`], 1 to 64 channels, 1,000 to 768,000 samples a second, numbers that are not
+    /// finite, silence.
     ///
     /// # Determinism
     /// WAV and FLAC give the same bits on every machine. The tables of the Vorbis decoder come from the platform's sine and
@@ -151,31 +150,31 @@ impl Recording {
         })
     }
 
-    /// Samples a second in the file.
+    /// Returns the sample rate of the file, Hz.
     pub fn rate_hz(&self) -> u32 {
         self.rate_hz
     }
 
-    /// Channels in the file.
+    /// Returns the number of channels in the file.
     pub fn channels(&self) -> u32 {
         self.channels
     }
 
-    /// The mean of the channels. Shape (sample,), full scale 1.
+    /// Returns the mean of the channels. Shape (sample,), full scale 1.
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
 
-    /// Returns how long it is, s.
+    /// Returns its duration, s.
     pub fn duration_s(&self) -> f64 {
         self.samples.len() as f64 / f64::from(self.rate_hz)
     }
 
-    /// The sound at `rate_hz` samples a second, root mean square 1 Pa over its whole length.
+    /// Returns the sound at `rate_hz` samples a second, root mean square 1 Pa over its whole length.
     ///
     /// # Errors
     /// [`AcousticsError::Range`] for a rate outside 1,000 to 192,000, [`AcousticsError::SoundFile`] for more than
-    /// [`MOST_SAMPLES`] at that rate or what is silent there.
+    /// [`MOST_SAMPLES`] at that rate or silence there.
     pub fn signal(&self, rate_hz: u32) -> Result<Signal, AcousticsError> {
         crate::signals::check_rate(rate_hz)?;
         let length = resample::length(self.samples.len(), self.rate_hz, rate_hz);
@@ -187,7 +186,7 @@ impl Recording {
         let mut samples = resample(&self.samples, self.rate_hz, rate_hz);
         let power: f64 = samples.iter().map(|x| f64::from(*x) * f64::from(*x)).sum();
         let scale = (samples.len() as f64 / power).sqrt();
-        // Below the smallest step of 24 bits nothing but rounding is left.
+        // Below the smallest step of 24 bits only rounding is left.
         if !scale.is_finite() || scale > 1e9 {
             let what = format!("level at {rate_hz} Hz");
             return Err(fault(

@@ -1,9 +1,8 @@
-//! Another rate: convolution with a windowed sinc.
+//! Resampling by convolution with a windowed sinc.
 //!
 //! # Source
-//! J. O. Smith, *Digital Audio Resampling*, CCRMA, Stanford (2002): the kernel stands in a fine table, its values between are
-//! interpolated, and it is stretched where the rate falls. Window: J. F. Kaiser, R. W. Schafer, IEEE Trans. ASSP 28, 105
-//! (1980).
+//! J. O. Smith, *Digital Audio Resampling*, CCRMA, Stanford (2002): the kernel is tabulated finely, interpolated between,
+//! and stretched where the rate falls. Window: J. F. Kaiser, R. W. Schafer, IEEE Trans. ASSP 28, 105 (1980).
 
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -12,7 +11,7 @@ use std::sync::OnceLock;
 const CROSSINGS: usize = 64;
 /// Table entries between two of them.
 const STEPS: usize = 1024;
-/// The middle of the fall, re the lower of the two Nyquist frequencies: flat to 0.9 of it, gone at it.
+/// Middle of the transition band, re the lower of the two Nyquist frequencies: flat to 0.9 of it, gone at it.
 const MIDDLE: f64 = 0.95;
 /// Of the Kaiser window: 100 dB at this length.
 const BETA: f64 = 10.06;
@@ -28,7 +27,7 @@ fn bessel_i0(x: f64) -> f64 {
     sum
 }
 
-/// The kernel from its middle on; its integral over both sides is 1. Shape (`CROSSINGS * STEPS` + 2,).
+/// Returns the kernel from its middle on; its integral over both sides is 1. Shape (`CROSSINGS * STEPS` + 2,).
 fn kernel() -> &'static [f64] {
     static KERNEL: OnceLock<Vec<f64>> = OnceLock::new();
     KERNEL.get_or_init(|| {
@@ -48,15 +47,15 @@ fn kernel() -> &'static [f64] {
     })
 }
 
-/// Returns how many samples `count` become.
+/// Returns the resampled length of `count` samples.
 pub(super) fn length(count: usize, from_hz: u32, to_hz: u32) -> usize {
     let (count, from) = (count as u128, u128::from(from_hz.max(1)));
     let samples = (count * u128::from(to_hz) * 2 + from) / (2 * from);
     samples.try_into().unwrap_or(usize::MAX)
 }
 
-/// `samples` of rate `from_hz` at `to_hz`: as long in seconds, to the nearest sample. Sample 0 stays where it is; before and
-/// behind all is silence.
+/// Returns `samples` of rate `from_hz` at `to_hz`: of the same duration, to the nearest sample. Sample 0 stays in place;
+/// before and after is silence.
 ///
 /// Flat within 0.001 dB up to 0.9 of the lower Nyquist frequency, 90 dB down from it on.
 pub fn resample(samples: &[f32], from_hz: u32, to_hz: u32) -> Vec<f32> {

@@ -22,7 +22,7 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, Aco
         .read_dec_packet_generic::<InterleavedSamples<f32>>()
         .map_err(broken)?
     {
-        // Files that are chained may change both on their way.
+        // Chained files may change both.
         let header = &reader.ident_hdr;
         if (header.audio_sample_rate, header.audio_channels) != (rate_hz, channels) {
             return Err(damaged(name, &"rate or channels change on the way"));
@@ -31,7 +31,7 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, Aco
             mix.push(f64::from(sample))?;
         }
     }
-    // The last block is whole, the sound in it need not be.
+    // The last block is complete, the sound in it need not be.
     let beyond = (mix.samples.len() as u64).saturating_sub(length);
     if beyond < LONGEST_BLOCK {
         mix.samples.truncate(mix.samples.len() - beyond as usize);
@@ -39,10 +39,10 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, Aco
     Ok(mix)
 }
 
-/// Samples of the longest block that the format knows.
+/// Samples of the longest block of the format.
 const LONGEST_BLOCK: u64 = 8192;
 
-/// Returns how many samples the sound has, as its last page says; `None` when it does not end.
+/// Returns the number of samples given by the last page; `None` when the file does not end.
 fn length(bytes: &[u8]) -> Option<u64> {
     const LAST_PAGE: u8 = 4;
     let last = bytes
@@ -58,7 +58,7 @@ mod tests {
     use super::super::vorbis_headers::tests::{file_with, packets};
     use dwell_scene::random::RandomKey;
 
-    /// Packets with right check sums that hold anything: what a decoder makes of them is sound, or an error.
+    /// Packets of random contents with valid checksums: a decoder gives sound, or an error.
     #[test]
     fn packets_of_nonsense_end_nothing() {
         let packets = packets();
@@ -77,7 +77,7 @@ mod tests {
         assert!(heard > 1_000, "{heard}");
     }
 
-    /// A byte of the setup header, found by fuzzing, with which the curves of blocks fall below their least value.
+    /// A byte of the setup header, found by fuzzing, that makes the curves of blocks fall below their least value.
     #[test]
     fn a_curve_that_leaves_its_range_ends_nothing() {
         let packets = packets();

@@ -6,12 +6,12 @@
 use ogg::PacketReader;
 use std::io::Cursor;
 
-/// The first bytes of the headers that hold claims. Packets of sound begin with an even byte.
+/// First bytes of the headers that are checked. Audio packets begin with an even byte.
 const COMMENTS: &[u8] = b"\x03vorbis";
 const SETUP: &[u8] = b"\x05vorbis";
 
-/// The most code words of all codebooks of a stream, and the most numbers in their vectors: some 100 MB each while they are
-/// unpacked. Encoders write some 50,000 and 300,000.
+/// Most code words of all codebooks of a stream, and most numbers in their vectors: some 100 MB each when unpacked.
+/// Encoders write some 50,000 and 300,000.
 const MOST_WORDS: u64 = 1 << 20;
 const MOST_NUMBERS: u64 = 1 << 24;
 /// The sync pattern of a codebook.
@@ -35,7 +35,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// `None` where a length reaches beyond the packet. Each comment has at least its length in it, which bounds their number.
+/// Returns `None` where a length exceeds the packet. Each comment has at least its length in it, which bounds their number.
 fn comments(bytes: &[u8]) -> Option<()> {
     const LENGTH_BYTES: usize = 4;
     let number = |bytes: &[u8]| bytes.try_into().map(u32::from_le_bytes).ok();
@@ -70,7 +70,7 @@ fn codebooks(bytes: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
-/// The size of what is unpacked of a codebook.
+/// The unpacked size of a codebook.
 struct Codebook {
     words: u64,
     dimensions: u64,
@@ -108,7 +108,7 @@ impl Codebook {
     }
 }
 
-/// The lengths of code words, each by itself.
+/// Skips the lengths of code words, each by itself.
 fn skip_lengths(bits: &mut BitReader, words: u64) -> Result<(), String> {
     let sparse = bits.take(1)? == 1;
     for _ in 0..words {
@@ -119,7 +119,7 @@ fn skip_lengths(bits: &mut BitReader, words: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The lengths of code words as runs: how many have the first length, how many the next.
+/// Skips the lengths of code words as runs: the number of the first length, of the next, and so on.
 fn skip_runs(bits: &mut BitReader, words: u64) -> Result<(), String> {
     let (mut done, mut length) = (0, 1 + bits.take(5)?);
     while done < words {
@@ -134,7 +134,7 @@ fn skip_runs(bits: &mut BitReader, words: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The largest number whose power of `dimensions` is at most `words` (section 9.2.3, `lookup1_values`).
+/// Returns the largest number whose power of `dimensions` is at most `words` (section 9.2.3, `lookup1_values`).
 fn values_a_dimension(words: u64, dimensions: u64) -> u64 {
     let fits = |value: u64| {
         let mut power = 1_u64;
@@ -164,7 +164,7 @@ struct BitReader<'a> {
 }
 
 impl BitReader<'_> {
-    /// The next `count` bits, 32 at most.
+    /// Reads the next `count` bits, 32 at most.
     fn take(&mut self, count: u32) -> Result<u64, String> {
         let mut value = 0;
         for k in 0..count {
@@ -206,7 +206,7 @@ pub(super) mod tests {
         packets
     }
 
-    /// A whole file with right check sums, whose packet `which` is `packet`.
+    /// A whole file with valid checksums, whose packet `which` is `packet`.
     pub(in super::super) fn file_with(which: usize, packet: Vec<u8>) -> Vec<u8> {
         let mut packets = packets();
         packets[which] = packet;
@@ -262,7 +262,7 @@ pub(super) mod tests {
         for _ in 0..count {
             words += Codebook::read(&mut bits).unwrap().words;
         }
-        // Behind the codebooks stand the time domain transforms: one, which is 0.
+        // After the codebooks come the time domain transforms: one, which is 0.
         assert_eq!((bits.take(6), bits.take(16)), (Ok(0), Ok(0)));
         assert!((100..MOST_WORDS / 4).contains(&words), "{words}");
     }

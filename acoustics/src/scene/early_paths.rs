@@ -9,7 +9,7 @@ use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// An early path with the points it passes.
+/// An early path with its corners.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EarlyPath {
     /// The source, its reflections or bends in order, the receiver, m. Shape (2 to 6,).
@@ -19,7 +19,7 @@ pub struct EarlyPath {
 }
 
 impl AcousticScene {
-    /// All early paths from `source` to `receiver`, by length: what [`Self::echogram`] calls its paths, with their corners.
+    /// Returns all early paths from `source` to `receiver`, by length: the paths of [`Self::echogram`], with their corners.
     ///
     /// # Errors
     /// As [`Self::echogram`].

@@ -1,4 +1,4 @@
-//! A house as sound sees it.
+//! The acoustic scene: the acoustic model of a house.
 
 mod early_paths;
 
@@ -25,7 +25,7 @@ use dwell_scene::{House, LawSpec, State};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Places within a cell of this size have the same random arrivals, m.
+/// Size of the cells within which places have the same random arrivals, m.
 const CELL_M: f64 = 0.1;
 /// Offset of the cells: off the round numbers at which things are placed.
 const CELL_START: f64 = 0.32;
@@ -36,7 +36,7 @@ const CELL_START: f64 = 0.32;
 /// is small. Make one, and clone it for each world.
 #[derive(Clone, Debug)]
 pub struct AcousticScene {
-    /// As it was asked for.
+    /// The original settings.
     stated: AcousticConfig,
     laws: Vec<LawSpec>,
     data: PropagationData,
@@ -47,7 +47,7 @@ pub struct AcousticScene {
 }
 
 impl AcousticScene {
-    /// Prepares `house`, with everything where it stands at the start.
+    /// A scene of `house` in its initial state.
     ///
     /// # Errors
     /// [`AcousticsError::Range`] for a setting out of range.
@@ -65,7 +65,7 @@ impl AcousticScene {
         })
     }
 
-    /// Takes over overridden materials, moved parts and laws; cheap when nothing changed.
+    /// Applies overridden materials, moved parts and laws; cheap when nothing changed.
     pub fn update(&mut self, state: &State) {
         if state.laws != self.laws {
             self.laws.clone_from(&state.laws);
@@ -80,7 +80,7 @@ impl AcousticScene {
         self.data.apply(effects, &self.stated);
         let config = *self.config();
         if config.air != air {
-            // Ears are as far apart as sound is slow.
+            // Interaural delays depend on the speed of sound.
             self.heads = Arc::new(self.heads.in_air(&config));
         }
         let share = self.effects().air_absorption();
@@ -89,26 +89,26 @@ impl AcousticScene {
         }
     }
 
-    /// One more head that receivers of this scene may wear ([`Receiver::wearing`]). A head that is known already costs nothing.
+    /// Adds a head that receivers of this scene may use ([`Receiver::wearing`]). A head that is known already costs nothing.
     pub fn add_head(&mut self, head: &Head) {
         if !self.heads.knows(head.id()) {
             Arc::make_mut(&mut self.heads).add(head);
         }
     }
 
-    /// The same scene as laws with some effects have it.
+    /// Returns the same scene under other effects of laws.
     pub(crate) fn as_heard(&self, effects: PathEffects) -> Self {
         let mut scene = self.clone();
         scene.apply_laws(effects);
         scene
     }
 
-    /// Returns what laws do to air and sources.
+    /// Returns laws' effects on air and sources.
     pub(crate) fn effects(&self) -> &PathEffects {
         self.data.effects()
     }
 
-    /// Returns what rays, images and edges read.
+    /// Returns the data that rays, images and edges read.
     pub(crate) fn data(&self) -> &PropagationData {
         &self.data
     }
@@ -118,27 +118,27 @@ impl AcousticScene {
         self.data.house()
     }
 
-    /// The settings, with the air as laws make it.
+    /// Returns the settings, with the air as changed by laws.
     pub fn config(&self) -> &AcousticConfig {
         self.data.config()
     }
 
-    /// All planes where they are now, largest of the static ones first.
+    /// Returns all planes at their present positions, largest of the static ones first.
     pub fn planes(&self) -> &[Plane] {
         self.data.planes()
     }
 
-    /// All edges that sound bends around, where they are now.
+    /// Returns all diffraction edges at their present positions.
     pub fn edges(&self) -> impl Iterator<Item = &DiffractionEdge> {
         self.data.edges()
     }
 
-    /// Returns what sound meets: areas, mean absorption, which materials are guesses.
+    /// Returns the report of acoustic materials: areas, mean absorption, default materials.
     pub fn explain(&self) -> AcousticReport {
         AcousticReport::new(&self.data)
     }
 
-    /// Returns whether source and receiver are somewhere, and rays meet this house.
+    /// Checks that source and receiver have finite positions, and that rays are of this house.
     pub(crate) fn check(
         &self,
         rays: &RayScene,
@@ -159,12 +159,12 @@ impl AcousticScene {
         Ok(())
     }
 
-    /// The energies that reach `receiver` from `source`: exact early paths and the traced tail, without any noise.
+    /// Returns the energies at `receiver` from `source`: exact early paths and the traced tail, without any noise.
     ///
-    /// `rays` must show the house of this scene in the state that was last given to [`Self::update`].
+    /// `rays` must show the house of this scene in the state last passed to [`Self::update`].
     ///
     /// # Errors
-    /// [`AcousticsError::Position`] for a point that is nowhere, [`AcousticsError::OtherHouse`].
+    /// [`AcousticsError::Position`] for a point that is not finite, [`AcousticsError::OtherHouse`].
     ///
     /// # Determinism
     /// Equal scene, points and key give equal bits for any number of threads.
@@ -199,7 +199,7 @@ impl AcousticScene {
         Ok(self.echograms_of(rays, source, receivers, self.config().rays, key, threads))
     }
 
-    /// As [`Self::echograms`] with so many rays.
+    /// As [`Self::echograms`] with this many rays.
     pub(crate) fn echograms_of(
         &self,
         rays: &RayScene,
@@ -227,7 +227,7 @@ impl AcousticScene {
             .collect()
     }
 
-    /// The echogram of early paths and a tail.
+    /// Returns the echogram of early paths and a tail.
     pub(crate) fn joined(
         &self,
         paths: Vec<PropagationPath>,
@@ -247,11 +247,11 @@ impl AcousticScene {
         echogram
     }
 
-    /// Returns what `receiver` hears when `source` makes an impulse, as the laws of the state that was last given to [`Self::update`]
-    /// have it.
+    /// Returns the impulse response from `source` to `receiver`, under the laws of the state last passed to
+    /// [`Self::update`].
     ///
-    /// A law of microphones that has no impulse response (clipping, automatic gain, noise, clocks) does to this what it does to
-    /// a recording of the impulse.
+    /// A microphone law without an impulse response (clipping, automatic gain, noise, clocks) is applied as to a recording
+    /// of the impulse.
     ///
     /// # Errors
     /// As [`Self::echogram`], [`AcousticsError::Range`] for a receiver or directivity out of range, and
@@ -296,11 +296,11 @@ impl AcousticScene {
             .collect())
     }
 
-    /// The impulse response that belongs to an echogram: another turn of the head needs no new rays. Laws of microphones act as
-    /// in [`Self::impulse_response`].
+    /// Returns the impulse response of an echogram: rotating the head needs no new rays. Microphone laws act as in
+    /// [`Self::impulse_response`].
     ///
-    /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array hear the centre's
-    /// early paths as plane waves here. A head that the scene does not know is heard as the built-in one.
+    /// With the key of [`Self::impulse_response`] it has the same random arrivals. The microphones of an array receive the
+    /// centre's early paths as plane waves here. A head that is unknown to the scene is replaced by the built-in one.
     pub fn respond(
         &self,
         echogram: Echogram,
@@ -312,7 +312,7 @@ impl AcousticScene {
         self.record(self.arrive(echogram, receiver, None, noise), receiver, key)
     }
 
-    /// Returns what the laws of microphones make of a response.
+    /// Returns a response after the microphone laws.
     fn record(
         &self,
         response: ImpulseResponse,
@@ -328,7 +328,7 @@ impl AcousticScene {
         }
     }
 
-    /// Returns who listens; `room` and `own` as in [`StageContext`].
+    /// Returns the context of a receiver; `room` and `own` as in [`StageContext`].
     pub(crate) fn listener<'a>(
         &'a self,
         receiver: &'a Receiver,
@@ -344,7 +344,7 @@ impl AcousticScene {
         }
     }
 
-    /// Returns whether a receiver is in range, and its head known.
+    /// Checks that a receiver is in range, and its head known.
     pub(crate) fn check_receiver(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
         receiver.check()?;
         match receiver.kind {
@@ -355,7 +355,7 @@ impl AcousticScene {
         }
     }
 
-    /// The impulse responses up to the microphones, without their laws; `noise` keys the random arrivals at a receiver. Shape
+    /// Returns the impulse responses before microphone laws; `noise` keys the random arrivals at a receiver. Shape
     /// (receiver,).
     pub(crate) fn arrivals(
         &self,
@@ -379,7 +379,7 @@ impl AcousticScene {
         }))
     }
 
-    /// The early paths of each microphone of an array; `None` where the centre's serve.
+    /// Returns the early paths of each microphone of an array; `None` where the centre's are used.
     pub(crate) fn early_of_microphones(
         &self,
         rays: &RayScene,
@@ -395,8 +395,8 @@ impl AcousticScene {
         Some(found.collect())
     }
 
-    /// Early paths that a listener knew, where source and receiver are now: the straight way or those around what hides it, and
-    /// `known` reflections that are still there.
+    /// Returns early paths at the present positions of source and receiver: the direct path or diffracted ones, and the
+    /// `known` reflections that still exist.
     pub(crate) fn follow(
         &self,
         rays: &RayScene,
@@ -409,7 +409,7 @@ impl AcousticScene {
         paths
     }
 
-    /// Paths as each channel of a receiver hears them. Shape (path, channel).
+    /// Returns the filters of paths at each channel of a receiver. Shape (path, channel).
     pub(crate) fn wavelets(
         &self,
         speed_m_s: f64,
@@ -428,7 +428,7 @@ impl AcousticScene {
         }
     }
 
-    /// A response without some of its echogram's `paths`, as they are followed. Shape (channel, sample), flat.
+    /// Returns a response without some of its echogram's `paths`, as tracked. Shape (channel, sample), flat.
     pub(crate) fn without(
         &self,
         response: &ImpulseResponse,
@@ -441,8 +441,8 @@ impl AcousticScene {
         samples
     }
 
-    /// The impulse response that belongs to an echogram, up to the microphones. `early`: the paths of each channel where they are
-    /// not the centre's.
+    /// Returns the impulse response of an echogram, before microphone laws. `early`: the paths of each channel where they
+    /// are not the centre's.
     pub(crate) fn arrive(
         &self,
         echogram: Echogram,
@@ -453,7 +453,7 @@ impl AcousticScene {
         self.arrive_with(CachedGains::default(), echogram, receiver, early, key)
     }
 
-    /// The same response for a receiver that has turned in its place and is otherwise the same; `key` as it was.
+    /// Returns the same response for a receiver that has rotated in place; `key` as before.
     pub(crate) fn turn(
         &self,
         response: &ImpulseResponse,
@@ -485,8 +485,8 @@ impl AcousticScene {
     }
 }
 
-/// The key of the random arrivals from one place to another: tails of places apart have nothing in common, and nobody who
-/// stands a hair elsewhere hears others.
+/// Returns the key of the random arrivals from one place to another: tails of separate places are uncorrelated, and tiny
+/// displacements do not change them.
 pub(crate) fn between(key: RandomKey, source: Vec3, receiver: Vec3) -> RandomKey {
     let places = source.to_array().into_iter().chain(receiver.to_array());
     let cell = |x: f32| (f64::from(x) / CELL_M + CELL_START).floor() as i64;

@@ -1,4 +1,4 @@
-//! A loop of sound to paint on: everything that is added wraps around its end.
+//! Builder of a loop of sound: everything that is added wraps around its end.
 
 use crate::fft::RealFft;
 use dwell_scene::interrupt;
@@ -6,18 +6,18 @@ use dwell_scene::random::RandomKey;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
-/// A tone that swells and fades.
+/// A tone with fade-in and fade-out.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tone {
     pub(super) start_s: f64,
     pub(super) duration_s: f64,
     pub(super) frequency_hz: f64,
     pub(super) amplitude: f64,
-    /// Time of the swelling and of the fading, s; both are raised cosines.
+    /// Duration of the fade-in and the fade-out, s; both are raised cosines.
     pub(super) edge_s: f64,
 }
 
-/// Between looks at whether the loop is still wanted.
+/// Samples between checks for cancellation.
 const SAMPLES_PER_CHECK: usize = 1 << 12;
 
 /// One loop.
@@ -66,7 +66,7 @@ impl LoopBuilder {
         });
     }
 
-    /// Adds a tone that never stops; its frequency is moved to the nearest that fits the loop.
+    /// Adds a continuous tone; its frequency is moved to the nearest that fits the loop.
     pub(super) fn drone(&mut self, frequency_hz: f64, amplitude: f64) {
         let loop_s = self.loop_s();
         let turns = (frequency_hz * loop_s).round().max(1.0);
@@ -89,10 +89,10 @@ impl LoopBuilder {
         });
     }
 
-    /// Periodic noise over the whole loop with root mean square 1: `gain(frequency in Hz)` shapes its amplitude.
+    /// Returns periodic noise over the whole loop with root mean square 1: `gain(frequency in Hz)` shapes its amplitude.
     pub(super) fn noise(&self, name: &str, gain: impl Fn(f64) -> f64) -> Vec<f64> {
         let length = self.samples.len();
-        // Lengths that are odd lose one sample, which is repeated: a loop that is 20 us off is not heard.
+        // Odd lengths lose one sample, which is repeated: 20 us in a loop are inaudible.
         let mut fft = RealFft::new(length - length % 2);
         let mut stream = self.key.child("noise").child(name).stream();
         let mut spectrum = vec![Complex::default(); fft.bins()];
@@ -147,7 +147,7 @@ impl LoopBuilder {
         }
     }
 
-    /// The loop with mean 0 and root mean square 1.
+    /// Returns the loop with mean 0 and root mean square 1.
     pub(super) fn normalized(self) -> Vec<f32> {
         let n = self.samples.len() as f64;
         let mean = self.samples.iter().sum::<f64>() / n;

@@ -1,7 +1,7 @@
-//! Sounds that things make: deterministic loops by name, at any rate.
+//! Signals of sound sources: deterministic loops by name, at any rate.
 //!
 //! Every signal repeats after its loop without a seam, and has a root mean square of 1 Pa over the loop at 1 m: the caller
-//! multiplies by [`pa_from_db_spl`](dwell_scene::units::pa_from_db_spl) of the source's level. Any sample can be asked for:
+//! multiplies by [`pa_from_db_spl`](dwell_scene::units::pa_from_db_spl) of the source's level. Any sample can be read:
 //! blocks of any size give the same signal.
 
 mod appliances;
@@ -28,24 +28,24 @@ pub struct SignalInfo {
     pub name: &'static str,
     /// Its sound in words.
     pub description: &'static str,
-    /// After how long it repeats, s.
+    /// Period, s.
     pub loop_s: f64,
-    /// A usual level at 1 m, dB SPL.
+    /// Typical level at 1 m, dB SPL.
     pub usual_level_db: f32,
     /// Source of that level.
     pub level_source: &'static str,
     paint: fn(&mut LoopBuilder),
 }
 
-/// All signals, by name.
+/// Returns all signals, by name.
 pub fn list() -> &'static [SignalInfo] {
     &table::ALL
 }
 
-/// Returns what is known about the signal called `name`.
+/// Returns the description of the signal called `name`.
 ///
 /// # Errors
-/// [`AcousticsError::UnknownSignal`] lists the names there are.
+/// [`AcousticsError::UnknownSignal`] lists the existing names.
 pub fn info(name: &str) -> Result<&'static SignalInfo, AcousticsError> {
     let found = list().iter().find(|signal| signal.name == name);
     found.ok_or_else(|| AcousticsError::UnknownSignal {
@@ -54,7 +54,7 @@ pub fn info(name: &str) -> Result<&'static SignalInfo, AcousticsError> {
     })
 }
 
-/// Refuses a rate that no sound is made for.
+/// Refuses an unsupported sample rate.
 pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
     let rate = f64::from(rate_hz);
     crate::error::range("signals", "rate_hz", rate, (1e3, 192e3), "1000 to 192000")
@@ -62,19 +62,19 @@ pub(crate) fn check_rate(rate_hz: u32) -> Result<(), AcousticsError> {
 
 type SharedLoop = Arc<OnceLock<Arc<[f32]>>>;
 
-/// Returns where a loop is, or will be.
+/// Returns the slot of a loop.
 fn made(info: &SignalInfo, rate_hz: u32) -> SharedLoop {
     static LOOPS: Mutex<BTreeMap<(&'static str, u32), SharedLoop>> = Mutex::new(BTreeMap::new());
     let mut loops = LOOPS.lock().unwrap_or_else(PoisonError::into_inner);
     loops.entry((info.name, rate_hz)).or_default().clone()
 }
 
-/// Returns whether a signal is known and has not been opened yet: opening it will take its time, up to a second.
+/// Returns whether a signal exists and has not been opened yet: opening it takes up to a second.
 pub fn is_to_be_made(name: &str, rate_hz: u32) -> bool {
     info(name).is_ok_and(|info| made(info, rate_hz).get().is_none())
 }
 
-/// Makes loops before somebody opens them, several at once; names that nobody knows are passed over.
+/// Makes loops before they are opened, several at once; unknown names are ignored.
 pub fn make(names: &[&str], rate_hz: u32, threads: Threads) {
     threads.map(names.len(), |k| Signal::open(names[k], rate_hz).is_ok());
 }
@@ -86,7 +86,7 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// The signal called `name` at `rate_hz` samples a second, 1,000 to 192,000. Loops are made once a process and rate, and shared.
+    /// Opens the signal called `name` at `rate_hz` samples a second, 1,000 to 192,000. Loops are made once a process and rate, and shared.
     ///
     /// # Errors
     /// [`AcousticsError::UnknownSignal`], [`AcousticsError::Range`] for the rate.
@@ -110,12 +110,12 @@ impl Signal {
         Self { samples }
     }
 
-    /// Samples of one loop, root mean square 1 Pa. Shape (sample,).
+    /// Returns the samples of one loop, root mean square 1 Pa. Shape (sample,).
     pub fn samples(&self) -> &[f32] {
         &self.samples
     }
 
-    /// Writes the samples from `start_sample` on, Pa at 1 m for a level of 94 dB SPL, over and over.
+    /// Writes the samples from `start_sample` on, Pa at 1 m for a level of 94 dB SPL, repeating the loop.
     pub fn read(&self, start_sample: u64, out: &mut [f32]) {
         let length = self.samples.len();
         let mut place = (start_sample % length as u64) as usize;
@@ -128,7 +128,7 @@ impl Signal {
         }
     }
 
-    /// Writes the samples from `start_sample` on as [`Signal::read`], once: behind the last is silence.
+    /// Writes the samples from `start_sample` on as [`Signal::read`], once: silence after the last.
     pub fn read_once(&self, start_sample: u64, out: &mut [f32]) {
         let length = self.samples.len();
         let start = usize::try_from(start_sample).map_or(length, |start| start.min(length));

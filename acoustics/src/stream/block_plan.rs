@@ -15,9 +15,9 @@ use glam::Vec3;
 
 /// Factor by which update distances are smaller for responses without gliding delays.
 const STIFF: f32 = 5.0;
-/// A source that begins so close to another, counted with the listener's way since, begins with its tail, m.
+/// Distance from another source, plus the listener's displacement since, within which a new source begins with its tail, m.
 const BESIDE_M: f64 = 2.0;
-/// Large parts that move less than this in a block stand still, m.
+/// Displacement in a block below which large parts count as still, m.
 const STILL_M: f32 = 5e-3;
 
 /// The plan of a source for one block.
@@ -27,22 +27,22 @@ pub(super) struct PlannedSource {
     pub(super) named: bool,
     /// Positions of source and receiver.
     pub(super) place: (Vec3, Pose),
-    /// The impulse response from now on, and the situation it belongs to; `None`: as before.
+    /// The new impulse response, and its situation; `None`: as before.
     pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
-    /// Early paths that are heard apart from the impulse response, where they are now; `None`: none are.
+    /// Early paths outside the impulse response, at their present positions; `None`: none are.
     pub(super) followed: Option<Vec<PropagationPath>>,
-    /// Since which block a new response waits for its turn.
+    /// The block since which a new response waits for its turn.
     pub(super) since: Option<u64>,
     /// The state of its partial trace.
     pub(super) job: PartialTrace,
 }
 
-/// A source that sounds or rings.
+/// A source that sounds or rings out.
 struct SoundingSource {
     id: u64,
-    /// `None` for what is no longer named.
+    /// `None` for a source that is no longer named.
     position: Option<Vec3>,
-    /// Its place among the sources, of which the loudest come first.
+    /// Its rank by loudness.
     rank: usize,
 }
 
@@ -56,7 +56,7 @@ pub(super) struct BlockContext<'a> {
 }
 
 impl Stream {
-    /// The sources that are heard in this block, by id, with new impulse responses where they need them and it is their turn.
+    /// Returns the sources of this block, by id, with new impulse responses where they need them and it is their turn.
     pub(super) fn plan(
         &self,
         rays: &RayScene,
@@ -66,11 +66,11 @@ impl Stream {
         report: &mut BlockReport,
     ) -> Result<Vec<PlannedSource>, AcousticsError> {
         let all = self.sounding(sources, report);
-        // The microphones of an array hear early paths of their own.
+        // The microphones of an array have their own early paths.
         let glides = self.config.moving_paths > 0 && receiver.microphone_positions().is_none();
         let distance_m = self.config.update_distance_m;
         let parts = self.poses(state);
-        // Nothing is remembered where all rays are traced anyway.
+        // Nothing is reused where all rays are traced anyway.
         let remembers = self.config.update_share < 1.0;
         let around = BlockContext {
             rays,
@@ -101,7 +101,7 @@ impl Stream {
             let known = want.news.as_ref().or(heard);
             let elsewhere =
                 known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.place);
-            // What has to wait is heard on its straight ways and known reflections as they are now.
+            // A source that waits is rendered with its direct path and known reflections as they are now.
             let moved =
                 moved || elsewhere || (want.is_waiting && want.change == SituationChange::Moved);
             let followed = known.filter(|_| glides && moved).map(|(_, response)| {
@@ -122,7 +122,7 @@ impl Stream {
         Ok(planned.collect())
     }
 
-    /// Returns what has changed for a source; `None` for what was never heard.
+    /// Returns the change of a source's situation; `None` for a source that was never heard.
     fn want(
         &self,
         around: &BlockContext<'_>,
@@ -135,7 +135,7 @@ impl Stream {
         let voice = at.ok().map(|at| &self.voices[at]);
         let heard = voice.and_then(|voice| voice.heard.as_ref());
         let named = one.position.is_some();
-        // What is no longer named rings out where it was last.
+        // A source that is no longer named rings out at its last position.
         let last = voice.and_then(|voice| voice.moved.last);
         let position = one.position.or(last.map(|(source, _)| source))?;
         let receiver = around.receiver;
@@ -165,7 +165,7 @@ impl Stream {
             place: (position, receiver.pose),
             voice,
             change,
-            // When a door has come to rest, all rays tell what is heard now.
+            // When a door has come to rest, all rays are traced again.
             stale: heard.is_some_and(|(then, _)| then.rough && named && !around.passing),
             since: voice
                 .and_then(|voice| voice.waiting.since)
@@ -177,7 +177,7 @@ impl Stream {
         })
     }
 
-    /// The sources that sound or ring, by id.
+    /// Returns the sources that sound or ring out, by id.
     fn sounding(
         &self,
         sources: &[ActiveSource<'_>],
@@ -224,7 +224,8 @@ impl Stream {
         all
     }
 
-    /// Returns what another source is heard as, close to where one begins and with nothing in between: a step sounds much like the last one.
+    /// Returns the response of another source close to the start of a new one, with nothing in between: a footstep sounds
+    /// much like the last one.
     pub(super) fn nearby_similar_source(
         &self,
         rays: &RayScene,

@@ -9,23 +9,22 @@ use serde::{Deserialize, Serialize};
 pub struct StreamConfig {
     /// Samples of a block; 16 to 65,536. At 16 kHz and 20 control steps a second: 800.
     pub block_samples: usize,
-    /// Source or listener must have moved this far for a new impulse response, m; 0 to 10. 0: whenever one moved at all.
+    /// Displacement of source or listener that requires a new impulse response, m; 0 to 10. 0: any.
     pub update_distance_m: f32,
-    /// The head must have turned this far for a new impulse response, rad; 0 to 3.2.
+    /// Rotation of the head that requires a new impulse response, rad; 0 to 3.2.
     pub update_angle_rad: f32,
-    /// A door or another large part must have moved this far, m (or turned as many rad); 0 to 10.
+    /// Displacement of a door or another large part that requires a new impulse response, m (or rotation, rad); 0 to 10.
     pub update_part_m: f32,
-    /// Early paths of a source whose delays glide while it or the listener moves: all straight ones, and reflections up to so many;
-    /// the others change with the impulse response. 0 (none) to 64. Microphone arrays have none.
+    /// Early paths of a source with gliding delays while it or the listener moves: all direct ones, and reflections up to
+    /// this many; the others change with the impulse response. 0 (none) to 64. Microphone arrays have none.
     pub moving_paths: usize,
-    /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is remembered,
-    /// unless these rays tell of another tail: then all are traced.
-    /// 0.001 to 1.
+    /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is
+    /// reused, unless these rays indicate another tail: then all are traced. 0.001 to 1.
     pub update_share: f64,
-    /// Rays that new impulse responses may take in one block, 0 to 10,000,000; what does not fit has its turn in later blocks, and is
-    /// heard as before until then. Looking for a response's early paths and making it count as rays, too. 0: as many as they need.
+    /// Rays of new impulse responses in one block, 0 to 10,000,000; updates beyond wait for later blocks, and the old
+    /// responses are used until then. Early paths and synthesis of a response count as rays, too. 0: as many as they need.
     pub update_rays: usize,
-    /// Sources that are followed at once; the first in the list win. 1 to 1,000.
+    /// Most sources at once; the first in the list win. 1 to 1,000.
     pub max_sources: usize,
 }
 
@@ -37,7 +36,7 @@ impl Default for StreamConfig {
 }
 
 impl StreamConfig {
-    /// For listening: 12 early paths glide, the rest follows movements of 35 cm and 2 degrees.
+    /// Settings for listening: 12 early paths glide, the rest is updated every 35 cm and 2 degrees.
     pub fn full() -> Self {
         Self {
             block_samples: 800,
@@ -51,7 +50,7 @@ impl StreamConfig {
         }
     }
 
-    /// For agents that learn: 6 early paths glide, the rest follows movements of 50 cm and 10 degrees.
+    /// Settings for learning agents: 6 early paths glide, the rest is updated every 50 cm and 10 degrees.
     pub fn rl() -> Self {
         Self {
             update_distance_m: 0.5,
@@ -65,7 +64,7 @@ impl StreamConfig {
         }
     }
 
-    /// For comparing others with: every early path glides, and everything follows movements of 5 cm and 2 degrees with all its rays.
+    /// Reference settings for comparisons: every early path glides, and everything is updated every 5 cm and 2 degrees with all its rays.
     pub fn reference() -> Self {
         Self {
             update_distance_m: 0.05,
@@ -76,7 +75,7 @@ impl StreamConfig {
         }
     }
 
-    /// The settings called `name`: one of [`AcousticConfig::PRESETS`](crate::AcousticConfig::PRESETS).
+    /// Returns the settings called `name`: one of [`AcousticConfig::PRESETS`](crate::AcousticConfig::PRESETS).
     pub fn preset(name: &str) -> Option<Self> {
         match name {
             "full" => Some(Self::full()),

@@ -1,4 +1,4 @@
-//! Convolution block by block: uniformly partitioned overlap-save.
+//! Block convolution: uniformly partitioned overlap-save.
 
 use crate::fft::RealFft;
 use realfft::num_complex::Complex;
@@ -54,7 +54,7 @@ impl ConvolverInput {
         }
     }
 
-    /// An input that has heard `history`.
+    /// An input with the given `history`.
     pub(super) fn restore(fft: &mut RealFft, history: &[f32], partitions: usize) -> Self {
         let block = fft.len() / 2;
         let mut input = Self::new(block, partitions);
@@ -73,12 +73,12 @@ impl ConvolverInput {
         &self.history
     }
 
-    /// Returns whether all that a filter can still reach is zero.
+    /// Returns whether all samples that a filter can still reach are zero.
     pub(super) fn is_silent(&self) -> bool {
         self.spectra.iter().all(Option::is_none)
     }
 
-    /// Takes the next block.
+    /// Adds the next block.
     pub(super) fn push(&mut self, fft: &mut RealFft, block: &[f32]) {
         let size = block.len();
         self.history.copy_within(size.., 0);
@@ -88,7 +88,7 @@ impl ConvolverInput {
         self.spectra[self.newest] = transform(fft, &self.history[end - 2 * size..]);
     }
 
-    /// The newest block of the convolution with `filter`. `out`: shape (channel, sample), flat; overwritten.
+    /// Writes the newest block of the convolution with `filter`. `out`: shape (channel, sample), flat; overwritten.
     pub(super) fn convolve(&self, fft: &mut RealFft, filter: &PartitionedFilter, out: &mut [f32]) {
         let block = fft.len() / 2;
         let mut sum = vec![Complex::default(); fft.bins()];

@@ -8,15 +8,15 @@
 use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 use std::sync::LazyLock;
 
-/// Taps on either side of a place between samples, at most.
+/// Most taps on either side of a point between samples.
 const HALF: usize = 16;
 const TAPS: usize = 2 * HALF;
-/// Places between two samples in the tables; between them weights are interpolated.
+/// Tabulated points between two samples; between them weights are interpolated.
 const PHASES: usize = 128;
 /// Samples that are filtered side by side.
 const LANES: usize = 64;
 
-/// The passage of what a source has played that a channel hears in one block.
+/// The segment of a source's history that a channel hears in one block.
 pub(super) struct DelayedSegment<'a> {
     history: &'a [f32],
     size: usize,
@@ -28,10 +28,10 @@ pub(super) struct DelayedSegment<'a> {
 }
 
 impl<'a> DelayedSegment<'a> {
-    /// `history`: its last `size` samples are the block's. `delays`: before the block's first sample and at its last one; at least 1
-    /// sample.
+    /// `history`: its last `size` samples are the block's. `delays`: before the block's first sample and at its last one;
+    /// at least 1 sample.
     pub(super) fn new(history: &'a [f32], size: usize, delays: (f64, f64)) -> Self {
-        // What is older than the history is silent, however old.
+        // Samples older than the history are silent, however old.
         let oldest = (history.len() + TAPS) as f64;
         let mut passage = Self {
             history,
@@ -47,7 +47,7 @@ impl<'a> DelayedSegment<'a> {
         passage
     }
 
-    /// Returns where in the history sample `k` of the block is heard.
+    /// Returns the position in the history at which sample `k` of the block is read.
     #[inline(always)]
     fn place(&self, k: usize) -> f64 {
         let (from, to) = self.delays;
@@ -55,7 +55,7 @@ impl<'a> DelayedSegment<'a> {
         (self.history.len() - self.size + k) as f64 - (from + (to - from) * way)
     }
 
-    /// The passage as a filter makes it. `response`: shape (tap,).
+    /// Returns the filtered segment. `response`: shape (tap,).
     pub(super) fn filtered(&self, response: &[f32], amplitude: f32) -> Vec<f32> {
         let mut filtered = vec![0.0; self.count.next_multiple_of(LANES)];
         let met = self.met(response.len(), filtered.len());
@@ -68,8 +68,8 @@ impl<'a> DelayedSegment<'a> {
         filtered
     }
 
-    /// Returns what a filter of `taps` meets for the first `count` samples of the passage, and as many samples before them; silence where there
-    /// is no history.
+    /// Returns the input of a filter of `taps` for the first `count` samples of the segment, and as many samples before
+    /// them; silence where there is no history.
     fn met(&self, taps: usize, count: usize) -> Vec<f32> {
         let mut met = vec![0.0; taps + count];
         let (first, length) = (self.first - taps as i64, self.history.len() as i64);
@@ -84,7 +84,7 @@ impl<'a> DelayedSegment<'a> {
         met
     }
 
-    /// Adds to `out`, shape (sample,), what is heard as one filtered passage fades into another. `fade`: the weight of the new. Shape
+    /// Adds to `out`, shape (sample,), the crossfade of two filtered segments. `fade`: the weight of the new. Shape
     /// (sample,).
     pub(super) fn add(
         &self,
@@ -103,7 +103,7 @@ impl<'a> DelayedSegment<'a> {
     }
 }
 
-/// Convolves.
+/// A convolution kernel.
 struct ConvolutionKernel<'a> {
     /// As many samples before those of `out` as there are taps, and then as many as `out` has.
     met: &'a [f32],
@@ -136,7 +136,7 @@ impl SimdKernel for ConvolutionKernel<'_> {
     }
 }
 
-/// Reads between samples.
+/// Reads a segment between samples.
 struct SegmentReader<'a> {
     passage: &'a DelayedSegment<'a>,
     old: Option<&'a [f32]>,
@@ -173,7 +173,7 @@ impl SimdKernel for SegmentReader<'_> {
 /// Weights for every half length 1, 2, 4, 8, 16; 0 beyond it. Shape (half, phase).
 type InterpolationTables = [[[f32; TAPS]; PHASES + 1]; 1 + HALF.trailing_zeros() as usize];
 
-/// Weights of a windowed sinc at places between samples.
+/// Weights of a windowed sinc at points between samples.
 static TABLES: LazyLock<Box<InterpolationTables>> = LazyLock::new(|| {
     let mut tables = Box::new([[[0.0; TAPS]; PHASES + 1]; _]);
     for (power, table) in tables.iter_mut().enumerate() {
@@ -208,9 +208,9 @@ fn weights(half: usize, fraction: f64) -> [f32; TAPS] {
     values.map(|value| (value / sum) as f32)
 }
 
-/// The weights of the samples around a place, from [`HALF`] - 1 before the one below it on.
+/// Returns the weights of the samples around a point, from [`HALF`] - 1 before the one below it on.
 ///
-/// `fraction`: how far above that one the place is, 0 to 1. `ahead`: samples after that one that there are, at least 1.
+/// `fraction`: offset of the point above that sample, 0 to 1. `ahead`: number of existing samples after that one, at least 1.
 #[inline(always)]
 fn taps(tables: &InterpolationTables, fraction: f64, ahead: usize) -> [f32; TAPS] {
     let table = &tables[ahead.min(HALF).ilog2() as usize];
@@ -225,14 +225,14 @@ fn taps(tables: &InterpolationTables, fraction: f64, ahead: usize) -> [f32; TAPS
     taps
 }
 
-/// The samples from `start` on; silence where there are none.
+/// Returns the samples from `start` on; silence where there are none.
 #[inline(always)]
 fn around(samples: Option<&[f32]>, start: usize) -> &[f32; TAPS] {
     let here = samples.and_then(|samples| samples.get(start..)?.first_chunk());
     here.unwrap_or(&[0.0; TAPS])
 }
 
-/// The sum by halves, which vector instructions can do.
+/// Returns the sum by halves, which vector instructions can do.
 #[inline(always)]
 fn sum(mut values: [f32; TAPS]) -> f32 {
     let mut half = TAPS / 2;
@@ -250,7 +250,7 @@ mod tests {
     use super::*;
     use dwell_scene::random::RandomKey;
 
-    /// A filter and a delay that stands still are a convolution; all instruction levels give its bits.
+    /// A constant filter and delay are a convolution; all instruction levels give its bits.
     #[test]
     fn all_instruction_levels_give_the_same_bits() {
         let mut stream = RandomKey::root(8).stream();

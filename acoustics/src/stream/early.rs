@@ -1,24 +1,24 @@
-//! Early paths that are followed while source or listener move: delays that glide, so that pitch shifts as it should.
+//! Tracked early paths while source or listener move: gliding delays, which give the Doppler shift.
 
 use super::delay_line::DelayedSegment;
 use crate::echogram::PropagationPath;
 use crate::synthesis::{Wavelet, strongest};
 use serde::{Deserialize, Serialize};
 
-/// Delays that change by more than this fraction of the time do not glide: an eighth of the speed of sound.
+/// Largest change of a gliding delay, as a fraction of the time: an eighth of the speed of sound.
 const FASTEST: f64 = 0.125;
-/// Two paths bend around one edge when their bends are this close, m: a bend slides along its edge as the listener walks.
+/// Distance of bends within which two paths bend around one edge, m: a bend slides along its edge as the listener walks.
 const SAME_EDGE_M: f32 = 0.4;
 
 /// A path at the end of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrackedPath {
     pub(super) path: PropagationPath,
-    /// As each channel hears it. Shape (channel,).
+    /// Its filter at each channel. Shape (channel,).
     pub(super) wavelets: Vec<Wavelet>,
 }
 
-/// Returns how unlike two paths are, before and after a movement: how far their bends have slid, m; nothing where they are not one.
+/// Returns the distance that the bends of a path have slid in a movement, m; `None` where two paths are not the same.
 fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
     if a.planes != b.planes || a.bends.len() != b.bends.len() {
         return None;
@@ -28,7 +28,7 @@ fn slid_m(a: &PropagationPath, b: &PropagationPath) -> Option<f32> {
     (slid_m < SAME_EDGE_M).then_some(slid_m)
 }
 
-/// The paths of a response that are followed: all straight ways, then the strongest reflections up to `most` in all.
+/// Returns the tracked paths of a response: all direct ones, then the strongest reflections up to `most` in all.
 pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationPath> {
     let (mut chosen, mut others): (Vec<&PropagationPath>, Vec<&PropagationPath>) = strongest(paths)
         .into_iter()
@@ -40,7 +40,7 @@ pub(super) fn choose(paths: &[PropagationPath], most: usize) -> Vec<PropagationP
     chosen.into_iter().cloned().collect()
 }
 
-/// Moves the paths of a source for one block.
+/// The movement of a source's paths over one block.
 pub(super) struct DelayGlide<'a> {
     /// Past samples of the source; the last ones are the block's.
     pub(super) history: &'a [f32],
@@ -50,10 +50,10 @@ pub(super) struct DelayGlide<'a> {
 }
 
 impl DelayGlide<'_> {
-    /// Adds to `out` what is heard over `old` paths as they become `new` ones. `out`: shape (channel, sample), flat.
+    /// Adds the output of `old` paths as they become `new` ones to `out`. `out`: shape (channel, sample), flat.
     ///
-    /// A path's delay goes from one block's end to the next's in a straight line, its filter is crossfaded; a path that is only
-    /// in one of the two fades.
+    /// A path's delay changes linearly from one block's end to the next's, its filter is crossfaded; a path that is only in
+    /// one of the two fades.
     pub(super) fn add(&self, old: &[TrackedPath], new: &[TrackedPath], out: &mut [f32]) {
         let size = self.fade.len();
         let mut left: Vec<&TrackedPath> = old.iter().collect();
@@ -80,12 +80,12 @@ impl DelayGlide<'_> {
         if let (Some(a), Some(b)) = (old, new)
             && (delay(a) - delay(b)).abs() > FASTEST * size as f64
         {
-            // Nobody walks so fast: whoever is elsewhere at once hears no glide.
+            // No listener walks so fast: a jump has no glide.
             self.channel(Some(a), None, out);
             self.channel(None, Some(b), out);
             return;
         }
-        // Nothing of the future is known: what would ring before the newest sample is left out.
+        // The future is unknown: ringing before the newest sample is left out.
         let early = |wavelet: &Wavelet| (wavelet.lead as f64 + 1.0 - delay(wavelet)).ceil();
         let skip = [old, new].into_iter().flatten().map(early);
         let skip = skip.fold(0.0, f64::max) as usize;
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// A gliding delay resamples: a tone comes out as the tone at the moment it was played, within -70 dB.
+    /// A gliding delay resamples: a tone comes out as the tone at the time it was emitted, within -70 dB.
     #[test]
     fn a_gliding_delay_resamples() {
         let (rate_hz, size) = (16_000.0, 800);
@@ -167,7 +167,7 @@ mod tests {
         }
     }
 
-    /// Ears ring before their delay. Closer than that there is no time to, and the pulse still comes when it should.
+    /// Ears ring before their delay. Closer than that there is no time for it, and the pulse still comes at the right time.
     #[test]
     fn what_rings_early_is_left_out_where_it_would_be_of_the_future() {
         let mut history = vec![0.0; 300];
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    /// Two ways around one corner, and then one: every old way is heard once and ends.
+    /// Two paths around one corner, and then one: every old path is rendered once and ends.
     #[test]
     fn each_path_goes_on_as_one() {
         let history = vec![1.0; 300];

@@ -1,4 +1,4 @@
-//! Sound in step with a world: blocks of pressure at one receiver while sources, listener and doors move.
+//! Streams: sound in step with a world, as blocks of pressure at one receiver while sources, listener and doors move.
 
 mod block_plan;
 mod config;
@@ -32,14 +32,14 @@ use source_state::{ListeningSituation, SourceState};
 use update_queue::PartialTrace;
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Parts whose box is smaller than this from corner to corner do not change what is heard, m.
+/// Size from corner to corner below which parts do not affect sound, m.
 const LARGE_PART_M: f32 = 0.7;
 const VERSION: u32 = 9;
 
 /// A source that sounds during a block.
 #[derive(Clone, Copy, Debug)]
 pub struct ActiveSource<'a> {
-    /// Tells sources apart from block to block.
+    /// Identifies the source from block to block.
     pub id: u64,
     /// Its position at the end of the block, m.
     pub position: Vec3,
@@ -50,19 +50,19 @@ pub struct ActiveSource<'a> {
 /// The cost of a block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BlockReport {
-    /// Impulse responses for which rays were traced.
+    /// Number of impulse responses for which rays were traced.
     pub traced: usize,
-    /// These rays.
+    /// Number of these rays.
     pub rays: usize,
-    /// Sources whose new impulse responses wait for their turn ([`StreamConfig::update_rays`]).
+    /// Number of sources whose new impulse responses wait for their turn ([`StreamConfig::update_rays`]).
     pub waiting: usize,
-    /// Impulse responses that were only turned.
+    /// Number of impulse responses that were only rotated.
     pub turned: usize,
-    /// Early paths that were followed.
+    /// Number of tracked early paths.
     pub followed: usize,
-    /// Sources that sounded or still rang.
+    /// Number of sources that sounded or rang out.
     pub heard: usize,
-    /// Sources that were left out because there are more than [`StreamConfig::max_sources`].
+    /// Number of sources beyond [`StreamConfig::max_sources`].
     pub left_out: usize,
 }
 
@@ -104,7 +104,7 @@ struct StreamSnapshot {
 }
 
 impl Stream {
-    /// A silent stream. `key` names what is random in it: the tails' details and microphones' noise.
+    /// A silent stream. `key`: the random key of the tails' details and microphones' noise.
     ///
     /// # Errors
     /// [`AcousticsError::Range`] for a setting out of range.
@@ -140,29 +140,29 @@ impl Stream {
         })
     }
 
-    /// The same stream in a place whose own sounds `room` names: streams that begin together hear one background noise.
+    /// Returns the same stream in a place with the random key `room`: streams that begin together share one background noise.
     #[must_use]
     pub fn in_room(self, room: RandomKey) -> Self {
         Self { room, ..self }
     }
 
-    /// The scene that is heard.
+    /// Returns the scene.
     pub fn scene(&self) -> &AcousticScene {
         &self.scene
     }
 
-    /// The settings.
+    /// Returns the settings.
     pub fn config(&self) -> &StreamConfig {
         &self.config
     }
 
-    /// Blocks so far.
+    /// Returns the number of blocks so far.
     pub fn blocks(&self) -> u64 {
         self.block
     }
 
-    /// Returns how each source is heard now, as energies, by its id: what an agent that needs no waveform observes. Early paths that are
-    /// followed stand where they are now, the others and the tail where they were last traced.
+    /// Returns the present energies of each source, by its id, for agents that observe no waveform. Tracked early paths are
+    /// at their present positions, the others and the tail at those of the last trace.
     pub fn echograms(&self) -> impl Iterator<Item = (u64, Echogram)> {
         let voices = self.voices.iter();
         voices.filter_map(|voice| {
@@ -179,7 +179,7 @@ impl Stream {
         })
     }
 
-    /// Silence, and block 0 again.
+    /// Resets the stream to silence and block 0.
     pub fn reset(&mut self) {
         self.voices.clear();
         self.parts.clear();
@@ -187,10 +187,10 @@ impl Stream {
         self.block = 0;
     }
 
-    /// Writes the next block of pressure at `receiver`, Pa, and applies the state's laws of microphones.
+    /// Writes the next block of pressure at `receiver`, Pa, and applies the state's microphone laws.
     ///
     /// `rays` and `state`: the world at the end of the block. `out`: shape (channel, sample), one channel after the other;
-    /// overwritten. A source's signals of equal id are added up.
+    /// overwritten. Signals of equal id are summed.
     ///
     /// # Errors
     /// [`AcousticsError::Buffer`] for signals that are not one block long or an `out` that is not one block for each channel;
@@ -216,7 +216,7 @@ impl Stream {
         self.scene.update(state);
         let receiver = &self.scene.effects().placed(receiver);
         let mut report = BlockReport::default();
-        // What can fail comes first, so that an error leaves the stream as it was.
+        // Fallible work comes first, so that an error leaves the stream as it was.
         let planned = self.plan(rays, state, sources, receiver, &mut report)?;
         out.fill(0.0);
         let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
@@ -239,7 +239,7 @@ impl Stream {
             });
             let voice = &mut self.voices[at];
             signal.fill(0.0);
-            // What was left out or is no longer named rings out, and gets no more to ring with.
+            // A source that was left out or is no longer named rings out without further input.
             let fed = sources.iter().filter(|source| named && source.id == id);
             for source in fed {
                 for (sum, x) in signal.iter_mut().zip(source.signal) {
@@ -253,7 +253,7 @@ impl Stream {
             };
             let channels_before = channels(&voice.heard);
             let before = voice.moved.followed.take();
-            // Other air or another microphone does not glide.
+            // Changes of air or microphone do not glide.
             let effects = |heard: &Option<(ListeningSituation, ImpulseResponse)>| {
                 heard.as_ref().map(|(situation, _)| situation.effects)
             };
@@ -324,7 +324,7 @@ impl Stream {
         Ok(report)
     }
 
-    /// Returns where the large parts are. Shape (large part,).
+    /// Returns the poses of the large parts. Shape (large part,).
     fn poses(&self, state: &State) -> Vec<Pose> {
         let parts = self.large_parts.iter();
         parts.map(|part| state.part_pose[*part]).collect()
@@ -344,7 +344,7 @@ impl Stream {
             .expect("a snapshot is plain data that postcard can always write to memory")
     }
 
-    /// Returns what the stream remembers, as bytes: with them an equal stream continues bit for bit.
+    /// Returns the stream's state as bytes: with them an equal stream continues bit for bit.
     pub fn snapshot(&self) -> Vec<u8> {
         let body = self.bytes();
         let mut bytes = xxh3_64(&body).to_le_bytes().to_vec();
@@ -352,11 +352,11 @@ impl Stream {
         bytes
     }
 
-    /// Remembers what [`Stream::snapshot`] wrote. The stream must have been made with the same scene, settings and key.
+    /// Restores the state from [`Stream::snapshot`]. The stream must have been made with the same scene, settings and key.
     ///
     /// # Errors
-    /// [`AcousticsError::Snapshot`] for damaged bytes, those of a stream with other blocks, and what no stream can have heard; the stream is
-    /// unchanged then.
+    /// [`AcousticsError::Snapshot`] for damaged bytes, those of a stream with other blocks, and states that no stream can
+    /// have; the stream is unchanged then.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), AcousticsError> {
         let refuse = |why: String| Err(AcousticsError::Snapshot(why));
         let Some((sum, body)) = bytes.split_first_chunk::<8>() else {
@@ -394,7 +394,7 @@ impl Stream {
         Ok(())
     }
 
-    /// A voice as it was remembered.
+    /// Returns a source from its stored state.
     fn voice(&mut self, memory: source_state::SourceMemory) -> SourceState {
         let mut voice = SourceState::restore(&mut self.fft, memory, self.partitions);
         let Some((situation, mut response)) = voice.heard.take() else {
@@ -413,18 +413,18 @@ impl Stream {
         voice
     }
 
-    /// Returns what is random in how a source is heard.
+    /// Returns the random key of a source.
     fn key_of(&self, source: u64) -> RandomKey {
         self.key.child("source").child(source)
     }
 
-    /// A number that changes with anything that will be heard of what was played so far.
+    /// Returns a hash of all that affects the future output.
     pub fn hash(&self) -> u64 {
         xxh3_64(&self.bytes())
     }
 }
 
-/// Returns what moves the early paths of a voice through its block.
+/// Returns the glide of a source's early paths through its block.
 fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a SourceState) -> DelayGlide<'a> {
     DelayGlide {
         history: voice.input.history(),
@@ -433,7 +433,7 @@ fn glide<'a>(scene: &AcousticScene, fade: &'a [f32], voice: &'a SourceState) -> 
     }
 }
 
-/// The samples of a response, without the paths that are followed when at `most` so many are.
+/// Returns the samples of a response without its tracked paths, at `most` this many.
 fn without_followed(
     scene: &AcousticScene,
     situation: &ListeningSituation,
@@ -464,7 +464,7 @@ fn add(out: &mut [f32], samples: &[f32]) {
     }
 }
 
-/// The weight of the new over one block: a raised cosine, so that neither level nor slope has a step. Shape (sample,).
+/// Returns the weights of the new over one block: a raised cosine, so that neither level nor slope has a step. Shape (sample,).
 fn fade(size: usize) -> Vec<f32> {
     (1..=size)
         .map(|k| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * k as f64 / size as f64))
@@ -472,7 +472,7 @@ fn fade(size: usize) -> Vec<f32> {
         .collect()
 }
 
-/// Adds a passage from `old` to `new` within each channel's block.
+/// Adds a crossfade from `old` to `new` within each channel's block.
 fn crossfade(out: &mut [f32], old: &[f32], new: &[f32], fade: &[f32]) {
     let weights = fade.iter().cycle();
     for ((y, weight), (a, b)) in out.iter_mut().zip(weights).zip(old.iter().zip(new)) {

@@ -12,24 +12,24 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 
-/// From where to where a stream hears.
+/// The situation of a response to be computed.
 pub(super) struct ResponseUpdater<'a> {
     pub(super) scene: &'a AcousticScene,
     pub(super) rays: &'a RayScene,
     pub(super) source: SoundSourcePose,
     pub(super) receiver: &'a Receiver,
-    /// Of the rays.
+    /// Random key of the rays.
     pub(super) key: RandomKey,
-    /// Of the tail's random arrivals.
+    /// Random key of the tail's arrivals.
     pub(super) noise: RandomKey,
     pub(super) threads: Threads,
 }
 
 impl ResponseUpdater<'_> {
-    /// A new response for a listener who heard `memory` not far from here: fewer rays, and the rest of the tail from memory. Where these
-    /// show that it is another tail, all rays if `all`, else these alone.
+    /// Returns a new response for a listener near the situation of `memory`: fewer rays, and the rest of the tail reused.
+    /// Where these indicate another tail, all rays if `all`, else these alone.
     ///
-    /// Beside it, whether the tail is known as well as it can be.
+    /// Also returns whether the tail is as accurate as it can be.
     ///
     /// # Errors
     /// As [`AcousticScene::echogram`].
@@ -49,7 +49,7 @@ impl ResponseUpdater<'_> {
         Ok((self.arrive(echogram), known))
     }
 
-    /// Returns what `count` rays tell of a response.
+    /// Returns a response traced with `count` rays.
     ///
     /// # Errors
     /// As [`AcousticScene::echogram`].
@@ -58,7 +58,7 @@ impl ResponseUpdater<'_> {
         Ok(self.arrive(echogram))
     }
 
-    /// Traces up to `most` rays more of a response; that response when all are traced, the same to the bit in whatever pieces.
+    /// Traces up to `most` more rays of a response; returns it when all are traced, the same to the bit in whatever pieces.
     ///
     /// # Errors
     /// As [`AcousticScene::echogram`].

@@ -8,10 +8,10 @@ use crate::echogram::{Echogram, EnergyHistogram, PropagationPath};
 use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
 
-/// The slowest and the fastest sound in any air that a scene can have, and room beside it, m/s.
+/// Range of the speed of sound in any air of a scene, with a margin, m/s.
 const SPEEDS_M_S: (f64, f64) = (200.0, 500.0);
 
-/// Checks the voices of a snapshot for a stream in `scene`.
+/// Checks the sources of a snapshot for a stream in `scene`.
 ///
 /// # Errors
 /// The violated condition, in words.
@@ -63,7 +63,7 @@ fn check_response(
     if found != channels {
         return Err(format!("{found} channels at a receiver of {channels}"));
     }
-    // Those of arrays are remembered, all others follow from energies.
+    // Samples of arrays are stored, all others follow from energies.
     let whole = response.samples.len().is_multiple_of(channels);
     let finite = response.samples.iter().all(|x| x.is_finite());
     require(whole && finite, "its response is none")?;
@@ -137,7 +137,7 @@ mod tests {
 
     const BLOCK: usize = 800;
 
-    /// A stream under the sky that has heard three blocks of two sources, the listener on the move.
+    /// A stream outdoors after three blocks of two sources, with a moving listener.
     fn stream() -> Stream {
         let house = Arc::new(House::new(HouseData::default()).unwrap());
         let config = AcousticConfig {
@@ -156,7 +156,7 @@ mod tests {
         stream
     }
 
-    /// The next block, the `k`th.
+    /// Renders the `k`th block.
     fn hear(stream: &mut Stream, k: usize) {
         let house = stream.scene().house().clone();
         let (rays, state) = (RayScene::new(house.clone()), State::new(&house));
@@ -176,7 +176,7 @@ mod tests {
         assert!(out.iter().all(|x| x.is_finite()));
     }
 
-    /// The snapshot with something changed, and a check sum that fits.
+    /// Returns the snapshot with a change, and a valid checksum.
     fn forged(stream: &Stream, change: impl FnOnce(&mut Vec<SourceMemory>)) -> Vec<u8> {
         let bytes = stream.snapshot();
         let mut snapshot: StreamSnapshot = postcard::from_bytes(&bytes[8..]).unwrap();
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(stream.hash(), hash);
     }
 
-    /// Finite lengths are as long as they like: what comes after the longest response is left out.
+    /// Finite lengths may be arbitrarily long: sound after the longest response is left out.
     #[test]
     fn early_paths_of_light_years_take_no_memory() {
         let mut stream = stream();

@@ -1,4 +1,4 @@
-//! One source in a stream: what it has played, and how it was last heard.
+//! The state of one source in a stream: its past samples, and its last response.
 
 use super::convolver::{ConvolverInput, PartitionedFilter};
 use super::early::TrackedPath;
@@ -26,14 +26,14 @@ pub(super) struct ListeningSituation {
     /// True for a tail that is not traced with all rays: large parts moved, so that it is partly that of their earlier
     /// poses, or only a few rays were traced yet.
     pub(super) rough: bool,
-    /// The tail's random arrivals: those between the places where it was first heard.
+    /// Random key of the tail's arrivals: that between the places where it was first heard.
     pub(super) noise: RandomKey,
 }
 
 /// The kind of change between two situations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum SituationChange {
-    /// Not so that it could be heard.
+    /// No audible change.
     None,
     /// The head turned.
     Turned,
@@ -49,11 +49,12 @@ pub(super) struct UpdateThreshold {
     pub(super) part_m: f32,
 }
 
-/// The tail that is heard beside a door changes with its way so many times faster than with one's own: a quarter of a turn changes all.
+/// Factor on a part's displacement: near a door the tail changes that much faster with it than with the listener's own; a
+/// quarter turn changes all.
 const PART_WAYS: f32 = 25.0;
 
-/// Returns how far the one that moved furthest did, m, or turned, rad: a part that turns by an angle moves its far edge about as many metres.
-/// Shape of both: (large part,).
+/// Returns the largest displacement, m, or rotation, rad, of the parts: a part that rotates by an angle moves its far edge
+/// by about as many metres. Shape of both: (large part,).
 pub(super) fn largest_movement(before: &[Pose], now: &[Pose]) -> f32 {
     let ways = before.iter().zip(now).filter(|(a, b)| a != b);
     ways.map(|(a, b)| {
@@ -69,7 +70,7 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
 }
 
 impl ListeningSituation {
-    /// Returns how far source and receiver are from where they are `now`, m; large parts' ways count [`PART_WAYS`] times.
+    /// Returns the displacement of source and receiver to `now`, m; displacements of large parts count [`PART_WAYS`] times.
     pub(super) fn moved_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
         let parts = PART_WAYS * largest_movement(&self.parts, &now.parts);
@@ -95,7 +96,7 @@ impl ListeningSituation {
             && there.change(now, threshold) == SituationChange::None
     }
 
-    /// Returns whether more has changed than where things are, so that nothing else may be heard any more.
+    /// Returns whether more than poses changed, so that the old response must not be used any more.
     pub(super) fn is_of_another_kind(&self, now: &Self) -> bool {
         self.receiver.kind != now.receiver.kind
             || self.overrides != now.overrides
@@ -103,7 +104,7 @@ impl ListeningSituation {
             || self.parts.len() != now.parts.len()
     }
 
-    /// As [`Self::change`], for a source that is over: what still rings is heard from where it was heard last.
+    /// As [`Self::change`], for a source that has ended: it rings out at its last position.
     pub(super) fn change_while_ringing(
         &self,
         now: &Self,
@@ -117,13 +118,13 @@ impl ListeningSituation {
 
     pub(super) fn change(&self, now: &Self, threshold: &UpdateThreshold) -> SituationChange {
         let far = |a: Vec3, b: Vec3, limit: f32| {
-            // Not "farther than", so that a limit of 0 asks for any movement at all.
+            // Not "farther than", so that a limit of 0 means any movement at all.
             a != b && a.distance(b) >= limit
         };
         let (here, there) = (&self.receiver, &now.receiver);
         let parts = self.parts.iter().zip(&now.parts);
         let mut parts = parts.map(|(a, b)| {
-            // A part that turns by an angle moves its far edge about as many metres.
+            // A part that rotates by an angle moves its far edge by about as many metres.
             far(a.position, b.position, threshold.part_m)
                 || (a.rotation != b.rotation && angle(a.rotation, b.rotation) >= threshold.part_m)
         });
@@ -156,7 +157,7 @@ pub(super) struct SourceMemory {
     pub(super) waiting: PendingUpdate,
 }
 
-/// A response that must be computed anew and has not had its turn, or not all of it.
+/// A response that must be computed anew and has not had its turn, or not fully.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PendingUpdate {
     /// The block in which it became due.
@@ -164,7 +165,7 @@ pub(super) struct PendingUpdate {
     pub(super) job: Option<Box<TraceJob>>,
 }
 
-/// The rays of a response that are traced piece by piece.
+/// The partial trace of a response.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TraceJob {
     pub(super) situation: ListeningSituation,
@@ -172,8 +173,8 @@ pub(super) struct TraceJob {
 }
 
 impl TraceJob {
-    /// Returns whether what it traces is still worth hearing. Parts that creep on meanwhile are heard by the rays that come later, and in its
-    /// next turn.
+    /// Returns whether its result will still be useful. The motion of slow parts meanwhile is covered by the later rays,
+    /// and by its next update.
     pub(super) fn is_still_useful(
         &self,
         now: &ListeningSituation,
@@ -221,7 +222,7 @@ impl SourceState {
 
     pub(super) fn memory(&self) -> SourceMemory {
         let heard = self.heard.as_ref().map(|(situation, response)| {
-            // Samples follow from the echogram, but for an array: each of its microphones has early paths of its own.
+            // Samples follow from the echogram, except for an array: each of its microphones has its own early paths.
             let samples = match situation.receiver.microphone_positions() {
                 Some(_) => response.samples.clone(),
                 None => Vec::new(),
@@ -254,7 +255,7 @@ impl SourceState {
         }
     }
 
-    /// Convolves from now on with `samples`, shape (channel, sample), flat.
+    /// Convolves with `samples` from now on, shape (channel, sample), flat.
     pub(super) fn filter_with(
         &mut self,
         fft: &mut RealFft,

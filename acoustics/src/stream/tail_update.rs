@@ -6,47 +6,47 @@ use crate::tail::spans;
 
 /// Distance over which early sound stays similar, m.
 const NEAR_M: f64 = 0.3;
-/// Late sound stays alike over this fraction of its way: it has mixed.
+/// Share of its path length over which late sound stays similar: it has mixed.
 const OF_THE_WAY: f64 = 0.3;
 
-/// The least weight of the new, in shares of its rays: what is remembered comes from many updates.
+/// Least weight of the new rays, in their share: the reused tail comes from many updates.
 const LEAST: f64 = 0.67;
 
 /// Time before which sound has not mixed: it changes with every step, s.
 const MIXED_S: f64 = 0.04;
 /// Variation of a mixed tail's level between places in one room, as a logarithm of energies: 0.5 dB.
 const PLACES: f64 = 0.115;
-/// A difference that neither chance nor place makes, in standard deviations of a normal distribution.
+/// Difference that exceeds chance and place, in standard deviations of a normal distribution.
 const SURPRISE: f64 = 5.0;
-/// From such a difference on, the new weighs more, the more the larger it is.
+/// Difference from which the weight of the new increases with it.
 const DOUBT: f64 = 3.0;
-/// Above this relative error, too few rays came to tell anything.
+/// Relative error above which there are too few rays for a comparison.
 const FEW: f64 = 0.5;
 
-/// The tail that was heard before, and what has changed since.
+/// The previous tail, and the changes since.
 pub(super) struct TailHistory<'a> {
     pub(super) before: &'a Echogram,
     /// Distance that source and receiver have moved since, m.
     pub(super) moved_m: f64,
     /// The share of all rays that is traced anew.
     pub(super) share: f64,
-    /// Tells updates apart.
+    /// Identifies the update.
     pub(super) update: u64,
 }
 
-/// Returns how many rays an update traces that remembers the rest.
+/// Returns the number of rays of an update that reuses the rest.
 pub(super) fn rays_of(config: &AcousticConfig, share: f64) -> usize {
     (config.rays as f64 * share).ceil() as usize
 }
 
 impl TailHistory<'_> {
-    /// Returns how many rays are traced anew.
+    /// Returns the number of rays that are traced anew.
     pub(super) fn rays(&self, config: &AcousticConfig) -> usize {
         rays_of(config, self.share)
     }
 
-    /// Returns how unlike `now` is to what was heard before, where it has mixed, as a deviate of a normal distribution: who walks through a
-    /// door hears another tail, however short the way.
+    /// Returns the difference of `now` from the previous tail, where it has mixed, as a deviate of a normal distribution: a
+    /// listener who walks through a door hears another tail, however short the distance.
     ///
     /// # Source
     /// The sum of squares of the spans' differences over their errors, made normal by E. B. Wilson, M. M. Hilferty, Proc. Natl. Acad.
@@ -75,13 +75,13 @@ impl TailHistory<'_> {
         (libm::cbrt(squares / count) - (1.0 - spread)) / spread.sqrt()
     }
 
-    /// Mixes what was heard before into `now`: exponential averaging whose weight of the new grows with the distance moved, and
+    /// Mixes the previous tail into `now`: exponential averaging whose weight of the new grows with the distance moved, and
     /// for early sound more than for late.
     ///
     /// # Source
     /// The idea is that of temporal coherence in C. Schissler, D. Manocha, ACM TOG 36(2), 16 (2017), section 4.
     ///
-    /// `false`: this is another tail, of which only all rays tell enough.
+    /// Returns `false` for another tail, which needs all rays.
     pub(super) fn recall(&self, now: &mut Echogram) -> bool {
         let before = &self.before.tail;
         if before.bin_s != now.tail.bin_s

@@ -1,10 +1,10 @@
-//! Whose impulse response is computed anew in a block, and whose later.
+//! Scheduling of the impulse responses that are computed in a block.
 //!
-//! A door that opens changes all that is heard at once. [`StreamConfig::update_rays`](super::StreamConfig::update_rays) bounds what a
-//! block computes. It counts rays, never time, so that streams stay equal to the bit on all machines. First come sources of which
-//! nothing is known yet, then what something has moved for, then tails that a few rays have told of; among equals what waits longest,
-//! and then the loudest. What waits is heard as before, on straight ways and reflections as they are now. Where all rays are needed,
-//! they are traced piece by piece, and heard together when the last is traced.
+//! A door that opens changes all responses at once. [`StreamConfig::update_rays`](super::StreamConfig::update_rays) bounds
+//! the work of a block. It counts rays, never time, so that streams stay equal to the bit on all machines. First come
+//! sources without a response, then those with moved positions or parts, then tails of few rays; among equals the longest
+//! waiting, and then the loudest. A waiting source keeps its response, with direct path and reflections as they are now.
+//! Where all rays are needed, they are traced piece by piece, and used together when the last is traced.
 
 use super::block_plan::BlockContext;
 use super::response_update::ResponseUpdater;
@@ -22,15 +22,15 @@ use glam::Vec3;
 const OF_A_RESPONSE: usize = 150;
 /// Cost of rotating a response, in rays.
 const OF_A_TURN: usize = 50;
-/// The fewest rays that tell anything of a tail.
+/// Fewest rays that give information on a tail.
 const FEWEST: usize = 64;
 
-/// A source in a block, and what it needs.
+/// A source in a block, and its needs.
 pub(super) struct UpdateRequest<'a> {
     pub(super) id: u64,
     /// True for a source that still sounds; else it only rings out.
     pub(super) named: bool,
-    /// Its place among the sources, of which the loudest come first.
+    /// Its rank by loudness.
     pub(super) rank: usize,
     /// Positions of source and receiver.
     pub(super) place: (Vec3, Pose),
@@ -57,7 +57,7 @@ pub(super) enum PartialTrace {
 /// The urgency of a new response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum UpdateUrgency {
-    /// There is none, or none that may still be heard.
+    /// No response, or none that may still be used.
     Immediate,
     Moved,
     Stale,
@@ -95,12 +95,12 @@ struct RayBudget {
 }
 
 impl RayBudget {
-    /// Returns whether there is room for `rays`.
+    /// Returns whether the budget has `rays` left.
     fn holds(&self, rays: usize) -> bool {
         self.left.is_none_or(|left| rays <= left)
     }
 
-    /// Returns whether it is the turn of what takes `rays`.
+    /// Returns whether work of `rays` may start.
     fn allows(&self, rays: usize) -> bool {
         !self.served || self.holds(rays)
     }
@@ -119,7 +119,7 @@ impl Stream {
         wants: &mut [UpdateRequest<'_>],
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
-        // Before the first block nothing is heard that could wait.
+        // Before the first block nothing can wait.
         let bounded = self.config.update_rays > 0 && self.block > 0;
         let mut budget = RayBudget {
             left: bounded.then_some(self.config.update_rays),
@@ -129,7 +129,7 @@ impl Stream {
         let mut order: Vec<&mut UpdateRequest<'_>> = Vec::new();
         for want in wants {
             match want.need() {
-                // Things are again as they were heard.
+                // The situation is again that of the response.
                 UpdateUrgency::None if want.started().is_some() => want.job = PartialTrace::None,
                 UpdateUrgency::None => {}
                 _ => order.push(want),
@@ -161,7 +161,7 @@ impl Stream {
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
         let (heard, threshold, passing) = (want.heard(), &around.threshold, around.passing);
-        // Where work is bounded, a place that is left again is not worth all rays.
+        // With bounded work, a place that the listener leaves again is not worth all rays.
         let stays = budget.left.is_none() || want.change == SituationChange::None;
         let settles = want.stale && stays && !budget.settled;
         budget.settled |= settles;
@@ -185,7 +185,7 @@ impl Stream {
             }
             _ => {}
         }
-        // A blow on the table is heard as the one before it was: other sources' impulse responses serve as well.
+        // An impact on the table uses the response of the one before it: other sources' impulse responses serve as well.
         let usable = |then: &ListeningSituation| {
             (passing || !then.rough) && then.change(&want.now, threshold) == SituationChange::None
         };
@@ -207,7 +207,7 @@ impl Stream {
         }
     }
 
-    /// Few rays, and the rest from memory.
+    /// Updates with few rays, and the rest reused.
     fn update_with_few_rays(
         &self,
         around: &BlockContext<'_>,
@@ -240,7 +240,7 @@ impl Stream {
         Ok(())
     }
 
-    /// All rays, or as many as it is the turn of.
+    /// Updates with all rays, or as many as the budget allows.
     fn update_fully(
         &self,
         around: &BlockContext<'_>,
@@ -274,7 +274,7 @@ impl Stream {
         }
         let mut job = match want.started() {
             Some(job) if job.is_still_useful(&want.now, &around.threshold) => Box::new(job.clone()),
-            // Somebody who walks on must not keep all others from their turns.
+            // A listener who walks on must not keep all other sources from their turns.
             Some(_) if is_waiting => {
                 (want.is_waiting, want.since, want.job) = (true, self.block, PartialTrace::None);
                 return Ok(());
@@ -284,7 +284,7 @@ impl Stream {
                 progress: TraceProgress::new(self.scene.config(), 1),
             }),
         };
-        // It is heard with the head as it is turned now.
+        // It is rendered with the head's present rotation.
         job.situation.receiver.pose.rotation = want.now.receiver.pose.rotation;
         let before = job.progress.rays();
         let way = self.way(around, want.id, &job.situation);

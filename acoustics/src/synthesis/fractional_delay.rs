@@ -1,4 +1,4 @@
-//! Delays between samples.
+//! Fractional delays.
 
 #![expect(
     clippy::inline_always,
@@ -10,7 +10,7 @@ use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 /// Half of the longest interpolation filter, samples.
 const HALF: usize = 40;
 
-/// Weights that move a sample by a fraction of one, and where the first stands.
+/// Weights that delay a sample by a fraction of one, and the position of the first.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FractionalDelay {
     weights: [f32; 2 * HALF],
@@ -20,9 +20,9 @@ pub(crate) struct FractionalDelay {
 }
 
 impl FractionalDelay {
-    /// A windowed sinc around `delay_samples`, at least 1; shorter where less than 40 samples lie before it.
+    /// A windowed sinc around `delay_samples`, at least 1; shorter where less than 40 samples precede it.
     pub(crate) fn new(delay_samples: f64) -> Self {
-        // What would come after years is as far off as what comes later still.
+        // Delays of years are cut off.
         let delay = delay_samples.clamp(1.0, 1e15);
         let whole = delay.floor();
         let fraction = delay - whole;
@@ -60,7 +60,7 @@ impl FractionalDelay {
         }
     }
 
-    /// Adds `response`, moved by the delay less `lead` samples and scaled, to `out`. What falls outside is dropped.
+    /// Adds `response`, delayed by the delay less `lead` samples and scaled, to `out`. Samples outside are dropped.
     pub(crate) fn add(&self, out: &mut [f32], response: &[f32], lead: usize, gain: f32) {
         SimdLevel::best().run(DelayedAdd {
             taps: self,
@@ -108,7 +108,7 @@ mod tests {
     use realfft::num_complex::Complex;
     use std::f64::consts::FRAC_PI_8;
 
-    /// Gain and delay at a frequency of what `FractionalDelay` makes of one sample.
+    /// Returns gain and delay at a frequency of a sample delayed by `FractionalDelay`.
     fn measure(delay: f64, omega: f64) -> (f64, f64) {
         let mut out = vec![0.0; 400];
         FractionalDelay::new(delay).add(&mut out, &[1.0], 0, 1.0);

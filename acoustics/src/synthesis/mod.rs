@@ -1,4 +1,4 @@
-//! From energies to pressure.
+//! Synthesis of pressure from energies.
 
 mod fractional_delay;
 mod noise_gains;
@@ -22,21 +22,21 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 pub(crate) use upper_air::UpperAir;
 use upper_air::UpperBands;
 
-/// Paths whose filters are computed, the strongest first; fainter ones beyond these are left out.
+/// Most paths with filters, the strongest first; fainter ones beyond these are left out.
 const MOST_PATHS: usize = 200;
 /// Remaining energy at which an impulse response may end: -70 dB.
 const END: f64 = 1e-7;
 /// Crossover width of the tail's bands, octaves: the least that rings no longer than a window of their energy.
 const OVERLAP: f64 = 0.5;
-/// Length of the filters of paths that move, s.
+/// Length of the filters of moving paths, s.
 const SHORT_S: f64 = 0.004;
 
-/// Taps of the filters of paths that move.
+/// Returns the taps of the filters of moving paths.
 fn short(rate_hz: f64) -> usize {
     (SHORT_S * rate_hz) as usize
 }
 
-/// Samples of the longest response.
+/// Returns the samples of the longest response.
 fn longest(config: &AcousticConfig) -> usize {
     ((config.max_duration_s + 0.05) * f64::from(config.rate_hz)) as usize
 }
@@ -69,11 +69,11 @@ pub(crate) struct HearingContext<'a> {
     pub(crate) air: Option<&'a UpperAir>,
 }
 
-/// Those in use: every house that sounds at one rate has the same.
+/// Synthesizers in use: scenes with one rate share them.
 static IN_USE: Mutex<Vec<Weak<Synthesizer>>> = Mutex::new(Vec::new());
 
 impl Synthesizer {
-    /// The one for these settings, made where none is in use.
+    /// Returns the synthesizer for these settings, made where none is in use.
     pub(crate) fn shared(config: &AcousticConfig) -> Arc<Self> {
         let in_use = || IN_USE.lock().unwrap_or_else(PoisonError::into_inner);
         let known = |all: &[Weak<Self>]| {
@@ -116,7 +116,7 @@ impl Synthesizer {
         }
     }
 
-    /// Returns what `config`'s air, of whose absorption there is `share`, takes above the highest band.
+    /// Returns the absorption above the highest band by `config`'s air, with this `share` of it.
     pub(crate) fn upper_air(&self, config: &AcousticConfig, share: f64) -> Option<UpperAir> {
         UpperAir::new(config, share, &self.filters)
     }
@@ -134,7 +134,7 @@ impl Synthesizer {
         })
     }
 
-    /// Samples that an echogram fills: until 1e-7 of its energy is left, at most the configured duration.
+    /// Returns the samples of an echogram: until 1e-7 of its energy is left, at most the configured duration.
     fn length(&self, echogram: &Echogram) -> usize {
         let sum = |energy: &[f64]| energy.iter().sum::<f64>();
         let total = sum(&echogram.total());
@@ -161,11 +161,11 @@ impl Synthesizer {
         length.min(self.longest)
     }
 
-    /// Pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
+    /// Returns the pressure at the receiver, Pa for an impulse of 1 Pa at 1 m. Shape (channel, sample), flat.
     ///
-    /// Sample 0 is the moment of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d. `early`: the
-    /// paths of each channel where they are not the centre's. `levels`: those of the same echogram and key for a receiver that was
-    /// turned another way, where they are known; afterwards they are.
+    /// Sample 0 is the time of the impulse; a free path of d metres arrives d/c later with the amplitude 1/d. `early`: the
+    /// paths of each channel where they are not the centre's. `levels`: those of the same echogram and key for a receiver
+    /// with another rotation, where they are known; afterwards they are.
     pub(crate) fn render(
         &self,
         echogram: &Echogram,
@@ -185,7 +185,7 @@ impl Synthesizer {
             return out;
         }
         let channels = ReceiverChannel::of(receiver, heads, echogram.speed_m_s);
-        // Nothing may be heard before the straight way is over.
+        // The tail may not begin before the direct sound.
         let radius_m = receiver.radius_m().max(EAR_LEAD_S * echogram.speed_m_s);
         let quiet_s = (echogram.direct_length_m - radius_m) / echogram.speed_m_s;
         let quiet = ((quiet_s * self.rate_hz).max(0.0) as usize).min(length);
@@ -204,7 +204,7 @@ impl Synthesizer {
         if !arrivals.is_empty() {
             let levels = levels.or_find(|| {
                 let mut paths = vec![0.0; length];
-                // Bands are known at their centres: levels are those before air takes more of what lies above.
+                // Bands are known at their centres: levels are those before absorption above.
                 let omni = PathListening {
                     channels: &[ReceiverChannel::Omni],
                     there: true,
@@ -236,7 +236,7 @@ impl Synthesizer {
         out
     }
 
-    /// Adds early paths as channels hear them to `out`, shape (channel, sample).
+    /// Adds early paths at each channel to `out`, shape (channel, sample).
     fn add_paths(
         &self,
         echogram: &Echogram,
@@ -255,7 +255,7 @@ impl Synthesizer {
         }
     }
 
-    /// A path as channels hear it. Shape (channel,).
+    /// Returns the filters of a path at each channel. Shape (channel,).
     fn heard<'a>(
         &'a self,
         fft: &'a mut RealFft,
@@ -269,7 +269,7 @@ impl Synthesizer {
             air,
         } = *listening;
         let air = air.map(|air| air.along(path.length_m));
-        // Most channels hear the same energies.
+        // Most channels have the same energies.
         let (mut last, mut found) = ([f32::NAN; BAND_COUNT], (Vec::new(), 0.0));
         channels.iter().map(move |channel| {
             let gain = channel.path_gain(path.arrival);
@@ -302,7 +302,7 @@ impl Synthesizer {
         })
     }
 
-    /// Paths as each channel of a receiver hears them, with filters of [`SHORT_S`]. Shape (path, channel).
+    /// Returns the filters of paths at each channel of a receiver, of length [`SHORT_S`]. Shape (path, channel).
     pub(crate) fn wavelets(
         &self,
         speed_m_s: f64,
@@ -333,7 +333,7 @@ impl Synthesizer {
         wavelet
     }
 
-    /// Takes wavelets out of a response again. Shapes: (path, channel) and (channel, sample), flat.
+    /// Subtracts wavelets from a response. Shapes: (path, channel) and (channel, sample), flat.
     pub(crate) fn subtract_wavelets(&self, wavelets: &[Vec<Wavelet>], samples: &mut [f32]) {
         let Some(channels) = wavelets.first().map(Vec::len) else {
             return;
@@ -348,7 +348,7 @@ impl Synthesizer {
     }
 }
 
-/// The channels that hear paths, in which air.
+/// The channels that receive paths, and the air.
 struct PathListening<'a> {
     channels: &'a [ReceiverChannel],
     /// True for paths that end at the channel itself rather than at the centre.
@@ -356,7 +356,7 @@ struct PathListening<'a> {
     air: Option<&'a UpperAir>,
 }
 
-/// The paths that are heard one by one, the strongest first where there are too many.
+/// Returns the paths that are rendered one by one, the strongest first where there are too many.
 pub(crate) fn strongest(paths: &[PropagationPath]) -> Vec<&PropagationPath> {
     let mut strongest: Vec<&PropagationPath> = paths.iter().collect();
     if strongest.len() > MOST_PATHS {
@@ -367,12 +367,12 @@ pub(crate) fn strongest(paths: &[PropagationPath]) -> Vec<&PropagationPath> {
     strongest
 }
 
-/// One path as one channel hears it.
+/// The filter of one path at one channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Wavelet {
     /// A short filter. Shape (tap,).
     pub(crate) response: Vec<f32>,
-    /// Samples of it that lie before the delay.
+    /// Samples of it before the delay.
     pub(crate) lead: usize,
     pub(crate) amplitude: f32,
     pub(crate) delay_s: f64,

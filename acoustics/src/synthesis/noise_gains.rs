@@ -1,16 +1,16 @@
-//! Noise whose energy is not left to chance.
+//! Gains that give noise a set energy.
 
 use crate::bands::{BAND_COUNT, FilterBank};
 use std::sync::Arc;
 
 /// Shortest window over which a band's energy is set, s.
 const SHORTEST_S: f64 = 0.01;
-/// A window holds at least this many periods of a band's lowest frequency, and up to [`LONG_S`] as many as [`GOOD_PERIODS`]: gains that
-/// change faster spread the band's noise over its neighbours.
+/// Least periods of a band's lowest frequency in a window, and up to [`LONG_S`] as many as [`GOOD_PERIODS`]: faster gains
+/// spread the band's noise over its neighbours.
 const PERIODS: f64 = 2.0;
 const GOOD_PERIODS: f64 = 3.0;
 const LONG_S: f64 = 0.016;
-/// Gains stay between 1 / MOST and MOST.
+/// Bound of the gains, 1 / MOST to MOST.
 const MOST: f32 = 4.0;
 
 /// Gains over time for one band.
@@ -21,19 +21,19 @@ pub(super) struct GainCurve {
     gain: Vec<f32>,
 }
 
-/// Energy over the hops of a band, each arrival spread as the band's filter spreads a pulse.
+/// Energy over the hops of a band, each arrival spread by the band's filter.
 pub(super) struct BandEnergy<'a> {
-    /// Samples of a hop, and of how many of them one is kept; see [`FilterBank::stride`].
+    /// Samples of a hop, and its decimation factor; see [`FilterBank::stride`].
     hop: usize,
     stride: usize,
     /// Energy of the filter's response to a pulse up to each sample; the middle one is the pulse's. Shape (odd,).
     up_to: &'a [f32],
-    /// Samples at the start in which nothing may be heard: what would fall there comes with the first that may.
+    /// Samples at the start that must be silent: energy there is moved to the first sample after them.
     quiet: usize,
     sums: Vec<f64>,
 }
 
-/// Samples between two gains of a band: a multiple of `stride`.
+/// Returns the samples between two gains of a band: a multiple of `stride`.
 fn hop(band: usize, rate_hz: f64, stride: usize) -> usize {
     let lowest_hz = crate::bands::exact_centre_hz(band) * std::f64::consts::FRAC_1_SQRT_2;
     let window_s = (GOOD_PERIODS / lowest_hz)
@@ -45,7 +45,7 @@ fn hop(band: usize, rate_hz: f64, stride: usize) -> usize {
 }
 
 impl<'a> BandEnergy<'a> {
-    /// No energy in `length` samples.
+    /// Zero energy in `length` samples.
     pub(super) fn new(
         bank: &'a FilterBank,
         band: usize,
@@ -89,7 +89,7 @@ impl<'a> BandEnergy<'a> {
 }
 
 impl GainCurve {
-    /// Noise stays as it is.
+    /// Gains of 1.
     pub(super) fn ones(wanted: &BandEnergy<'_>) -> Self {
         Self {
             per_sample: 1.0 / wanted.hop as f32,
@@ -99,10 +99,10 @@ impl GainCurve {
 
     /// Corrects the gains by those g with which paths + g noise has, in every window, the energy `wanted`.
     ///
-    /// Random arrivals carry their energy only on average, and all meet each other in or out of phase by chance: even the early
-    /// paths, since nothing is known of the phases of real reflections. Heard through a narrow band, an impulse response
-    /// would be up to decibels off what was traced. `paths`, `noise`: what the bank sifts into one band at the receiver's centre,
-    /// the noise with these gains. Shape (sample,).
+    /// Random arrivals carry their energy only on average, and interfere by chance: even with the early paths, since the
+    /// phases of real reflections are unknown. In a narrow band, an impulse response would be up to decibels off the traced
+    /// energy. `paths`, `noise`: the bank's output in one band at the receiver's centre, the noise with these gains. Shape
+    /// (sample,).
     pub(super) fn correct(&mut self, paths: &[f32], noise: &[f32], wanted: &BandEnergy<'_>) {
         let (kept, stride) = (wanted.hop / wanted.stride, wanted.stride as f64);
         let hops = wanted.sums.iter().enumerate().map(|(k, wanted)| {
@@ -131,7 +131,7 @@ impl GainCurve {
         }
     }
 
-    /// The gain at a sample.
+    /// Returns the gain at a sample.
     pub(super) fn at(&self, sample: usize) -> f32 {
         let place = sample as f32 * self.per_sample;
         let last = self.gain.len() - 1;
@@ -144,13 +144,13 @@ impl GainCurve {
 /// Gains of every band.
 pub(super) type BandGains = [GainCurve; BAND_COUNT];
 
-/// The levels that a response was made with, where they are known. They follow from its echogram, its key and the kind of its receiver, so
-/// that they count for nothing where responses are compared.
+/// The gains of a response, where they are known. They follow from its echogram, its key and the kind of its receiver, so
+/// that they are ignored where responses are compared.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct CachedGains(Option<Arc<BandGains>>);
 
 impl CachedGains {
-    /// The levels; `find` finds them where they are not known yet.
+    /// Returns the gains; `find` computes them where they are not known yet.
     pub(super) fn or_find(&mut self, find: impl FnOnce() -> BandGains) -> &BandGains {
         self.0.get_or_insert_with(|| Arc::new(find()))
     }
@@ -158,7 +158,7 @@ impl CachedGains {
 
 #[cfg(test)]
 impl CachedGains {
-    /// Returns whether both are the same piece of memory.
+    /// Returns whether both share memory.
     pub(crate) fn are_shared_with(&self, other: &Self) -> bool {
         let both = self.0.as_ref().zip(other.0.as_ref());
         both.is_some_and(|(a, b)| Arc::ptr_eq(a, b))
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
     use dwell_scene::random::RandomKey;
 
-    /// Noise that is twice too loud or too faint, and in phase with paths, gets the energy that is asked.
+    /// Noise that is twice too loud or too faint, and in phase with paths, gets the wanted energy.
     #[test]
     fn windows_get_the_energy_that_is_asked_for() {
         let (band, rate_hz, length, asked) = (5, 16_000.0, 4000, 0.15);

@@ -1,18 +1,17 @@
-//! Less of the rays' grain in the tail.
+//! Smoothing of the tail's histogram.
 
 use crate::bands::BAND_COUNT;
 use crate::echogram::EnergyHistogram;
 
-/// Half of a pass's window over the time since the impulse.
+/// Half of a pass's window, over the time since the impulse.
 const SPREAD: f64 = 0.04;
-/// Two passes make the window a triangle, whose ends are not heard.
+/// Two passes make the window a triangle, whose ends are inaudible.
 const PASSES: usize = 2;
 
-/// The bins with every energy averaged over a window that grows with time: 40 ms to either side at half a second. The sum over
-/// all bins stays as it was in every band.
+/// Returns the bins with every energy averaged over a window that grows with time: 40 ms to either side at half a second.
+/// The sum over all bins is unchanged in every band.
 ///
-/// Late bins hold the energy of few rays; heard as they are, they flutter. An exponential decay that is averaged so keeps its
-/// slope.
+/// Late bins hold the energy of few rays; unsmoothed, they flutter. An exponential decay keeps its slope.
 pub(super) fn smooth(histogram: &EnergyHistogram) -> Vec<[f64; BAND_COUNT]> {
     let mut smoothed = histogram.bins.clone();
     for _ in 0..PASSES {
@@ -35,7 +34,7 @@ fn total(bins: &[[f64; BAND_COUNT]]) -> [f64; BAND_COUNT] {
     })
 }
 
-/// Every bin becomes the mean of those around it.
+/// Replaces every bin by the mean of those around it.
 fn pass(bins: &[[f64; BAND_COUNT]]) -> Vec<[f64; BAND_COUNT]> {
     // Sums up to each bin, so that a window is one difference.
     let mut sums = vec![[0.0; BAND_COUNT]];

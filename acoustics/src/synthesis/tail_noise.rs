@@ -1,4 +1,4 @@
-//! The tail as pressure: random arrivals whose energies are the histogram's.
+//! The tail as pressure: random arrivals with the histogram's energies.
 
 use super::noise_gains::{BandEnergy, BandGains, GainCurve};
 use super::upper_air::{UpperAir, UpperBands};
@@ -11,36 +11,36 @@ use dwell_scene::random::{RandomKey, RandomStream};
 use glam::Vec3;
 use std::sync::LazyLock;
 
-/// Taps on either side of an arrival that falls between samples.
+/// Taps on either side of an arrival between samples.
 const HALF: i32 = 4;
 const TAPS: usize = 2 * HALF as usize;
-/// Some milliseconds of work.
+/// Arrivals in some milliseconds of work.
 const ARRIVALS_BETWEEN_POLLS: usize = 16_384;
-/// Places between two samples.
+/// Tabulated points between two samples.
 const PHASES: usize = 64;
 
 /// Rounds of measurement and gain correction for one microphone's noise: changes over time spread in frequency, and bands cross.
 const ROUNDS: usize = 2;
-/// The same of several channels. What is corrected is the centre's noise: where that is faint by chance the others' is not, so that
-/// every round costs them some of their coherence.
+/// The same for several channels. The correction is of the centre's noise: where that is faint by chance the others' is
+/// not, so that every round costs them some of their coherence.
 const ROUNDS_OF_MANY: usize = 1;
 
 /// The inputs of the tail's noise.
 pub(super) struct TailNoise<'a> {
     pub(super) echogram: &'a Echogram,
-    /// The tail's, as even over time as it is known. Shape (bin, band).
+    /// The smoothed energy of the tail. Shape (bin, band).
     pub(super) energy: Vec<[f64; BAND_COUNT]>,
     pub(super) rate_hz: f64,
     pub(super) arrivals_per_s: f64,
     pub(super) length: usize,
-    /// Samples at the start in which nothing may be heard.
+    /// Samples at the start that must be silent.
     pub(super) quiet: usize,
     pub(super) bank: &'a FilterBank,
     /// Absorption by air above the highest band, if any.
     pub(super) upper: Option<(&'a UpperBands, &'a UpperAir)>,
 }
 
-/// One wave of the tail.
+/// One arrival of the tail.
 pub(super) struct TailArrival {
     /// At the receiver's centre, s.
     time_s: f64,
@@ -54,8 +54,8 @@ type BandSignals = Vec<Vec<f32>>;
 impl TailNoise<'_> {
     /// Adds the tail to `out`, shape (channel, sample).
     ///
-    /// All channels hear the same arrivals, each with its own delay and gain, so that their coherence is right: that of
-    /// a diffuse field where sound comes from all sides.
+    /// All channels receive the same arrivals, each with its own delay and gain, so that their coherence is right: that of
+    /// a diffuse field where sound comes from all directions.
     ///
     /// # Source
     /// R. K. Cook et al., JASA 27, 1072 (1955).
@@ -90,7 +90,7 @@ impl TailNoise<'_> {
         }
     }
 
-    /// The bands together, with what air takes above the highest of them.
+    /// Returns the sum of the bands, with absorption above the highest of them.
     fn blend(&self, bus: &mut BandSignals) -> Vec<f32> {
         let Some((parts, air)) = self.upper else {
             return self.bank.blend(bus, self.length);
@@ -106,8 +106,8 @@ impl TailNoise<'_> {
         heard
     }
 
-    /// All waves of the tail, by bins: they come at random (Poisson), each with a sign and a direction drawn from those of its bin.
-    /// Within a bin all are equally strong, and their energies sum to the bin's in every band.
+    /// Returns all arrivals of the tail, by bins: they come at random (Poisson), each with a sign and a direction drawn
+    /// from those of its bin. Within a bin all are equally strong, and their energies sum to the bin's in every band.
     ///
     /// # Source
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
@@ -131,7 +131,7 @@ impl TailNoise<'_> {
             }
             let sampler =
                 sampler.get_or_insert_with(|| tail.directions_at(k).unwrap_or(&nowhere).sampler());
-            // Keyed by the bin, so that what is drawn in one bin does not depend on the others.
+            // Keyed by the bin, so that draws in one bin do not depend on the others.
             let mut stream = key.child(k as u64).stream();
             let count = poisson(self.arrivals_per_s * tail.bin_s, &mut stream).max(1);
             poll.turns(count);
@@ -151,8 +151,8 @@ impl TailNoise<'_> {
         arrivals
     }
 
-    /// The gains that give the noise, at the receiver's centre and beside the early paths, the energy it should have. `paths`: what
-    /// the centre hears of them, shape (sample,); `channels`: how many hear the noise.
+    /// Returns the gains that give the noise, at the receiver's centre and with the early paths, its wanted energy.
+    /// `paths`: the paths at the centre, shape (sample,); `channels`: their number.
     pub(super) fn levels(
         &self,
         arrivals: &[TailArrival],
@@ -185,7 +185,7 @@ impl TailNoise<'_> {
         levels
     }
 
-    /// The energy over time that a band should have.
+    /// Returns the wanted energy of a band over time.
     fn wanted(&self, band: usize) -> BandEnergy<'_> {
         let Self { bank, rate_hz, .. } = self;
         let mut wanted = BandEnergy::new(bank, band, *rate_hz, self.length, self.quiet);
@@ -204,7 +204,7 @@ impl TailNoise<'_> {
         wanted
     }
 
-    /// Returns how strong an arrival is in each band.
+    /// Returns the amplitude of an arrival in each band.
     fn pulse(&self, arrival: &TailArrival, levels: &BandGains) -> BandValues {
         let place = ((arrival.time_s * self.rate_hz) as usize).min(self.length - 1);
         std::array::from_fn(|band| arrival.amplitude[band] * levels[band].at(place))
@@ -262,10 +262,10 @@ fn weights(fraction: f32) -> [f32; TAPS] {
     weights.map(|weight| weight * scale)
 }
 
-/// Pulses that stand so many samples before the start, or more, fall outside with all their taps.
+/// Samples before the start from which on pulses fall outside with all their taps.
 const BEFORE: i64 = TAPS as i64;
 
-/// A pulse of energy 1 between two samples, within a 128th of its place.
+/// A pulse of energy 1 between two samples, within a 128th of its position.
 struct FractionalPulse {
     weights: &'static [f32; TAPS],
     first: i64,
@@ -273,7 +273,7 @@ struct FractionalPulse {
 
 impl FractionalPulse {
     fn new(place: f64) -> Self {
-        // To the nearest; a cast cuts off, and makes 0 of what is below.
+        // Rounds to the nearest; a cast truncates, and makes 0 of negative values.
         let place = ((place + BEFORE as f64) * PHASES as f64 + 0.5) as usize;
         Self {
             weights: &WEIGHTS[place % PHASES],
@@ -299,8 +299,7 @@ impl FractionalPulse {
     }
 }
 
-/// A count from the Poisson distribution with mean `mean`, at most a few hundred.
-///
+/// Draws from the Poisson distribution with mean `mean`, at most a few hundred.
 /// # Source
 /// D. E. Knuth, *The Art of Computer Programming* 2, section 3.4.1, in pieces of 16 so that nothing underflows.
 fn poisson(mean: f64, stream: &mut RandomStream) -> usize {

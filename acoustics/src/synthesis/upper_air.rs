@@ -12,15 +12,15 @@ use realfft::num_complex::Complex;
 
 /// Ringing of the parts' filters beyond this wraps around to the other end, s: they are a third of an octave wide or more.
 const WRAP_S: f64 = 0.02;
-/// Further ways leave nothing to hear, m.
+/// Path length beyond which nothing is audible, m.
 const FURTHEST_M: f64 = 1e6;
 
-/// Centre of the highest band, Hz.
+/// Returns the centre of the highest band, Hz.
 fn highest_hz() -> f64 {
     bands::exact_centre_hz(BAND_COUNT - 1)
 }
 
-/// The centres of the parts, Hz: thirds of an octave above that of the highest band as far as a sample rate reaches. Shape (part,).
+/// Returns the centres of the parts, Hz: thirds of an octave above that of the highest band as far as a sample rate reaches. Shape (part,).
 fn centres_hz(rate_hz: f64) -> impl Iterator<Item = f64> {
     let centres = (1..).map(|k| highest_hz() * libm::pow(10.0, 0.1 * f64::from(k)));
     centres.take_while(move |centre_hz| *centre_hz < 0.5 * rate_hz)
@@ -29,15 +29,15 @@ fn centres_hz(rate_hz: f64) -> impl Iterator<Item = f64> {
 /// Absorption by air above the highest band, in excess of that in the band.
 #[derive(Debug)]
 pub(crate) struct UpperAir {
-    /// Of 1 m, a logarithmic spectrum of minimum phase. Shape (bin,).
+    /// Logarithmic spectrum of minimum phase for 1 m. Shape (bin,).
     per_m: Vec<Complex<f32>>,
     /// Decay of the amplitude of each part, 1/m. Shape (part,).
     decay_per_m: Vec<f64>,
 }
 
 impl UpperAir {
-    /// The air of `config`, of whose absorption there is `share`; `None` where nothing is to be taken, or nothing above the highest band
-    /// to be heard.
+    /// The absorption of `config`'s air, with this `share` of it; `None` without absorption, or where nothing above the
+    /// highest band is audible.
     pub(super) fn new(config: &AcousticConfig, share: f64, filters: &PathFilters) -> Option<Self> {
         let rate_hz = f64::from(config.rate_hz);
         let centres_hz: Vec<f64> = centres_hz(rate_hz).collect();
@@ -61,13 +61,13 @@ impl UpperAir {
         })
     }
 
-    /// Returns what a path of `length_m` adds to the logarithm of its spectrum.
+    /// Returns the logarithmic spectrum for a path of `length_m`.
     pub(super) fn along(&self, length_m: f64) -> (&[Complex<f32>], f32) {
         (&self.per_m, length_m.min(FURTHEST_M) as f32)
     }
 }
 
-/// Filters that part what lies above the highest band, for one length of signals.
+/// Filters that split the range above the highest band, for signals of one length.
 #[derive(Debug)]
 pub(super) struct UpperBands {
     fft: RealFft,
@@ -85,7 +85,7 @@ impl UpperBands {
         for bin in 0..fft.bins() {
             poll.turn();
             let frequency_hz = bin as f64 * rate_hz / fft.len() as f64;
-            // In thirds of an octave above the highest band, to which belongs what is below.
+            // In thirds of an octave above the highest band, which includes everything below.
             let place = 10.0 * libm::log10(frequency_hz.max(1.0) / highest_hz());
             let place = place.clamp(0.0, count as f64);
             let below = place.floor();
@@ -104,7 +104,7 @@ impl UpperBands {
         Self { fft, shares }
     }
 
-    /// Lets the parts of `signal`, which begins with the impulse, fade as air has them.
+    /// Fades the parts of `signal`, which begins with the impulse, by absorption in air.
     pub(super) fn fade(&self, signal: &mut [f32], air: &UpperAir, metres_per_sample: f64) {
         let mut fft = self.fft.clone();
         let spectrum = fft.forward(signal);
@@ -134,7 +134,7 @@ impl UpperBands {
 mod tests {
     use super::*;
 
-    /// A tone of 16 kHz falls off over time as the standard says, one of 6 kHz not at all.
+    /// A tone of 16 kHz decays over time as the standard says, one of 6 kHz not at all.
     #[test]
     fn parts_fade_as_their_frequencies_do() {
         let config = AcousticConfig {

@@ -1,9 +1,9 @@
-//! Late sound: rays from the source whose energy is counted at the receivers.
+//! Late sound: rays from the source whose energy is detected at the receivers.
 //!
 //! Every path is counted by exactly one technique: purely specular paths up to the order of the images by
-//! [`images`](crate::image_sources); paths whose last reflection scatters by a shadow ray from that reflection to the receiver;
-//! all others (last reflection specular, after a scattering one or beyond the order of the images) where they cross a ball
-//! around the receiver.
+//! [`images`](crate::image_sources); paths whose last reflection scatters by a shadow ray from that reflection to the
+//! receiver; all others (last reflection specular, after a scattering one or beyond the order of the images) where they
+//! cross a detection sphere around the receiver.
 
 mod ray_tracer;
 mod receiver_volume;
@@ -27,21 +27,21 @@ use spans::SpanVariance;
 
 /// Rays that are traced and summed together, and split and end among themselves; a constant, so that sums do not depend on threads.
 const RAYS_PER_CHUNK: usize = 64;
-/// Chunks between two looks at the error.
+/// Chunks between tests of the error.
 const CHUNKS_PER_WAVE: usize = 32;
-/// Bytes of the sums that are held at once.
+/// Most bytes of the sums in memory at once.
 const MOST_BYTES: usize = 64 << 20;
-/// The chance that a ray that meets a wall also goes on behind it: over the hundred reflections of a ray less than 1, so that rays
-/// behind walls behind walls do not become ever more.
+/// Probability that a ray that hits a wall also goes on behind it: over the hundred reflections of a ray less than 1, so
+/// that rays behind several walls do not multiply.
 const THROUGH: f32 = 0.005;
-/// Rays that look around from a receiver, at most and at least.
+/// Rays that probe the surroundings of a receiver, at least and at most.
 const PROBES: (usize, usize) = (128, 512);
 /// Distance that a probe counts that leaves the house, m.
 const OPEN_AIR_M: f32 = 20.0;
-/// Time over which directions are summed, s.
+/// Interval over which directions are summed, s.
 const DIRECTION_S: f64 = 0.02;
 
-/// A rotation, uniform over all.
+/// Returns a uniformly distributed rotation.
 ///
 /// # Source
 /// K. Shoemake, Graphics Gems III (1992), p. 124.
@@ -53,7 +53,7 @@ fn random_rotation(stream: &mut RandomStream) -> Quat {
     Quat::from_xyzw(a * s1, a * c1, b * s2, b * c2).normalize()
 }
 
-/// The energy tail at one receiver, and how it was found.
+/// The energy tail at one receiver, and its statistics.
 pub(crate) struct LateReverberation {
     pub(crate) histogram: EnergyHistogram,
     pub(crate) statistics: RayStatistics,
@@ -99,7 +99,7 @@ impl ReceiverSums {
 /// The sums over the rays of a [`TailTrace`] so far.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TraceProgress {
-    /// Those that are done.
+    /// Number of chunks traced.
     chunks: usize,
     /// Set once the error is small enough.
     enough: bool,
@@ -111,7 +111,7 @@ pub(crate) struct TraceProgress {
 }
 
 impl TraceProgress {
-    /// No ray yet.
+    /// The state before the first ray.
     pub(crate) fn new(config: &AcousticConfig, receivers: usize) -> Self {
         let sums = ReceiverSums {
             energy: vec![[0.0; BAND_COUNT]; config.bin_count()],
@@ -129,12 +129,12 @@ impl TraceProgress {
         }
     }
 
-    /// Returns how many rays are done, in whole chunks.
+    /// Returns the number of traced rays, in whole chunks.
     pub(crate) fn rays(&self) -> usize {
         self.chunks.saturating_mul(RAYS_PER_CHUNK)
     }
 
-    /// Returns whether it can be that of one receiver: whatever a snapshot says, going on with it must not panic.
+    /// Returns whether it is valid for one receiver: continuing from a damaged snapshot must not panic.
     pub(crate) fn is_sound(&self, config: &AcousticConfig) -> bool {
         let energy = |e: &f64| e.is_finite() && *e >= 0.0;
         let sums = |sums: &ReceiverSums| {
@@ -156,29 +156,29 @@ impl TraceProgress {
     }
 }
 
-/// Bins that share one entry of directions.
+/// Returns the bins that share one entry of directions.
 fn bins_per_direction(config: &AcousticConfig) -> usize {
     ((DIRECTION_S / config.bin_s).round() as usize).max(1)
 }
 
-/// Entries of directions over time.
+/// Returns the entries of directions over time.
 fn times(config: &AcousticConfig) -> usize {
     config.bin_count().div_ceil(bins_per_direction(config))
 }
 
-/// The tails from one source to some receivers, all by the same rays.
+/// The tails from one source to some receivers, all with the same rays.
 pub(crate) struct TailTrace<'a> {
     data: &'a PropagationData,
     rays: &'a RayScene,
     source: &'a SoundSourcePose,
     listeners: Vec<TailReceiver>,
-    /// Rays.
+    /// Number of rays.
     count: usize,
     key: RandomKey,
     threads: Threads,
 }
 
-/// Traces the tails from `source` to `receivers`, all by the same `count` rays.
+/// Traces the tails from `source` to `receivers`, all with the same `count` rays.
 pub(crate) fn trace(
     data: &PropagationData,
     rays: &RayScene,
@@ -195,7 +195,7 @@ pub(crate) fn trace(
 }
 
 impl<'a> TailTrace<'a> {
-    /// Looks around from the receivers.
+    /// Probes the surroundings of the receivers.
     pub(crate) fn new(
         data: &'a PropagationData,
         rays: &'a RayScene,
@@ -222,8 +222,8 @@ impl<'a> TailTrace<'a> {
         }
     }
 
-    /// Traces up to `most` rays more, whole chunks of them and at least one: `true` when there are no more to trace. In whatever pieces
-    /// they are traced, they bring the same to the bit.
+    /// Traces up to `most` more rays, whole chunks of them and at least one: returns `true` when all are traced. The result
+    /// is the same to the bit in whatever pieces they are traced.
     ///
     /// # Source
     /// D. Schroeder, *Physically Based Real-Time Auralization of Interactive Virtual Environments*, RWTH Aachen (2011),
@@ -265,7 +265,7 @@ impl<'a> TailTrace<'a> {
         let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
         while progress.chunks < end && !progress.enough {
             let first = progress.chunks;
-            // Pieces of a wave differ with memory, what is done with them does not.
+            // The pieces of a wave depend on memory, the results do not.
             let wave_end = (first / CHUNKS_PER_WAVE + 1) * CHUNKS_PER_WAVE;
             let pieces = at_once.min(end.min(wave_end) - first);
             let done = self.threads.map(pieces, |k| {
@@ -291,7 +291,7 @@ impl<'a> TailTrace<'a> {
         progress.chunks >= chunks || progress.enough
     }
 
-    /// Returns what all rays so far tell. Shape (receiver,).
+    /// Returns the tails of all rays so far. Shape (receiver,).
     pub(crate) fn end(&self, progress: TraceProgress) -> Vec<LateReverberation> {
         let config = self.data.config();
         let speed = config.air.speed_of_sound_m_s();
@@ -311,7 +311,7 @@ impl<'a> TailTrace<'a> {
             let error_over_time = sums.scatter.relative_error(traced);
             let mut bins = sums.energy;
             for (k, bin) in bins.iter_mut().enumerate() {
-                // All that arrives in a bin has come about equally far, so that air can be applied at the end.
+                // All energy in a bin has travelled about equally far, so that absorption by air can be applied at the end.
                 let way_m = (k as f64 + 0.5) * config.bin_s * speed;
                 for (e, m) in bin.iter_mut().zip(decay) {
                     *e *= libm::exp(-m * way_m) / traced.max(1) as f64;
@@ -343,7 +343,7 @@ impl<'a> TailTrace<'a> {
 }
 
 impl ReceiverSums {
-    /// Adds what a chunk brought to receiver `receiver`.
+    /// Adds a chunk's energy at receiver `receiver`.
     fn add(&mut self, chunk: &RayChunk, receiver: usize, bins: usize, times: usize) {
         let mut all = [0.0; BAND_COUNT];
         let energy = &chunk.energy[receiver * bins..(receiver + 1) * bins];

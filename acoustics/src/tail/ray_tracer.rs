@@ -1,4 +1,4 @@
-//! One ray's way through the house.
+//! Tracing of rays through the house.
 
 use super::receiver_volume::TailReceiver;
 use super::{RAYS_PER_CHUNK, RayChunk};
@@ -19,17 +19,17 @@ use glam::{Quat, Vec3};
 use std::f32::consts::TAU;
 use std::ops::Range;
 
-/// Shadow rays shorter than this count as so long, m: it bounds the variance that a near surface brings.
+/// Least length of shadow rays, m: it bounds the variance of near surfaces.
 const NEAREST_M: f32 = 0.1;
-/// The chance that a surface looks for receivers behind walls.
+/// Probability that a surface sends shadow rays through walls.
 const LOOK_THROUGH: f32 = 0.1;
-/// Panels at least this large are walls and doors, m².
+/// Least area of walls and doors, m².
 const WALL_M2: f32 = 0.5;
-/// No ray is followed further than this many reflections.
+/// Most reflections of a ray.
 const MOST_REFLECTIONS: usize = 20_000;
-/// Less energy than this is none: its inverse is a number still.
+/// Least energy: its inverse is still finite.
 const FAINTEST: f32 = 1e-30;
-/// Way between two looks at how energies have spread, m: about two reflections in a living room.
+/// Distance between two tests of the spread of energies, m: about two reflections in a living room.
 const STAGE_M: f32 = 5.0;
 
 /// The inputs common to all rays of one trace.
@@ -37,7 +37,7 @@ pub(super) struct RayTracer<'a> {
     pub(super) data: &'a PropagationData,
     pub(super) rays: &'a RayScene,
     pub(super) source: Vec3,
-    /// The source's axis and how loud it is around it.
+    /// The source's axis and its gains around it.
     pub(super) axis: Vec3,
     pub(super) pattern: TabulatedPattern,
     pub(super) listeners: &'a [TailReceiver],
@@ -52,13 +52,13 @@ pub(super) struct RayTracer<'a> {
     pub(super) bins_per_direction: usize,
     /// Entries of directions over time.
     pub(super) times: usize,
-    /// A band's energy, of all rays of a chunk, re the start below which it counts less and rays become fewer.
+    /// Energy of a band in all rays of a chunk, re the start, below which it counts less and rays become fewer.
     pub(super) roulette: f32,
-    /// The chance that a ray goes on behind a wall, too; 0 where nobody listens there.
+    /// Probability that a ray also goes on behind a wall; 0 without a receiver there.
     pub(super) wall_chance: f32,
 }
 
-/// Chance: of rays that never went through a wall, and of all the rest.
+/// Random streams: of rays that never went through a wall, and of all others.
 struct RayRandom<'a> {
     own: &'a mut RandomStream,
     aside: &'a mut RandomStream,
@@ -70,24 +70,24 @@ impl RayRandom<'_> {
     }
 }
 
-/// A ray on its way.
+/// A ray with its energy and history.
 #[derive(Clone)]
 struct TracedRay {
     ray: Ray,
     energy: BandValues,
-    /// Which of the chunk's rays it once was.
+    /// Index of its original ray in the chunk.
     origin: usize,
-    /// Reflections so far, those before it split among them.
+    /// Number of reflections, those before splits included.
     reflections: usize,
     travelled_m: f32,
-    /// Way since the source or the last scattering, m.
+    /// Distance since the source or the last scattering, m.
     straight_m: f32,
     /// True if it was ever scattered, and if its last reflection was specular.
     scattered: bool,
     mirrored: bool,
-    /// Mirrors so far.
+    /// Number of specular reflections.
     order: usize,
-    /// Walls that it went through.
+    /// Number of walls that it passed.
     walls: usize,
 }
 
@@ -105,7 +105,7 @@ impl RayTracer<'_> {
             length_m: 0.0,
         };
         let mut stream = key.stream();
-        // What goes through walls has its own chance, so that what stays is the same with and without it.
+        // Transmission has its own random stream, so that the rest is the same with and without it.
         let mut aside = key.child("walls").stream();
         let first = range.start;
         let start = range.map(|k| {
@@ -127,7 +127,7 @@ impl RayTracer<'_> {
         chunk
     }
 
-    /// Follows rays to their ends, stage by stage; what goes on behind walls is added to `beyond`.
+    /// Traces rays to their ends, stage by stage; rays behind walls are added to `beyond`.
     fn trace_rays(
         &self,
         mut rays: Vec<TracedRay>,
@@ -159,7 +159,7 @@ impl RayTracer<'_> {
         }
     }
 
-    /// Follows one ray to its first reflection behind `end_m`.
+    /// Traces one ray to its first reflection beyond `end_m`.
     fn follow(
         &self,
         mut one: TracedRay,
@@ -175,13 +175,13 @@ impl RayTracer<'_> {
                 return None;
             }
             let hit = self.rays.closest(&one.ray, RayMask::EAR);
-            // Images go through no walls.
+            // Image sources are not transmitted.
             if one.mirrored && (one.scattered || one.order > images || one.walls > 0) {
                 let reach_m = hit.map_or(f32::INFINITY, |hit| hit.distance_m);
                 self.cross(&one, reach_m, random.of(&one), chunk);
             }
             let Some(hit) = hit else {
-                // Behind an outer wall all is open.
+                // Behind an outer wall is the open air.
                 chunk.escaped += u64::from(one.walls == 0);
                 return None;
             };
@@ -222,7 +222,7 @@ impl RayTracer<'_> {
         Some(one)
     }
 
-    /// Counts what the surface at `start` scatters straight to the receivers.
+    /// Counts the energy that the surface at `start` scatters directly to the receivers.
     fn add_diffuse_rain(
         &self,
         start: Vec3,
@@ -241,7 +241,7 @@ impl RayTracer<'_> {
             let distance_m = way.length();
             let cosine = normal.dot(way) / distance_m;
             let way_m = one.travelled_m + distance_m;
-            // A receiver on the very surface has no cosine (0 / 0).
+            // A receiver on the surface itself has no cosine (0 / 0).
             if cosine.is_nan() || cosine <= 0.0 || way_m >= self.furthest_m {
                 continue;
             }
@@ -273,7 +273,7 @@ impl RayTracer<'_> {
         }
     }
 
-    /// Now and then, lets what a wall lets through go on behind it.
+    /// With a small probability, lets the transmitted sound go on behind a wall.
     fn pass(
         &self,
         one: &TracedRay,
@@ -284,7 +284,7 @@ impl RayTracer<'_> {
         if one.walls == transmission::MOST_WALLS || aside.uniform_f32() >= self.wall_chance {
             return;
         }
-        // Nothing of furniture keeps rooms apart.
+        // Furniture does not separate rooms.
         let panel = self.data.table().panel(self.data.house(), hit);
         if panel.area_m2 < WALL_M2 {
             return;
@@ -305,7 +305,7 @@ impl RayTracer<'_> {
         });
     }
 
-    /// Counts a ray where it crosses the balls around receivers.
+    /// Counts a ray where it crosses the detection spheres of receivers.
     fn cross(
         &self,
         one: &TracedRay,
@@ -313,7 +313,7 @@ impl RayTracer<'_> {
         stream: &mut RandomStream,
         chunk: &mut RayChunk,
     ) {
-        // Drawn once, so that a receiver's energies do not depend on which others there are.
+        // Drawn once, so that a receiver's energies do not depend on the others.
         let place = stream.uniform_f32();
         for (receiver, listener) in self.listeners.iter().enumerate() {
             if one.walls > 0 && !listener.hidden {
@@ -326,7 +326,7 @@ impl RayTracer<'_> {
             ) else {
                 continue;
             };
-            // Only what the receiver sees of its ball counts: one point of the piece stands for it.
+            // Only the visible part of the sphere counts: one point of the segment represents it.
             let along = crossing.enter_m + place * (crossing.leave_m - crossing.enter_m);
             let point = one.ray.at(along);
             let sight = Ray::segment(listener.position, point, 0.0);
@@ -365,7 +365,7 @@ impl RayTracer<'_> {
     }
 }
 
-/// Energy of all rays. Shape (band,).
+/// Returns the energy of all rays. Shape (band,).
 fn sum(rays: &[TracedRay]) -> BandValues {
     let mut sum = [0.0; BAND_COUNT];
     for one in rays {
@@ -376,7 +376,7 @@ fn sum(rays: &[TracedRay]) -> BandValues {
     sum
 }
 
-/// Returns what energy is worth in each band: all bands are worth the same, 1, until they fall below their `least`. Shape (band,).
+/// Returns the weight of energy in each band: all bands have weight 1, until they fall below their `least`. Shape (band,).
 fn band_importance(rays: &[TracedRay], least: &BandValues) -> BandValues {
     let all = sum(rays);
     std::array::from_fn(|band| {
@@ -385,11 +385,11 @@ fn band_importance(rays: &[TracedRay], least: &BandValues) -> BandValues {
     })
 }
 
-/// Rays of equal worth for those of `from`: the strong ones split, the weak ones end or stand for others. `count`: as many as there
-/// should be while no band is below its least; then there are fewer. While they are worth about the same still, all stay as they
-/// are. `place`: chance, 0 to 1.
+/// Replaces the rays of `from` by rays of equal weight: strong ones split, weak ones end or represent others. `count`:
+/// their number while no band is below its least; then there are fewer. While their weights are about equal, all stay as
+/// they are. `place`: a random number, 0 to 1.
 ///
-/// After some reflections, the energy that is left is that of a few lucky rays. Split, they meet other surfaces from then on.
+/// After some reflections, most energy is in a few rays. After splitting, they hit different surfaces.
 ///
 /// # Source
 /// G. Kitagawa, J. Comput. Graph. Stat. 5, 1 (1996), appendix: stratified resampling, here with equal distances ("systematic"); when
@@ -408,12 +408,12 @@ fn resample(
         return;
     }
     let each = bands as f32 / count as f32;
-    // As many as there should be, of which no less than half count.
+    // The full number, of which at least half are effective.
     if all > 0.99 * bands as f32 && all * all > 0.5 * count as f32 * squares {
         into.extend_from_slice(from);
         return;
     }
-    // A mark at every `each` of all worth, from a place by chance on.
+    // A mark at every `each` of the total weight, from a random offset on.
     let mut mark = place * each;
     let mut passed = 0.0;
     for (one, weight) in from.iter().zip(weights()) {
@@ -428,7 +428,7 @@ fn resample(
 }
 
 impl TracedRay {
-    /// At the source, ray `origin` of its chunk.
+    /// Ray `origin` of its chunk, at the source.
     fn new(ray: Ray, energy: BandValues, origin: usize) -> Self {
         Self {
             ray,
@@ -444,7 +444,7 @@ impl TracedRay {
         }
     }
 
-    /// Returns what it counts among others.
+    /// Returns its weight.
     fn weight(&self, worth: &BandValues) -> f32 {
         self.energy
             .iter()
@@ -453,10 +453,10 @@ impl TracedRay {
             .sum()
     }
 
-    /// Leaves a surface, scattered or mirrored; `false` where nothing is left.
+    /// Reflects the ray, scattered or specular; `false` where no energy is left.
     ///
-    /// The fraction of what stays of this ray's energy that is scattered is the chance: with it, both branches keep the sum over the
-    /// bands, and no band's weight can grow from reflection to reflection.
+    /// The scattered fraction of this ray's reflected energy is the probability: with it, both branches keep the sum over
+    /// the bands, and no band's weight can grow from reflection to reflection.
     fn turn(
         &mut self,
         start: Vec3,
@@ -497,7 +497,7 @@ fn multiply(energy: &mut BandValues, factors: &BandValues) {
     }
 }
 
-/// A direction above a surface with the density of Lambert's cosine law.
+/// Draws a direction above a surface with the density of Lambert's cosine law.
 fn lambert(normal: Vec3, stream: &mut RandomStream) -> Vec3 {
     let u = stream.uniform_f32();
     let (s, c) = sin_cos(TAU * stream.uniform_f32());
@@ -516,7 +516,7 @@ mod tests {
         TracedRay::new(Ray::new(Vec3::ZERO, Vec3::X), energy, 0)
     }
 
-    /// Over all places, every ray's energy comes out again, whether rays are split or thinned; alike, they stay as they are.
+    /// Over all offsets, every ray's energy is reproduced, whether rays are split or thinned; equal ones stay as they are.
     #[test]
     fn resampling_keeps_what_every_ray_stands_for() {
         let from: Vec<TracedRay> = (0..16)
@@ -526,7 +526,7 @@ mod tests {
             })
             .collect();
         let start = sum(&from);
-        // As much as there was, and a tenth of it: the rays are as many, or about a tenth.
+        // All energy, and a tenth of it: the rays are as many, or about a tenth.
         for (least, many) in [(0.1, 16.0), (10.0, 1.6)] {
             let worth = band_importance(&from, &start.map(|all| least * all));
             let (mut found, mut rays) = ([0.0_f64; 16], 0);

@@ -7,36 +7,36 @@ use dwell_scene::rays::RayScene;
 use glam::Vec3;
 use std::f64::consts::PI;
 
-/// Radii of the balls grow by this from one to the next.
+/// Ratio of consecutive radii of the spheres.
 const STEP: f64 = 1.189_207_115_002_721;
-/// Paths up to this length are counted in the smallest ball; further ones in balls that grow with it, m: they seem as large from where
-/// the sound comes from.
+/// Path length up to which the smallest sphere is used; for longer paths it grows with them, m: its solid angle seen from
+/// the source stays constant.
 const FIRST_M: f64 = 8.0;
-/// No ball is larger than this fraction of the cube root of the volume in sight. With 0.35 energies between 20 and 500 ms are
-/// within 0.2 dB of those of the smallest balls (a studio, rooms of the apartment); 0.5 is half as far again.
+/// Largest radius of a sphere over the cube root of the visible volume. With 0.35 energies between 20 and 500 ms are within
+/// 0.2 dB of those of the smallest spheres (a studio, rooms of the apartment); 0.5 is half as far again.
 const LARGEST: f64 = 0.35;
 
-/// A ball around a receiver.
+/// A detection sphere around a receiver.
 #[derive(Clone, Copy, Debug)]
 struct DetectionSphere {
     radius_m: f32,
-    /// 4 pi over the volume of what the receiver sees of it, 1/m³.
+    /// 4 pi over its volume visible from the receiver, 1/m³.
     factor: f32,
 }
 
-/// A receiver among rays.
+/// A receiver of the ray tracer.
 #[derive(Clone, Debug)]
 pub(super) struct TailReceiver {
     pub(super) position: Vec3,
     balls: Vec<DetectionSphere>,
-    /// Volume in sight, m³.
+    /// Visible volume, m³.
     pub(super) seen_volume_m3: f64,
     /// True if the source is out of sight. Beside direct sound, transmitted sound is inaudible.
     pub(super) hidden: bool,
 }
 
 impl TailReceiver {
-    /// Looks around from `position` with `probes` rays.
+    /// Probes the surroundings of `position` with `probes` rays.
     pub(super) fn new(
         rays: &RayScene,
         source: Vec3,
@@ -62,7 +62,7 @@ impl TailReceiver {
         while balls.is_empty() || next_m <= largest_m {
             balls.push(DetectionSphere {
                 radius_m: next_m as f32,
-                // A receiver that stands in a wall sees nothing.
+                // A receiver inside a wall sees nothing.
                 factor: (4.0 * PI / volume_within(next_m).max(1e-6)) as f32,
             });
             next_m *= STEP;
@@ -75,20 +75,20 @@ impl TailReceiver {
         }
     }
 
-    /// Radius of the largest ball, m.
+    /// Returns the radius of the largest sphere, m.
     pub(super) fn largest_m(&self) -> f64 {
         self.balls
             .last()
             .map_or(0.0, |ball| f64::from(ball.radius_m))
     }
 
-    /// The ball for paths of `way_m`.
+    /// Returns the sphere for paths of `way_m`.
     fn ball(&self, way_m: f32) -> DetectionSphere {
         let steps = libm::logf((way_m / FIRST_M as f32).max(1.0)) / libm::logf(STEP as f32);
         self.balls[(steps as usize).min(self.balls.len() - 1)]
     }
 
-    /// The piece of a ray, before `reach_m`, that lies in the ball for its path; `way_m` is the path's length at its origin.
+    /// Returns the segment of a ray, before `reach_m`, in the sphere for its path; `way_m` is the path's length at its origin.
     pub(super) fn crossing(&self, ray: &Ray, reach_m: f32, way_m: f32) -> Option<SphereCrossing> {
         let to_center = self.position - ray.origin;
         let along = to_center.dot(ray.direction);
@@ -115,6 +115,6 @@ impl TailReceiver {
 pub(super) struct SphereCrossing {
     pub(super) enter_m: f32,
     pub(super) leave_m: f32,
-    /// Energy at the receiver over the ray's.
+    /// Ratio of the energy at the receiver to the ray's.
     pub(super) factor: f32,
 }

@@ -1,4 +1,4 @@
-//! Spans of time, each twice as long as the one before, for which the tail's error is told.
+//! Time spans, each twice as long as the one before, for which the tail's error is given.
 
 use crate::echogram::{EnergyHistogram, SPAN_COUNT};
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// End of the first span, s.
 const FIRST_S: f64 = 0.02;
 
-/// The span in which `time_s` lies.
+/// Returns the span that contains `time_s`.
 pub(crate) fn span_of(time_s: f64) -> usize {
     let mut end_s = FIRST_S;
     let mut span = 0;
@@ -16,19 +16,19 @@ pub(crate) fn span_of(time_s: f64) -> usize {
     span
 }
 
-/// The middle of span `span`, s; of the last one, that of one as long as its beginning.
+/// Returns the middle of span `span`, s; of the last one, as if it were as long as its beginning.
 pub(crate) fn middle_s(span: usize) -> f64 {
     let end_s = FIRST_S * libm::exp2(span as f64);
     if span == 0 { 0.5 * end_s } else { 0.75 * end_s }
 }
 
-/// The span of each of `count` bins of `bin_s`. Shape (bin,).
+/// Returns the span of each of `count` bins of `bin_s`. Shape (bin,).
 pub(super) fn of_bins(count: usize, bin_s: f64) -> Vec<usize> {
     let middle_s = |k: usize| (k as f64 + 0.5) * bin_s;
     (0..count).map(|k| span_of(middle_s(k))).collect()
 }
 
-/// Energy in each span, all bands together. Shape (span,).
+/// Returns the energy in each span, all bands together. Shape (span,).
 pub(crate) fn energies(tail: &EnergyHistogram) -> [f64; SPAN_COUNT] {
     let mut sums = [0.0; SPAN_COUNT];
     let spans = of_bins(tail.bins.len(), tail.bin_s);
@@ -38,7 +38,7 @@ pub(crate) fn energies(tail: &EnergyHistogram) -> [f64; SPAN_COUNT] {
     sums
 }
 
-/// Sums over rays of what each brings in each span, of which the error of their mean follows.
+/// Sums over rays of their energy in each span, for the error of the mean.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct SpanVariance {
     sums: [f64; SPAN_COUNT],
@@ -46,13 +46,13 @@ pub(super) struct SpanVariance {
 }
 
 impl SpanVariance {
-    /// Returns whether these are sums of numbers from 0.
+    /// Returns whether these are valid sums.
     pub(super) fn is_sound(&self) -> bool {
         let mut all = self.sums.iter().chain(&self.squares);
         all.all(|sum| sum.is_finite() && *sum >= 0.0)
     }
 
-    /// Adds what rays brought, each with all that it split into. Shape (ray, span).
+    /// Adds the energies of rays, each with all that it split into. Shape (ray, span).
     pub(super) fn add(&mut self, rays: &[[f32; SPAN_COUNT]]) {
         for ray in rays {
             for (k, energy) in ray.iter().enumerate() {
@@ -63,10 +63,10 @@ impl SpanVariance {
         }
     }
 
-    /// Standard error of the mean of `rays` rays over the mean; 0 where nothing arrives.
+    /// Returns the standard error of the mean of `rays` rays over the mean; 0 where nothing arrives.
     ///
     /// # Source
-    /// H. P. Chan, T. L. Lai, Ann. Stat. 41, 2877 (2013), section 2: what all descendants of a ray bring counts as its own.
+    /// H. P. Chan, T. L. Lai, Ann. Stat. 41, 2877 (2013), section 2: the energy of all descendants of a ray counts as its own.
     pub(super) fn relative_error(&self, rays: usize) -> [f32; SPAN_COUNT] {
         let n = rays as f64;
         std::array::from_fn(|k| {

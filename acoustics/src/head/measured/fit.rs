@@ -1,4 +1,4 @@
-//! The sphere that a measured head resembles.
+//! The sphere fitted to a measured head.
 
 use super::spectra::ComplexExponentials;
 use crate::head::{Ear, sphere_response, woodworth_delay_s};
@@ -6,15 +6,15 @@ use glam::DVec3;
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
-/// Of sound in the rooms where heads are measured, m/s.
+/// Speed of sound during measurements, m/s.
 const SPEED_M_S: f64 = 343.2;
-/// Frequencies at which levels are compared, Hz: a head is small against their waves, and loudspeakers have them.
+/// Frequencies at which levels are compared, Hz: a head is small against these waves, and loudspeakers reproduce them.
 const LEVELS_HZ: [f64; 5] = [200.0, 250.0, 315.0, 400.0, 500.0];
-/// Radii of heads, m.
+/// Range of radii of heads, m.
 const RADII_M: (f64, f64) = (0.05, 0.15);
-/// A usual head's, where delays do not say, m.
+/// Radius where delays do not determine it, m.
 const USUAL_RADIUS_M: f64 = 0.0875;
-/// Measured directions that speak for one that was not.
+/// Number of measured directions used for one that was not measured.
 const NEIGHBOURS: usize = 6;
 /// Directions within this of each other share their weight: the cosine of 10 degrees.
 const CLOSE_COSINE: f64 = 0.984_807_753;
@@ -24,15 +24,15 @@ pub(super) struct SphereFit {
     pub(super) radius_m: f64,
     /// Delay common to all responses, re the sphere, s.
     pub(super) late_s: f64,
-    /// The part of the sphere that each direction stands for, up to a factor.
+    /// Share of the sphere of each direction, up to a factor.
     weights: Vec<f64>,
 }
 
-/// Measured directions and how much they count.
+/// Measured directions and their weights.
 pub(super) struct WeightedDirections(pub(super) Vec<(usize, f64)>);
 
 impl WeightedDirections {
-    /// Those next to a direction, by one over the square of the distance; they sum to 1.
+    /// Returns the directions nearest to one, weighted by the inverse square of the distance; the weights sum to 1.
     pub(super) fn near(directions: &[DVec3], towards: DVec3) -> Self {
         let mut all: Vec<(usize, f64)> = directions
             .iter()
@@ -52,13 +52,13 @@ impl WeightedDirections {
     }
 }
 
-/// The cosine of the angle between a direction and an ear's axis.
+/// Returns the cosine of the angle between a direction and an ear's axis.
 pub(super) fn cosine(direction: DVec3, ear: usize) -> f64 {
     direction.dot(Ear::BOTH[ear].axis_in_head().as_dvec3())
 }
 
 impl SphereFit {
-    /// The radius and the common delay with the least squares between all delays and Woodworth's.
+    /// Fits the radius and the common delay by least squares between all delays and Woodworth's.
     pub(super) fn new(directions: &[DVec3], delay_s: &[[f64; 2]]) -> Self {
         let crowd = |d: &DVec3| {
             let close = directions.iter().filter(|e| e.dot(*d) > CLOSE_COSINE);
@@ -82,7 +82,7 @@ impl SphereFit {
         let (x, y) = (mean(&of_unit), mean(&|k, ear| delay_s[k][ear]));
         let xx = mean(&|k, ear| (of_unit(k, ear) - x) * (of_unit(k, ear) - x));
         let xy = mean(&|k, ear| (of_unit(k, ear) - x) * (delay_s[k][ear] - y));
-        // Directions in the median plane alone say nothing about the radius.
+        // Directions in the median plane alone do not determine the radius.
         let radius_m = if xx * SPEED_M_S * SPEED_M_S > 1e-3 {
             (xy / xx).clamp(RADII_M.0, RADII_M.1)
         } else {
@@ -95,12 +95,12 @@ impl SphereFit {
         }
     }
 
-    /// The delay of a wave at the sphere, s.
+    /// Returns the delay of a wave at the sphere, s.
     fn delay_s(&self, direction: DVec3, ear: usize) -> f64 {
         woodworth_delay_s(cosine(direction, ear), self.radius_m, SPEED_M_S)
     }
 
-    /// The gain that makes the energy of all responses at low frequencies that at the sphere.
+    /// Returns the gain that gives all responses the sphere's energy at low frequencies.
     pub(super) fn gain(
         &self,
         directions: &[DVec3],
@@ -122,12 +122,12 @@ impl SphereFit {
         (sphere / head.max(1e-30)).sqrt()
     }
 
-    /// Pressure at the sphere over that at its centre without it. Shape (cosine,).
+    /// Returns pressure at the sphere over that at its centre without it. Shape (cosine,).
     fn response(&self, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
         response_of(self.radius_m, frequency_hz, cosines)
     }
 
-    /// The delays from a direction that was not measured: the sphere's, and by how much those nearby differ from it, s.
+    /// Returns the delays from a direction that was not measured: the sphere's, plus the deviation of those nearby, s.
     pub(super) fn filled_delay_s(
         &self,
         directions: &[DVec3],
@@ -144,12 +144,12 @@ impl SphereFit {
     }
 }
 
-/// Pressure at a sphere, with the delay of [`woodworth_delay_s`] still in it. Shape (cosine,).
+/// Returns the pressure at a sphere, with the delay of [`woodworth_delay_s`] included. Shape (cosine,).
 pub(super) fn response_of(radius_m: f64, frequency_hz: f64, cosines: &[f64]) -> Vec<Complex<f64>> {
     sphere_response(TAU * frequency_hz * radius_m / SPEED_M_S, cosines)
 }
 
-/// The phase that takes Woodworth's delay out of [`response_of`].
+/// Returns the phase that removes Woodworth's delay from [`response_of`].
 pub(super) fn undelayed(radius_m: f64, frequency_hz: f64, cosine: f64) -> Complex<f64> {
     let phase = TAU * frequency_hz * woodworth_delay_s(cosine, radius_m, SPEED_M_S);
     Complex::new(libm::cos(phase), libm::sin(phase))

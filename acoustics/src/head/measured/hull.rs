@@ -1,13 +1,13 @@
-//! Directions on the sphere, joined to triangles: their convex hull.
+//! Triangulation of directions on the sphere: their convex hull.
 
 use glam::{DVec3, Vec3};
 
 /// Displacement of points off the sphere, so that no four lie in one plane: rings of equal height would.
 const JITTER: f64 = 1e-8;
-/// Start places for the search: cells along the edge of a cube's side.
+/// Starting points of the search: cells along the edge of a cube's side.
 const CELLS: usize = 16;
 
-/// Triangles that cover the sphere, each seen anticlockwise from outside.
+/// Triangles that cover the sphere, anticlockwise seen from outside.
 #[derive(Debug)]
 pub(super) struct Triangulation {
     triangles: Vec<HullTriangle>,
@@ -18,9 +18,9 @@ pub(super) struct Triangulation {
 #[derive(Debug)]
 struct HullTriangle {
     corners: [u32; 3],
-    /// Beyond the edge opposite to each corner.
+    /// Neighbour across the edge opposite to each corner.
     neighbours: [u32; 3],
-    /// The products with a direction are its weights of the corners, up to a common factor.
+    /// Vectors whose products with a direction are its weights of the corners, up to a common factor.
     weighers: [Vec3; 3],
 }
 
@@ -33,7 +33,7 @@ struct HullFace {
 }
 
 impl Triangulation {
-    /// Joins unit vectors that are at least 5e-4 apart and have the origin within their hull. `None` where they have not.
+    /// Triangulates unit vectors that are at least 5e-4 apart and have the origin within their hull; `None` for others.
     ///
     /// # Source
     /// The incremental convex hull: M. de Berg et al., *Computational Geometry* (2008), chapter 11. On a sphere it is the Delaunay
@@ -45,7 +45,7 @@ impl Triangulation {
             .map(|(k, p)| *p * (1.0 + JITTER * unrelated(k)))
             .collect();
         let faces = hull(&lifted)?;
-        // Only the faces that are left, renumbered.
+        // Only the remaining faces, renumbered.
         let mut number = vec![u32::MAX; faces.len()];
         let mut count = 0;
         for (face, number) in faces.iter().zip(&mut number) {
@@ -84,12 +84,12 @@ impl Triangulation {
         Some(mesh)
     }
 
-    /// Returns how many triangles there are.
+    /// Returns the number of triangles.
     pub(super) fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// The three points around a direction, and their weights, which sum to 1.
+    /// Returns the three points around a direction, and their weights, which sum to 1.
     pub(super) fn locate(&self, direction: Vec3) -> ([u32; 3], [f32; 3]) {
         let start = self.near[cell_of(direction)];
         let (found, weights) = self.walk(start, direction);
@@ -103,7 +103,7 @@ impl Triangulation {
         }
     }
 
-    /// From triangle to triangle, over the edge that the direction is furthest beyond.
+    /// Walks from triangle to triangle, across the edge that the direction is furthest beyond.
     fn walk(&self, start: u32, direction: Vec3) -> (u32, [f32; 3]) {
         let weigh = |k: u32| {
             self.triangles[k as usize]
@@ -124,7 +124,7 @@ impl Triangulation {
             }
             at = self.triangles[at as usize].neighbours[place];
         }
-        // Rounding can send a walk round in circles along a sliver: then the best of all.
+        // Rounding can make a walk circle along a sliver: then the best of all is used.
         let all = 0..self.triangles.len() as u32;
         let best = all.max_by(|a, b| lowest(&weigh(*a)).1.total_cmp(&lowest(&weigh(*b)).1));
         let best = best.unwrap_or(0);
@@ -132,19 +132,19 @@ impl Triangulation {
     }
 }
 
-/// A number from -1 to 1 that has nothing to do with `k`'s neighbours'.
+/// Returns a number from -1 to 1 that is uncorrelated with those of `k`'s neighbours.
 fn unrelated(k: usize) -> f64 {
     let bits = xxhash_rust::xxh3::xxh3_64(&(k as u64).to_le_bytes());
     (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
 }
 
-/// Six times the volume of a tetrahedron; positive where `d` is beyond the side from which a, b, c are anticlockwise.
+/// Returns six times the volume of a tetrahedron; positive where `d` is beyond the side from which a, b, c are anticlockwise.
 fn beyond(points: &[DVec3], [a, b, c]: [u32; 3], d: u32) -> f64 {
     let [a, b, c, d] = [a, b, c, d].map(|k| points[k as usize]);
     (b - a).cross(c - a).dot(d - a)
 }
 
-/// Four points that span a volume.
+/// Returns four points that span a volume.
 fn first_four(points: &[DVec3]) -> Option<[u32; 4]> {
     let furthest = |measure: &dyn Fn(DVec3) -> f64| {
         let all = 0..points.len() as u32;
@@ -160,7 +160,7 @@ fn first_four(points: &[DVec3]) -> Option<[u32; 4]> {
     (normal.dot(points[fourth as usize] - a).abs() > 1e-6).then_some([0, second, third, fourth])
 }
 
-/// The hull's faces, with dead ones between.
+/// Returns the hull's faces, with removed ones between.
 fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
     let [a, b, c, d] = first_four(points)?;
     // Turned so that d lies behind a, b, c.
@@ -182,7 +182,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
     ];
     let mut free: Vec<u32> = Vec::new();
     let mut visible = Vec::new();
-    // The new face that begins its rim at a point. Shape (point,).
+    // The new face whose rim edge starts at a point. Shape (point,).
     let mut begins = vec![u32::MAX; points.len()];
     for point in 0..points.len() as u32 {
         if [a, b, c, d].contains(&point) {
@@ -198,7 +198,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
         for k in &visible {
             faces[*k as usize].alive = false;
         }
-        // The rim of what is visible, edge by edge: from u to v, with the face behind it.
+        // The rim of the visible faces, edge by edge: from u to v, with the face behind it.
         let mut rim = Vec::new();
         for k in &visible {
             let HullFace {
@@ -228,7 +228,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
             made.push((k, *u, *v, *behind));
         }
         for (k, u, v, behind) in &made {
-            // Over the edge from v to the point lies the face whose rim begins at v.
+            // Across the edge from v to the point lies the face whose rim begins at v.
             let next = begins[*v as usize];
             faces[*k as usize].neighbours[0] = next;
             faces[next as usize].neighbours[1] = *k;
@@ -243,7 +243,7 @@ fn hull(points: &[DVec3]) -> Option<Vec<HullFace>> {
     Some(faces)
 }
 
-/// The cell of the cube that a direction points into.
+/// Returns the cell of the cube that a direction points into.
 fn cell_of(direction: Vec3) -> usize {
     let size = direction.abs();
     let (side, long, u, v) = if size.x >= size.y && size.x >= size.z {
@@ -261,7 +261,7 @@ fn cell_of(direction: Vec3) -> usize {
     (side * CELLS + place(u)) * CELLS + place(v)
 }
 
-/// Towards the middle of a cell, unit length.
+/// Returns the direction to the middle of a cell, unit length.
 fn middle(side: usize, u: usize, v: usize) -> Vec3 {
     let place = |k: usize| 2.0 * (k as f32 + 0.5) / CELLS as f32 - 1.0;
     let (u, v, long) = (

@@ -1,4 +1,4 @@
-//! Impulse responses of a head as they were measured.
+//! Measured impulse responses of a head.
 
 use crate::error::AcousticsError;
 use crate::head::Ear;
@@ -12,7 +12,7 @@ const MOST_DIRECTIONS: usize = 20_000;
 const SAMPLES: std::ops::RangeInclusive<usize> = 16..=65_536;
 /// Most numbers of all responses together: 1 GiB.
 const MOST_NUMBERS: usize = 1 << 28;
-/// Directions nearer than this are one, as chords: 0.05 degrees.
+/// Distance below which directions are one, as chords: 0.05 degrees.
 pub(super) const SAME: f64 = 8.7e-4;
 
 /// Impulse responses from places around a head to its ears, in an anechoic room; the input of
@@ -56,7 +56,7 @@ pub(super) struct MeasuredDirection<'a> {
     pub(super) delay_s: [f64; 2],
 }
 
-/// Samples below this fraction of the peak come before a response, and not this late, s: half of what its onset is looked for in.
+/// Samples below this fraction of the peak come before a response, and not this late, s: half of the window of the onset.
 const QUIET: f32 = 1e-3;
 const LATEST_S: f64 = 0.02;
 
@@ -69,7 +69,7 @@ impl HrirMeasurement {
         self.responses.len() / (2 * self.sources.len()).max(1)
     }
 
-    /// A number for its contents.
+    /// Returns a hash of its contents.
     pub(crate) fn hash(&self) -> u64 {
         let mut hash = Xxh3::new();
         hash.update(b"measured");
@@ -84,7 +84,7 @@ impl HrirMeasurement {
             hash.update(&x.to_le_bytes());
         }
         hash.update(&(self.samples() as u64).to_le_bytes());
-        // No delays are delays of nothing.
+        // Missing delays are zero delays.
         if self.delays_samples.iter().any(|x| *x != 0.0) {
             for x in &self.delays_samples {
                 hash.update(&x.to_le_bytes());
@@ -93,12 +93,12 @@ impl HrirMeasurement {
         hash.digest()
     }
 
-    /// One row for each direction, in the order of the sources.
+    /// Returns one row for each direction, in the order of the sources.
     pub(super) fn rows(&self) -> Result<Vec<MeasuredDirection<'_>>, AcousticsError> {
         self.check()?;
         let samples = self.samples();
         let mut kept: Vec<(f64, MeasuredDirection<'_>)> = Vec::new();
-        // By cells as wide as directions must be apart, so that only neighbouring cells need a look.
+        // By cells as wide as the least distance of directions, so that only neighbouring cells are searched.
         let cell = |d: DVec3| (d / SAME).floor().as_i64vec3().to_array();
         let mut known: BTreeMap<[i64; 3], Vec<usize>> = BTreeMap::new();
         for (k, source) in self.sources.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Heads that were measured: from responses to tables.
+//! Measured heads: from responses to tables.
 //!
 //! - `measurement`: the input, checked; `onset`: onsets of responses; `spectra`: responses at any frequencies.
 //! - `fit`: the sphere fitted to a head, which gives level, time and unmeasured directions.
@@ -27,9 +27,9 @@ use std::sync::Arc;
 const RINGING_S: f64 = 0.011;
 /// The end of the ringing over which it fades, s.
 const FADE_S: f64 = 0.001;
-/// Farther than this from every measured direction, a sphere takes over: the cosine of 25 degrees.
+/// Distance from every measured direction beyond which a sphere takes over: the cosine of 25 degrees.
 const GAP_COSINE: f64 = 0.906_307_787;
-/// Directions that are looked at for gaps.
+/// Directions that are tested for gaps.
 const FILLERS: usize = 240;
 
 /// A summary of a head's measurement.
@@ -39,27 +39,27 @@ pub struct HeadSummary {
     pub directions: usize,
     /// Directions that were filled in because nothing was measured within 25 degrees.
     pub filled: usize,
-    /// Of the sphere whose delays are nearest to those of the ears, m.
+    /// Radius of the sphere whose delays fit those of the ears, m.
     pub radius_m: f64,
-    /// The gain by which all responses were changed, dB.
+    /// Gain applied to all responses, dB.
     pub gain_db: f64,
     /// Delay removed from all responses, s: the distance from the measurement's loudspeaker, and its own delay.
     pub removed_delay_s: f64,
 }
 
-/// A measurement ready to be tabulated at any rate.
+/// A measurement that can be tabulated at any rate.
 pub(crate) struct HeadResponses {
     about: HeadSummary,
     rate_hz: f64,
     samples: usize,
-    /// Unit vectors in head space, first those that were measured, then those filled in.
+    /// Unit vectors in head space, first measured ones, then those filled in.
     directions: Vec<DVec3>,
     mesh: Arc<Triangulation>,
     /// Responses, cut and scaled. Shape (measured direction, ear).
     pressure: Vec<[Vec<f32>; 2]>,
-    /// When each begins after its first sample, s. Shape (measured direction, ear).
+    /// Onset of each response after its first sample, s. Shape (measured direction, ear).
     begin_s: Vec<[f64; 2]>,
-    /// Of a wave against the head's centre, s. Shape (direction, ear).
+    /// Delays of waves re the head's centre, s. Shape (direction, ear).
     delay_s: Vec<[f64; 2]>,
 }
 
@@ -98,7 +98,7 @@ impl HeadResponses {
             }
         }
         let Some(mesh) = Triangulation::new(&directions) else {
-            // Cannot be: what is filled in leaves no gap, and no two are as near as this.
+            // Unreachable: filling leaves no gap, and no two directions are as near as this.
             return Err(AcousticsError::Head(format!(
                 "directions {SAME} apart cannot be joined to triangles"
             )));
@@ -127,7 +127,7 @@ impl HeadResponses {
     }
 }
 
-/// A response up to the end of its ringing.
+/// Returns a response up to the end of its ringing.
 fn cut(response: &[f32], begin_s: f64, rate_hz: f64) -> Vec<f32> {
     let samples = |time_s: f64| (time_s.max(0.0) * rate_hz) as usize;
     let end = samples(begin_s + RINGING_S).clamp(1, response.len());

@@ -1,17 +1,17 @@
-//! When a measured response begins.
+//! Onsets of measured responses.
 
 use super::spectra::modulus;
 use crate::fft::RealFft;
 use realfft::num_complex::Complex;
 
-/// Span of the transforms, s: far longer than a head rings, so that cepstra do not wrap.
+/// Duration of the transforms, s: far longer than a head rings, so that cepstra do not wrap.
 const SPAN_S: f64 = 0.04;
 /// Frequencies that are compared, Hz.
 const BAND_HZ: (f64, f64) = (100.0, 16_000.0);
 /// Levels below that of the loudest frequency, as amplitude, are raised to it: -80 dB.
 const FLOOR: f32 = 1e-4;
 
-/// Finds delays of responses at one sample rate.
+/// Detects onsets of responses at one sample rate.
 pub(super) struct OnsetDetector {
     fft: RealFft,
     rate_hz: f64,
@@ -26,8 +26,8 @@ impl OnsetDetector {
         }
     }
 
-    /// Returns how long after its first sample a response begins, s, to a fraction of a sample: by how much it is later than the response
-    /// of minimum phase with the same levels, which begins at once.
+    /// Returns the onset of a response after its first sample, s, to a fraction of a sample: its delay re the response of
+    /// minimum phase with the same levels, which begins at once.
     ///
     /// # Source
     /// J. Nam, M. A. Kolar, J. S. Abel, *On the minimum-phase nature of head-related transfer functions*, AES Convention 125 (2008),
@@ -40,7 +40,7 @@ impl OnsetDetector {
         let (low, high) = (BAND_HZ.0, BAND_HZ.1.min(0.45 * self.rate_hz));
         let bin_of = |frequency_hz: f64| (frequency_hz / step_hz).ceil() as usize;
         let band = bin_of(low)..bin_of(high);
-        // What a loudspeaker or a converter cuts off would add delays of its own: levels go on as they are at the ends.
+        // Frequencies that a loudspeaker or a converter cuts off would add delays: levels are extrapolated at the ends.
         let mut logs: Vec<Complex<f32>> = (0..spectrum.len())
             .map(|bin| spectrum[bin.clamp(band.start, band.end - 1)])
             .map(|x| Complex::new(libm::logf(modulus(x).max(FLOOR * loudest)), 0.0))
@@ -67,7 +67,7 @@ impl OnsetDetector {
         let best = best.unwrap_or(0);
         let at = |k: usize| f64::from(correlation[k % length]);
         let (before, peak, after) = (at(best + length - 1), at(best), at(best + 1));
-        // The top of the parabola through three samples.
+        // The maximum of the parabola through three samples.
         let bend = before - 2.0 * peak + after;
         let off = if bend < 0.0 {
             (0.5 * (before - after) / bend).clamp(-0.5, 0.5)

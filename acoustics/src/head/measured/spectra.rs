@@ -3,12 +3,12 @@
 use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 
-/// The modulus, by operations that give equal bits everywhere.
+/// Returns the modulus, by operations that give equal bits everywhere.
 pub(super) fn modulus(value: Complex<f32>) -> f32 {
     value.norm_sqr().sqrt()
 }
 
-/// Waves at some frequencies, sample by sample.
+/// Complex exponentials at some frequencies, sample by sample.
 pub(super) struct ComplexExponentials {
     /// Shape (sample, frequency), flat.
     cosine: Vec<f32>,
@@ -17,7 +17,7 @@ pub(super) struct ComplexExponentials {
 }
 
 impl ComplexExponentials {
-    /// For responses of up to `samples` at `rate_hz`.
+    /// Exponentials for responses of up to `samples` at `rate_hz`.
     pub(super) fn new(frequencies_hz: &[f64], rate_hz: f64, samples: usize) -> Self {
         let count = frequencies_hz.len();
         let (mut cosine, mut sine) = (
@@ -39,7 +39,7 @@ impl ComplexExponentials {
         }
     }
 
-    /// The spectrum of a response whose sample 0 is at time 0. Shape (frequency,).
+    /// Returns the spectrum of a response whose sample 0 is at time 0. Shape (frequency,).
     pub(super) fn of(&self, response: &[f32]) -> Vec<Complex<f32>> {
         let (mut re, mut im) = (vec![0.0_f32; self.count], vec![0.0_f32; self.count]);
         let rows = self.cosine.chunks_exact(self.count);

@@ -12,13 +12,13 @@ use realfft::num_complex::Complex;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// From the first to the second, what was measured takes over from what a head does to the bass, Hz.
+/// Range of the crossover from a head's theoretical bass response to the measured one, Hz.
 const BASS_HZ: (f64, f64) = (80.0, 160.0);
-/// Up to this frequency from [`BASS_HZ`] on, the phase tells the delay of the bass, Hz.
+/// Upper end of the range from [`BASS_HZ`] on in which the phase gives the delay of the bass, Hz.
 const DELAY_HZ: f64 = 320.0;
 /// Largest correction of the bass, as a logarithm of amplitude: 26 dB.
 const MOST_BASS: f64 = 3.0;
-/// Highest frequency that is taken from a measurement, over its sample rate.
+/// Highest frequency used of a measurement, over its sample rate.
 const HIGHEST: f64 = 0.46;
 
 /// A measured head at one sample rate.
@@ -36,13 +36,13 @@ struct DirectionRow {
     delay_s: f64,
     /// The spectrum without the delay. Shape (bin,).
     rest: Vec<Complex<f32>>,
-    /// Gain of amplitude and whole delay (s) in each band.
+    /// Gain of amplitude and total delay (s) in each band.
     gain: BandValues,
     late_s: BandValues,
 }
 
 impl HeadResponses {
-    /// Tables for spectra of `bins` values up to half of `rate_hz`.
+    /// Returns tables for spectra of `bins` values up to half of `rate_hz`.
     pub(in crate::head) fn tables(&self, rate_hz: f64, bins: usize) -> MeasuredHead {
         let step_hz = 0.5 * rate_hz / (bins - 1).max(1) as f64;
         let frequencies: Vec<f64> = (0..bins).map(|bin| bin as f64 * step_hz).collect();
@@ -117,7 +117,7 @@ impl HeadResponses {
     }
 }
 
-/// The rest of a sphere towards a direction, with the levels by which those nearby differ from theirs.
+/// Returns the response of a sphere in a direction, with the level deviations of those nearby.
 fn filled<'a>(
     directions: &[DVec3],
     near: &WeightedDirections,
@@ -151,8 +151,8 @@ fn filled<'a>(
         .collect()
 }
 
-/// The filter of minimum phase that makes the mean energy of all responses 1 below [`BASS_HZ`] and leaves all as it is above.
-/// Shape (bin,).
+/// Returns the minimum-phase filter that makes the mean energy of all responses 1 below [`BASS_HZ`] and leaves all as it is
+/// above. Shape (bin,).
 fn bass(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f32>> {
     let mut fft = RealFft::new(2 * (frequencies.len() - 1));
     let mut logs: Vec<Complex<f32>> = (0..fft.bins()).map(|_| Complex::default()).collect();
@@ -184,7 +184,7 @@ fn bass(rests: &[[Vec<Complex<f32>>; 2]], frequencies: &[f64]) -> Vec<Complex<f3
     .collect()
 }
 
-/// The phase that all responses have in common, the loudspeaker's. Shape (bin,).
+/// Returns the common phase of all responses, the loudspeaker's. Shape (bin,).
 fn common_phase(rests: &[[Vec<Complex<f32>>; 2]], bass: &[Complex<f32>]) -> Vec<f32> {
     let both = bass.iter().enumerate().map(|(bin, bass)| {
         let mut sum = Complex::new(0.0_f32, 0.0);
@@ -200,7 +200,7 @@ fn angle(value: &Complex<f32>) -> f32 {
     libm::atan2f(value.im, value.re)
 }
 
-/// Returns how fast the phase against the common one turns from [`BASS_HZ`] to [`DELAY_HZ`], rad/Hz: the least squares of a line through 0.
+/// Returns the slope of the phase re the common one from [`BASS_HZ`] to [`DELAY_HZ`], rad/Hz: the least squares of a line through 0.
 fn slope(rest: &[Complex<f32>], common: &[f32], frequencies: &[f64]) -> f64 {
     let (mut sum, mut all) = (0.0, 0.0);
     for ((value, common), frequency_hz) in rest.iter().zip(common).zip(frequencies) {
@@ -214,8 +214,8 @@ fn slope(rest: &[Complex<f32>], common: &[f32], frequencies: &[f64]) -> f64 {
     if all > 0.0 { sum / all } else { 0.0 }
 }
 
-/// Below [`BASS_HZ`] what differs from response to response is noise, and a head does nothing but delay: the level goes to 1, and
-/// the phase to the common one and the delay of the frequencies above.
+/// Below [`BASS_HZ`] the differences between responses are noise, and a head only delays: the level goes to 1, and the
+/// phase to the common one and the delay of the frequencies above.
 fn without_noise(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64], per_hz: f64) {
     let (low, high) = BASS_HZ;
     for ((value, common), frequency_hz) in rest.iter_mut().zip(common).zip(frequencies) {
@@ -234,7 +234,7 @@ fn without_noise(rest: &mut [Complex<f32>], common: &[f32], frequencies: &[f64],
     }
 }
 
-/// The root of the mean energy in each band.
+/// Returns the root of the mean energy in each band.
 fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> BandValues {
     std::array::from_fn(|band| {
         let (mut sum, mut all) = (0.0, 0.0);
@@ -250,10 +250,10 @@ fn band_gains(rest: &[Complex<f32>], shares: &[[f64; BAND_COUNT]]) -> BandValues
     })
 }
 
-/// The delay of a wave at each band's centre, s: that of the whole, and that of the phase of the rest; in the bass, where the phase
-/// is the loudspeaker's, by its slope against that (rad/Hz).
+/// Returns the delay of a wave at each band's centre, s: the common delay, and that of the remaining phase; in the bass,
+/// where the phase is the loudspeaker's, by its slope re that (rad/Hz).
 fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -> BandValues {
-    // The phase without jumps, from where it is a head's on.
+    // The unwrapped phase, from the first frequency that is the head's.
     let first = (BASS_HZ.1 / step_hz).ceil() as usize;
     let mut phase = vec![0.0; first.min(rest.len())];
     let mut last = 0.0_f64;
@@ -280,7 +280,7 @@ fn band_delays(rest: &[Complex<f32>], step_hz: f64, delay_s: f64, per_hz: f64) -
 }
 
 impl MeasuredHead {
-    /// The rows around a direction of an ear, and their weights.
+    /// Returns the rows around a direction of an ear, and their weights.
     fn around(&self, ear: Ear, towards: Vec3) -> ([&DirectionRow; 3], [f32; 3]) {
         let (corners, weights) = self.mesh.locate(towards);
         let ear = match ear {
@@ -290,7 +290,7 @@ impl MeasuredHead {
         (corners.map(|k| &self.rows[k as usize][ear]), weights)
     }
 
-    /// Gain of amplitude and delay against the head's centre (s) in each band, from `towards` in head space.
+    /// Returns gain of amplitude and delay re the head's centre (s) in each band, from `towards` in head space.
     pub(in crate::head) fn banded(&self, ear: Ear, towards: Vec3) -> (BandValues, BandValues) {
         let ([a, b, c], [u, v, w]) = self.around(ear, towards);
         let mix = |of: fn(&DirectionRow) -> &BandValues| {
@@ -300,7 +300,7 @@ impl MeasuredHead {
         (mix(|row| &row.gain), mix(|row| &row.late_s))
     }
 
-    /// Multiplies a spectrum by what the delay leaves over, and returns the delay against the head's centre, s.
+    /// Multiplies a spectrum by the response without its delay, and returns the delay re the head's centre, s.
     pub(in crate::head) fn shade(
         &self,
         ear: Ear,
@@ -310,7 +310,7 @@ impl MeasuredHead {
         let ([a, b, c], [u, v, w]) = self.around(ear, towards);
         let rests = a.rest.iter().zip(&b.rest).zip(&c.rest);
         for (value, ((a, b), c)) in spectrum.iter_mut().zip(rests) {
-            // Phases that differ must not take away level.
+            // Differing phases must not reduce the level.
             let mean = a * u + b * v + c * w;
             let size = modulus(*a) * u + modulus(*b) * v + modulus(*c) * w;
             let found = modulus(mean);
