@@ -154,8 +154,8 @@ fn is_within(flips: &[f64]) -> bool {
     mean(flips) < MEAN_FLIP && beyond <= flips.len() / 100
 }
 
-/// Returns where two pictures show different things at one depth, within 0.1 mm or a millionth, the first one's colour is put in the second.
-/// Returns the share of such pixels. The views hold colour, depth and ids.
+/// Copies the first one's colour into the second where two pictures show different things at one depth, within 0.1 mm or a
+/// millionth. Returns the share of such pixels. The views hold colour, depth and ids.
 fn leave_coincident_out(views: &[Vec<Observation>], others: &mut [Vec<Observation>]) -> f64 {
     let (mut coincident, mut all) = (0, 0);
     for (view, other) in views.iter().zip(others) {

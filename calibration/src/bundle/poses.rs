@@ -180,7 +180,7 @@ pub(super) fn complete(name: &str, manifest: &Manifest, episodes: &[MeasuredEpis
 /// Sums of squares over samples that move fast enough.
 #[derive(Default)]
 struct Mismatch {
-    told: f64,
+    total: f64,
     left: f64,
     other_left: f64,
     /// Products of the stated velocities with those that the poses show, and squares of the latter.
@@ -190,14 +190,14 @@ struct Mismatch {
 }
 
 impl Mismatch {
-    fn add(&mut self, from_poses: DVec3, told: DVec3, other: DVec3) {
+    fn add(&mut self, from_poses: DVec3, stated: DVec3, other: DVec3) {
         if from_poses.length() < TELLING_SPEED || !from_poses.is_finite() {
             return;
         }
         self.count += 1;
-        self.told += from_poses.length_squared();
-        self.left += (told - from_poses).length_squared();
-        self.along += told.dot(from_poses);
+        self.total += from_poses.length_squared();
+        self.left += (stated - from_poses).length_squared();
+        self.along += stated.dot(from_poses);
         self.shown += from_poses.length_squared();
         self.other_left += (other - from_poses).length_squared();
     }
@@ -209,7 +209,7 @@ impl Mismatch {
 
     /// The share of the motion that the stated velocities miss; `None` where too little moves.
     fn share(&self) -> Option<f64> {
-        (self.count >= FEWEST_TELLING).then(|| (self.left / self.told).sqrt())
+        (self.count >= FEWEST_TELLING).then(|| (self.left / self.total).sqrt())
     }
 }
 

@@ -35,9 +35,12 @@ const USUAL_DENSITY_KG_M3: f32 = 300.0;
 ///
 /// # Errors
 /// [`HousesError::Spec`] for what does not exist or cannot be; what readers of files say.
-pub(super) fn add(desk: &mut EditSession<'_>, wanted: &AddObject) -> Result<ObjectId, HousesError> {
+pub(super) fn add(
+    session: &mut EditSession<'_>,
+    wanted: &AddObject,
+) -> Result<ObjectId, HousesError> {
     if let Some(name) = &wanted.name {
-        desk.free_name("name", name)?;
+        session.free_name("name", name)?;
     }
     if wanted.place.at.is_none() && wanted.place.on.is_none() {
         return Err(fault("place", "no place", "`at`, `on`, or both"));
@@ -45,50 +48,50 @@ pub(super) fn add(desk: &mut EditSession<'_>, wanted: &AddObject) -> Result<Obje
     let id = match &wanted.what {
         ObjectSource::Catalogue { kind, style, seed } => {
             let model = model(kind, style.as_deref(), *seed).map_err(inside("what.catalogue"))?;
-            from_model(&mut desk.data, model)
+            from_model(&mut session.data, model)
         }
         ObjectSource::File { path, scale, up } => {
-            from_file(desk, path, *scale, *up, &wanted.traits).map_err(inside("what.file"))?
+            from_file(session, path, *scale, *up, &wanted.traits).map_err(inside("what.file"))?
         }
         ObjectSource::Copy { house, object } => {
-            copy(desk, house.as_deref(), object).map_err(inside("what.copy"))?
+            copy(session, house.as_deref(), object).map_err(inside("what.copy"))?
         }
         ObjectSource::Box { size_m } => {
-            from_box(&mut desk.data, *size_m, &wanted.traits).map_err(inside("what.box"))?
+            from_box(&mut session.data, *size_m, &wanted.traits).map_err(inside("what.box"))?
         }
     };
-    describe::describe(&mut desk.data, id, &wanted.traits).map_err(inside("traits"))?;
+    describe::describe(&mut session.data, id, &wanted.traits).map_err(inside("traits"))?;
     if let Some(look) = &wanted.look {
-        surfaces::paint_object(&mut desk.data, id, None, look).map_err(inside("look"))?;
+        surfaces::paint_object(&mut session.data, id, None, look).map_err(inside("look"))?;
     }
-    put(desk, id, wanted.name.as_deref(), &wanted.place)?;
+    put(session, id, wanted.name.as_deref(), &wanted.place)?;
     if let Some(sound) = &wanted.sound {
-        fixtures::sound_of(desk, id, sound).map_err(inside("sound"))?;
+        fixtures::sound_of(session, id, sound).map_err(inside("sound"))?;
     }
     Ok(id)
 }
 
 /// Names a new object and puts it into its place.
 pub(super) fn put(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     id: ObjectId,
     name: Option<&str>,
     placing: &Placement,
 ) -> Result<(), HousesError> {
-    let object = &mut desk.data.objects[id];
+    let object = &mut session.data.objects[id];
     // Not yet counted with the others.
     let base = object.category.coarse.clone();
     object.name = String::new();
     let name = name.map_or_else(
-        || desk.object_index.next_numbered_name(&base),
+        || session.object_index.next_numbered_name(&base),
         str::to_owned,
     );
-    let object = &mut desk.data.objects[id];
+    let object = &mut session.data.objects[id];
     object.source_id.clone_from(&name);
     object.name = name;
-    let change = place::movement(desk, id, placing)?;
-    place::carry(desk, &[id].into(), &change);
-    place::settle(&mut desk.data, id);
+    let change = place::movement(session, id, placing)?;
+    place::carry(session, &[id].into(), &change);
+    place::settle(&mut session.data, id);
     Ok(())
 }
 
@@ -168,25 +171,25 @@ fn first(ids: &[ObjectId]) -> ObjectId {
 }
 
 fn copy(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     house: Option<&str>,
     name: &str,
 ) -> Result<ObjectId, HousesError> {
     let source: Arc<House> = match house {
         None => {
-            let id = desk.object("object", name)?;
+            let id = session.object("object", name)?;
             let mut own = HouseData::default();
-            let alone = graft(&mut own, &desk.data, &[id]);
-            return Ok(first(&graft(&mut desk.data, &own, &alone)));
+            let alone = graft(&mut own, &session.data, &[id]);
+            return Ok(first(&graft(&mut session.data, &own, &alone)));
         }
         Some(house) => {
-            let house = desk.files.house("house", house)?;
-            if let Some(known) = desk.houses.get(&house) {
+            let house = session.files.house("house", house)?;
+            if let Some(known) = session.houses.get(&house) {
                 known.clone()
             } else {
-                let (opened, _) = open_by(FORMATS, &house, desk.threads)?;
+                let (opened, _) = open_by(FORMATS, &house, session.threads)?;
                 let opened = Arc::new(opened);
-                desk.houses.insert(house, opened.clone());
+                session.houses.insert(house, opened.clone());
                 opened
             }
         }
@@ -195,17 +198,17 @@ fn copy(
         let names = source.objects.iter().map(|object| object.name.as_str());
         unknown("object", name, "objects", names)
     })?;
-    Ok(first(&graft(&mut desk.data, &source, &[id])))
+    Ok(first(&graft(&mut session.data, &source, &[id])))
 }
 
 fn from_file(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     path: &str,
     scale: f32,
     up: UpAxis,
     traits: &ObjectAttributes,
 ) -> Result<ObjectId, HousesError> {
-    let loaded = mesh_file::load(desk, path, scale, up)?;
+    let loaded = mesh_file::load(session, path, scale, up)?;
     let stem = path.rsplit(['/', '\\']).next().unwrap_or(path);
     let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
     let colliders = convex_pieces(
@@ -219,7 +222,7 @@ fn from_file(
         stem,
         traits,
     );
-    Ok(first(&graft(&mut desk.data, &single, &[ObjectId(0)])))
+    Ok(first(&graft(&mut session.data, &single, &[ObjectId(0)])))
 }
 
 fn from_box(

@@ -19,16 +19,19 @@ const ROOM_M: f32 = 0.5;
 /// # Errors
 /// [`HousesError::Spec`] for a room that does not exist, holds no place to stand or does not hold `at`, neither place nor room,
 /// and an agent behind the next one.
-pub(super) fn set(desk: &mut EditSession<'_>, wanted: &SetAgentStart) -> Result<(), HousesError> {
+pub(super) fn set(
+    session: &mut EditSession<'_>,
+    wanted: &SetAgentStart,
+) -> Result<(), HousesError> {
     let yaw_rad = within("yaw_deg", wanted.yaw_deg, [-36_000.0, 36_000.0], "degrees")?.to_radians();
     let room = match &wanted.room {
-        Some(name) => Some(surfaces::room(&desk.data, "room", name)?),
+        Some(name) => Some(surfaces::room(&session.data, "room", name)?),
         None => None,
     };
     let position = match (wanted.at, room) {
         (Some(at), room) => {
             let at = point("at", at)?;
-            if let Some(room) = room.map(|id| &desk.data.rooms[id])
+            if let Some(room) = room.map(|id| &session.data.rooms[id])
                 && !holds(room, at)
             {
                 let possible = format!(
@@ -40,15 +43,15 @@ pub(super) fn set(desk: &mut EditSession<'_>, wanted: &SetAgentStart) -> Result<
             at
         }
         (None, Some(room)) => {
-            let room = desk.data.rooms[room].clone();
-            free_place(desk, &room)?.ok_or_else(|| {
+            let room = session.data.rooms[room].clone();
+            free_place(session, &room)?.ok_or_else(|| {
                 let found = format!("{:?}, where nobody can stand", room.name);
                 fault("room", found, "a room with free floor, or `at`")
             })?
         }
         (None, None) => return Err(fault("at, room", "neither", "one of them, or both")),
     };
-    let starts = &mut desk.data.agent_starts;
+    let starts = &mut session.data.agent_starts;
     let next = starts.len();
     let agent = wanted.agent.map_or(next, |agent| agent as usize);
     let start = AgentStart { position, yaw_rad };
@@ -68,8 +71,8 @@ fn holds(room: &Room, at: Vec3) -> bool {
 }
 
 /// The place nearest to the middle of a room where someone of usual size can stand, as the house is now.
-fn free_place(desk: &EditSession<'_>, room: &Room) -> Result<Option<Vec3>, HousesError> {
-    let house = desk.checked()?;
+fn free_place(session: &EditSession<'_>, room: &Room) -> Result<Option<Vec3>, HousesError> {
+    let house = session.checked()?;
     let body = AgentBody::default();
     let config = NavConfig {
         radius_m: body.radius_m,

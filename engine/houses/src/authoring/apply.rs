@@ -62,16 +62,16 @@ pub fn edit(
             allowed: MAX_EDITS as u64,
         });
     }
-    let mut desk = EditSession::new(house.data().clone(), files);
+    let mut session = EditSession::new(house.data().clone(), files);
     for (k, edit) in edits.iter().enumerate() {
         interrupt::check();
         let place = format!("edits[{k}].{}", edit.word());
-        desk.apply(edit).map_err(inside(place))?;
+        session.apply(edit).map_err(inside(place))?;
     }
-    desk.flush_removals();
+    session.flush_removals();
     let at = FileLocation::file("edits");
-    let edited = House::new(desk.data).map_err(HousesError::scene(&at))?;
-    let mut report = desk.report;
+    let edited = House::new(session.data).map_err(HousesError::scene(&at))?;
+    let mut report = session.report;
     let put = put(house, &edited, edits);
     let named = |id: ObjectId| &edited.objects[id].name;
     let state = State::new(&edited);

@@ -28,7 +28,7 @@ const USUAL_W: f32 = 10.0;
 
 /// Gives an object a sound from its middle; it starts switched on.
 pub(super) fn sound_of(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     id: ObjectId,
     sound: &SoundSpec,
 ) -> Result<(), HousesError> {
@@ -37,9 +37,9 @@ pub(super) fn sound_of(
     let (signal, sound_file) = match (&sound.signal, &sound.file) {
         (Some(signal), None) if !signal.is_empty() => (signal.clone(), None),
         (None, Some(file)) => {
-            let sound = sound_file::load(desk.files, file)?;
-            let id = sound_file::keep(&mut desk.data.sound_files, Arc::new(sound));
-            (desk.data.sound_files[id].name.clone(), Some(id))
+            let sound = sound_file::load(session.files, file)?;
+            let id = sound_file::keep(&mut session.data.sound_files, Arc::new(sound));
+            (session.data.sound_files[id].name.clone(), Some(id))
         }
         (both, _) => {
             let found = if both.as_ref().is_some_and(|signal| !signal.is_empty()) {
@@ -51,11 +51,11 @@ pub(super) fn sound_of(
             return Err(fault("signal, file", found, possible));
         }
     };
-    let position = desk.middle_of_root(id);
-    let object = &mut desk.data.objects[id];
+    let position = session.middle_of_root(id);
+    let object = &mut session.data.objects[id];
     object.switch = object.switch.map(|_| true);
     let part = object.first_part;
-    desk.data.emitters.push(SoundEmitter {
+    session.data.emitters.push(SoundEmitter {
         object: id,
         part,
         position,
@@ -73,12 +73,12 @@ pub(super) fn sound_of(
 /// # Errors
 /// [`HousesError::Spec`].
 pub(super) fn add_emitter(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     wanted: &AddEmitter,
 ) -> Result<(), HousesError> {
     match (&wanted.object, wanted.at) {
         (Some(name), None) => {
-            let id = desk.object("object", name)?;
+            let id = session.object("object", name)?;
             if wanted.name.is_some() {
                 return Err(fault(
                     "name",
@@ -86,17 +86,17 @@ pub(super) fn add_emitter(
                     "a name beside `at`",
                 ));
             }
-            sound_of(desk, id, &wanted.sound).map_err(inside("sound"))
+            sound_of(session, id, &wanted.sound).map_err(inside("sound"))
         }
         (None, Some(at)) => {
             let at = point("at", at)?;
             if let Some(name) = &wanted.name {
-                desk.free_name("name", name)?;
+                session.free_name("name", name)?;
             }
-            let id = disc(&mut desk.data);
+            let id = disc(&mut session.data);
             let name = match &wanted.name {
                 Some(name) => name.clone(),
-                None => desk.object_index.next_numbered_name("source"),
+                None => session.object_index.next_numbered_name("source"),
             };
             let [_, _, below] = DISC_M;
             let place = Placement {
@@ -104,9 +104,9 @@ pub(super) fn add_emitter(
                 anchor: super::edits::Anchor::Top,
                 ..Placement::default()
             };
-            put(desk, id, Some(&name), &place)?;
-            sound_of(desk, id, &wanted.sound).map_err(inside("sound"))?;
-            if let Some(emitter) = desk.data.emitters.last_mut() {
+            put(session, id, Some(&name), &place)?;
+            sound_of(session, id, &wanted.sound).map_err(inside("sound"))?;
+            if let Some(emitter) = session.data.emitters.last_mut() {
                 emitter.position = Vec3::Y * (0.5 * DISC_M[1] + below);
             }
             Ok(())
@@ -171,7 +171,7 @@ fn disc(data: &mut HouseData) -> ObjectId {
 ///
 /// # Errors
 /// [`HousesError::Spec`].
-pub(super) fn add_lamp(desk: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
+pub(super) fn add_lamp(session: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(), HousesError> {
     let power = wanted
         .power_w
         .map(|power| within("power_w", power, [0.0, 1e5], "W"))
@@ -180,12 +180,12 @@ pub(super) fn add_lamp(desk: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(
         .srgb
         .map(|srgb| srgb.map(|c| units::linear_from_srgb(f32::from(c) / 255.0)));
     if let Some(name) = &wanted.object {
-        let id = desk.object("object", name)?;
-        let position = desk.middle_of_root(id);
-        let object = &mut desk.data.objects[id];
+        let id = session.object("object", name)?;
+        let position = session.middle_of_root(id);
+        let object = &mut session.data.objects[id];
         object.switch = Some(wanted.on);
         let part = object.first_part;
-        desk.data.lights.push(Light {
+        session.data.lights.push(Light {
             object: id,
             part,
             position,
@@ -197,7 +197,7 @@ pub(super) fn add_lamp(desk: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(
         return Ok(());
     }
     if let Some(name) = &wanted.name {
-        desk.free_name("name", name)?;
+        session.free_name("name", name)?;
     }
     let lamp = model(&wanted.kind, wanted.style.as_deref(), wanted.seed)?;
     if lamp.lights.is_empty() {
@@ -211,10 +211,10 @@ pub(super) fn add_lamp(desk: &mut EditSession<'_>, wanted: &AddLamp) -> Result<(
     if wanted.place.at.is_none() && wanted.place.on.is_none() {
         return Err(fault("place", "no place", "`at`, `on`, or both"));
     }
-    let id = from_model(&mut desk.data, lamp);
-    put(desk, id, wanted.name.as_deref(), &wanted.place)?;
-    desk.data.objects[id].switch = Some(wanted.on);
-    let own = desk
+    let id = from_model(&mut session.data, lamp);
+    put(session, id, wanted.name.as_deref(), &wanted.place)?;
+    session.data.objects[id].switch = Some(wanted.on);
+    let own = session
         .data
         .lights
         .iter_mut()

@@ -29,7 +29,7 @@ pub(super) struct LoadedMesh {
 /// # Errors
 /// Those of the format's reader; [`HousesError::Empty`] without a triangle.
 pub(super) fn load(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     name: &str,
     scale: f32,
     up: UpAxis,
@@ -41,12 +41,12 @@ pub(super) fn load(
         "metres for one unit of the file",
     )?;
     let key = format!("{name}\n{scale}\n{up:?}");
-    if let Some(known) = desk.meshes.get(&key) {
+    if let Some(known) = session.meshes.get(&key) {
         return Ok(known.clone());
     }
-    let path = desk.files.path("path", name)?;
+    let path = session.files.path("path", name)?;
     let mut report = LoadReport::new();
-    let scene = read(&path, desk.threads, &mut report)?;
+    let scene = read(&path, session.threads, &mut report)?;
     let turn = match up {
         UpAxis::Y => Quat::IDENTITY,
         UpAxis::Z => Quat::from_xyzw(
@@ -88,9 +88,9 @@ pub(super) fn load(
         ..HouseData::default()
     };
     data.meshes.push(Arc::new(mesh));
-    desk.report.append(report);
+    session.report.append(report);
     let loaded = Arc::new(LoadedMesh { data, materials });
-    desk.meshes.insert(key, loaded.clone());
+    session.meshes.insert(key, loaded.clone());
     Ok(loaded)
 }
 

@@ -84,11 +84,11 @@ pub(super) fn anchor_in_world(data: &HouseData, object: ObjectId, which: Anchor)
 }
 
 /// Moves objects, each part and each joint that hangs on the house.
-pub(super) fn carry(desk: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
-    desk.object_index.moved(objects.iter().copied());
+pub(super) fn carry(session: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, change: &Pose) {
+    session.object_index.moved(objects.iter().copied());
     for object in objects {
-        let joints = desk.object_index.joints_of(&desk.data, *object);
-        let data = &mut desk.data;
+        let joints = session.object_index.joints_of(&session.data, *object);
+        let data = &mut session.data;
         for part in data.objects[*object].parts() {
             let pose = &mut data.parts[part].world_from_part;
             *pose = *change * *pose;
@@ -104,11 +104,11 @@ pub(super) fn carry(desk: &mut EditSession<'_>, objects: &BTreeSet<ObjectId>, ch
 
 /// The movement that puts an object's anchor at a place with a heading; values that `placing` leaves open stay.
 pub(super) fn movement(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     object: ObjectId,
     placing: &Placement,
 ) -> Result<Pose, HousesError> {
-    let data = &desk.data;
+    let data = &session.data;
     let root = data.parts[data.objects[object].first_part].world_from_part;
     let own = anchor(data, object, placing.anchor);
     let old_yaw = yaw_of(&root);
@@ -130,13 +130,13 @@ pub(super) fn movement(
         .flat_map(|part| points(data, part))
         .map(|p| turn * (p - old));
     let around = Aabb::from_points(around);
-    let target = target(desk, object, placing, &around)?.unwrap_or(old);
+    let target = target(session, object, placing, &around)?.unwrap_or(old);
     Ok(Pose::new(target - turn * old, turn))
 }
 
 /// Returns the target of the anchor; `None`: it stays. `around`: the box of the thing around its anchor after the rotation, m.
 fn target(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     object: ObjectId,
     placing: &Placement,
     around: &Aabb,
@@ -145,17 +145,17 @@ fn target(
     let Some(on) = &placing.on else {
         return Ok(at);
     };
-    if desk.data.objects[object].name == *on {
+    if session.data.objects[object].name == *on {
         return Err(fault(
             "place.on",
             format_args!("{on:?}, itself"),
             "another object",
         ));
     }
-    let carrier = desk.object("place.on", on)?;
-    let data = &desk.data;
+    let carrier = session.object("place.on", on)?;
+    let data = &session.data;
     let Some(Vec3 { x, z, .. }) = at else {
-        let boxes = desk.object_index.boxes(data);
+        let boxes = session.object_index.boxes(data);
         let free = PlacementSearch::on(data, boxes, carrier, object, around).find();
         let [wide, deep] = [around.size().x, around.size().z];
         return free.map(Some).ok_or_else(|| {

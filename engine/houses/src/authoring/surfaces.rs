@@ -39,13 +39,13 @@ pub(super) fn room(data: &HouseData, field: &str, name: &str) -> Result<RoomId, 
 /// # Errors
 /// [`HousesError::Spec`] for surfaces, substances or numbers that are not there.
 pub(super) fn change_material(
-    desk: &mut EditSession<'_>,
+    session: &mut EditSession<'_>,
     change: &ChangeMaterial,
 ) -> Result<(), HousesError> {
     let look = &change.look;
     match &change.of {
         SurfaceSelector::Material(name) => {
-            let data = &mut desk.data;
+            let data = &mut session.data;
             let found = data
                 .materials
                 .iter()
@@ -57,7 +57,7 @@ pub(super) fn change_material(
             change_in_place(data, id, look).map_err(inside("look"))
         }
         SurfaceSelector::Structure(name) => {
-            let data = &mut desk.data;
+            let data = &mut session.data;
             let found = data.structure.iter().position(|piece| piece.name == *name);
             let id = found.map(StructureId::from_index).ok_or_else(|| {
                 let names = data.structure.iter().map(|piece| piece.name.as_str());
@@ -70,11 +70,11 @@ pub(super) fn change_material(
             Ok(())
         }
         SurfaceSelector::Object { name, part } => {
-            let id = desk.object("of.object.name", name)?;
-            paint_object(&mut desk.data, id, part.as_deref(), look)
+            let id = session.object("of.object.name", name)?;
+            paint_object(&mut session.data, id, part.as_deref(), look)
         }
         SurfaceSelector::Room { name, side } => {
-            let data = &mut desk.data;
+            let data = &mut session.data;
             let id = room(data, "of.room.name", name)?;
             paint_room(data, id, *side, look)
         }

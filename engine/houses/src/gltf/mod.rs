@@ -147,8 +147,8 @@ fn check_version(asset: &::gltf::json::Asset, at: &FileLocation) -> Result<(), H
     })
 }
 
-/// Returns whether the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks them, which
-/// panics.
+/// Checks that the positions of all primitives are accessors that exist: the `gltf` crate (1.4) looks them up before it checks
+/// them, which panics.
 fn check_positions(json: &::gltf::json::Root, at: &FileLocation) -> Result<(), HousesError> {
     use ::gltf::json::mesh::Semantic;
     use ::gltf::json::validation::Checked;

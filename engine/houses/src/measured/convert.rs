@@ -56,7 +56,9 @@ fn is_side(name: &str) -> bool {
 
 fn is_band_list(centres_hz: &[f32]) -> bool {
     let in_range = |centre: &f32| *centre > 0.0 && centre.is_finite();
-    !centres_hz.is_empty() && centres_hz.iter().all(in_range) && centres_hz.is_sorted_by(|a, b| a < b)
+    !centres_hz.is_empty()
+        && centres_hz.iter().all(in_range)
+        && centres_hz.is_sorted_by(|a, b| a < b)
 }
 
 /// Converts the file's axes to the house's.

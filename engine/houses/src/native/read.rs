@@ -22,8 +22,8 @@ use crate::report::{FileLocation, LoadReport};
 ///
 /// # Errors
 /// [`HousesError::Io`] when a file is missing, [`HousesError::Version`] for another version, [`HousesError::Syntax`]
-/// with the line or field for content that is not of this form or not what its name says, [`HousesError::Scene`] when the tables break a rule of the
-/// scene. The form is exact, so nothing is survived and the report stays empty.
+/// with the line or field for content that is not of this form or not what its name says, [`HousesError::Scene`] when the tables
+/// break a rule of the scene. The form is exact, so nothing is survived and the report stays empty.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
     let meta = std::fs::metadata(path).map_err(HousesError::io(path))?;
     if !meta.is_dir() {

@@ -16,7 +16,8 @@ use crate::limits::MAX_TEXT_BYTES;
 ///
 /// # Errors
 /// [`HousesError::Unwritable`] when the house holds a number that is not finite outside of its meshes, when its geometry
-/// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
+/// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`;
+/// [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
     write_as(house, path, Storage::Inside)
 }

@@ -78,8 +78,8 @@ impl ImageTile<'_> {
         };
         let mut sum = Vec3::ZERO;
         for sample in 0..SAMPLES {
-            let mut dice = PixelSampler::new((column, row), sample);
-            let (x, y) = dice.pair();
+            let mut sampler = PixelSampler::new((column, row), sample);
+            let (x, y) = sampler.pair();
             let place = |cell: usize, within: f32| (cell as f32 + within) / EDGE as f32;
             let image = Vec2::new(
                 column as f32 + place(sample % EDGE, x),
@@ -93,7 +93,7 @@ impl ImageTile<'_> {
                     per_length,
                     hidden: self.rays.hidden(),
                 };
-                sum += display(tracer.light_along(ray, path, &mut dice));
+                sum += display(tracer.light_along(ray, path, &mut sampler));
             }
         }
         crate::color::SrgbTables::tables().encode3((sum / SAMPLES as f32).to_array())
@@ -102,7 +102,7 @@ impl ImageTile<'_> {
 
 impl PathTracer<'_> {
     /// Returns the radiance along a ray, in units of display white.
-    fn light_along(&self, mut ray: Ray, path: PathState, dice: &mut PixelSampler) -> Vec3 {
+    fn light_along(&self, mut ray: Ray, path: PathState, sampler: &mut PixelSampler) -> Vec3 {
         let (mut light, mut rest) = (Vec3::ZERO, 1.0);
         for layer in 1..=LAYERS {
             let Some(hit) = self.band.scene.closest_excluding(&ray, SEEN, path.hidden) else {
@@ -118,7 +118,7 @@ impl PathTracer<'_> {
                 instance: hit.instance,
                 triangle: hit.triangle,
             };
-            let (more, opacity) = self.surface((&sight, distance), (hit.u, hit.v), path, dice);
+            let (more, opacity) = self.surface((&sight, distance), (hit.u, hit.v), path, sampler);
             if opacity >= OPAQUE || layer == LAYERS {
                 return light + more * rest;
             }
@@ -140,7 +140,7 @@ impl PathTracer<'_> {
         (sight, distance_m): (&PrimaryHit, f32),
         weights: (f32, f32),
         path: PathState,
-        dice: &mut PixelSampler,
+        sampler: &mut PixelSampler,
     ) -> (Vec3, f32) {
         let (renderer, state) = (self.renderer, self.band.state);
         let position = renderer.surfaces.position(sight.instance, sight.triangle);
@@ -152,7 +152,7 @@ impl PathTracer<'_> {
                 facet: facing,
                 facing,
             };
-            let light = self.reflected(sight, off, seen, path, dice);
+            let light = self.reflected(sight, off, seen, path, sampler);
             return (skin.color * light, skin.opacity);
         }
         let site = ShadingPoint {
@@ -181,17 +181,17 @@ impl PathTracer<'_> {
                     return;
                 }
                 sum += match source {
-                    LightSource::Room => self.indirect_light(off, smooth, path, dice),
-                    _ if self.arrives(source, (off, facing), smooth, dice) => light,
+                    LightSource::Room => self.indirect_light(off, smooth, path, sampler),
+                    _ if self.arrives(source, (off, facing), smooth, sampler) => light,
                     _ => Vec3::ZERO,
                 };
             });
         let mut shown = skin.color * sum;
         if path.mirrors > 0 && reflects(skin.look) {
-            let facet = dice.sample_microfacet(smooth, skin.look.roughness);
+            let facet = sampler.sample_microfacet(smooth, skin.look.roughness);
             let share = reflectance(skin.look, skin.color, -sight.direction.dot(facet));
             let seen = Microfacet { facet, facing };
-            let light = self.reflected(sight, off, seen, path, dice);
+            let light = self.reflected(sight, off, seen, path, sampler);
             shown = shown * (Vec3::ONE - share) * (1.0 - skin.look.metallic) + light * share;
         }
         shown += self
@@ -207,7 +207,7 @@ impl PathTracer<'_> {
         off: Vec3,
         Microfacet { facet, facing }: Microfacet,
         path: PathState,
-        dice: &mut PixelSampler,
+        sampler: &mut PixelSampler,
     ) -> Vec3 {
         let direction = sight.direction.reflect(facet).normalize_or(facing);
         // A facet that reflects into its own surface would show that; the surface's mirror image stands for it.
@@ -223,7 +223,7 @@ impl PathTracer<'_> {
             hidden: EntityId::VOID.0,
             ..path
         };
-        self.light_along(Ray::new(off, direction), path, dice)
+        self.light_along(Ray::new(off, direction), path, sampler)
     }
 
     /// Returns the light that other surfaces reflect on one of reflectance 1.
@@ -232,7 +232,7 @@ impl PathTracer<'_> {
         off: Vec3,
         normal: Vec3,
         path: PathState,
-        dice: &mut PixelSampler,
+        sampler: &mut PixelSampler,
     ) -> Vec3 {
         let path = PathState {
             bounces: path.bounces - 1,
@@ -240,12 +240,12 @@ impl PathTracer<'_> {
             hidden: EntityId::VOID.0,
             ..path
         };
-        let one = |dice: &mut PixelSampler| {
-            let direction = dice.cosine(normal);
-            let light = self.light_along(Ray::new(off, direction), path, dice);
+        let one = |sampler: &mut PixelSampler| {
+            let direction = sampler.cosine(normal);
+            let light = self.light_along(Ray::new(off, direction), path, sampler);
             light.min(Vec3::splat(MOST_GATHERED))
         };
-        let sum = (0..GATHERED).fold(Vec3::ZERO, |sum, _| sum + one(dice));
+        let sum = (0..GATHERED).fold(Vec3::ZERO, |sum, _| sum + one(sampler));
         sum / GATHERED as f32
     }
 
@@ -255,30 +255,30 @@ impl PathTracer<'_> {
         source: LightSource,
         (off, facing): (Vec3, Vec3),
         normal: Vec3,
-        dice: &mut PixelSampler,
+        sampler: &mut PixelSampler,
     ) -> bool {
         let (renderer, scene) = (self.renderer, self.band.scene);
         let (target, hidden) = match source {
             LightSource::None | LightSource::Room => return true,
             LightSource::Sun => {
-                let to_sun = dice.uniform_cone(renderer.house_light().sun.0, SUN_RADIUS);
+                let to_sun = sampler.uniform_cone(renderer.house_light().sun.0, SUN_RADIUS);
                 return renderer.sky_reaches(scene, off, to_sun);
             }
             LightSource::Sky => {
-                let direction = dice.cosine(normal);
+                let direction = sampler.cosine(normal);
                 // What lies below throws back what the ground is taken to.
                 return direction.y < 0.0 || renderer.sky_reaches(scene, off, direction);
             }
             LightSource::Window(position) => {
                 let window = &renderer.house_light().windows[position as usize];
-                let (x, y) = dice.pair();
+                let (x, y) = sampler.pair();
                 let [across, along] = window.half;
                 let on_pane = window.center + across * (2.0 * x - 1.0) + along * (2.0 * y - 1.0);
                 (on_pane + window.normal * BEFORE_FRAME_M, EntityId::VOID.0)
             }
             LightSource::Caster(position) => {
                 let caster = self.lighting.caster(position);
-                let (pick, within) = (dice.pair(), dice.uniform_ball());
+                let (pick, within) = (sampler.pair(), sampler.uniform_ball());
                 let place = self.lighting.place_in_caster(caster, off, pick, within);
                 (place, caster.entity)
             }

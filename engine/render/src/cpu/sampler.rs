@@ -13,7 +13,7 @@ const MIXED: u32 = 15;
 pub(super) struct PixelSampler {
     pixel: u32,
     sample: u32,
-    throw: u32,
+    draw: u32,
 }
 
 impl PixelSampler {
@@ -21,17 +21,17 @@ impl PixelSampler {
         Self {
             pixel: mixed(column as u32 ^ mixed(row as u32)),
             sample: sample as u32,
-            throw: 0,
+            draw: 0,
         }
     }
 
     /// Two numbers from 0 up to 1: over all samples of a pixel evenly spread, each pixel's shifted by its own.
     #[inline]
     pub(super) fn pair(&mut self) -> (f32, f32) {
-        self.throw += 1;
-        let shift = mixed(self.pixel ^ mixed(self.throw));
+        self.draw += 1;
+        let shift = mixed(self.pixel ^ mixed(self.draw));
         // Draws of one sample would be correlated if all took the samples in one order.
-        let place = (self.sample ^ (mixed(self.throw) & MIXED)) as f32;
+        let place = (self.sample ^ (mixed(self.draw) & MIXED)) as f32;
         let part = |bits: u32, step: f32| {
             let number = f32::from(bits as u16) * (1.0 / 65536.0) + place * step;
             number - number.floor()
@@ -88,11 +88,11 @@ fn mixed(bits: u32) -> u32 {
 mod tests {
     use super::*;
 
-    fn all(throw: impl Fn(&mut PixelSampler) -> Vec3) -> Vec3 {
+    fn all(draw: impl Fn(&mut PixelSampler) -> Vec3) -> Vec3 {
         let mut sum = Vec3::ZERO;
         for pixel in 0..4096 {
             for sample in 0..16 {
-                sum += throw(&mut PixelSampler::new((pixel % 64, pixel / 64), sample));
+                sum += draw(&mut PixelSampler::new((pixel % 64, pixel / 64), sample));
             }
         }
         sum / 65536.0
@@ -102,8 +102,8 @@ mod tests {
     #[test]
     fn throws_are_even() {
         let normal = Vec3::new(0.48, 0.6, -0.64);
-        let pair = all(|dice| {
-            let (u, v) = dice.pair();
+        let pair = all(|sampler| {
+            let (u, v) = sampler.pair();
             Vec3::new(u, v, u * v)
         });
         assert!(
@@ -111,22 +111,22 @@ mod tests {
             "{pair}"
         );
         // The mean cosine of directions as likely as their cosine is 2/3.
-        let cosine = all(|dice| dice.cosine(normal));
+        let cosine = all(|sampler| sampler.cosine(normal));
         assert!((cosine - normal * (2.0 / 3.0)).length() < 0.005, "{cosine}");
         // The mean square of the tangent over a disc is half of that at its rim.
-        let tangent = all(|dice| {
-            let cosine = dice.uniform_cone(normal, 0.2).dot(normal);
+        let tangent = all(|sampler| {
+            let cosine = sampler.uniform_cone(normal, 0.2).dot(normal);
             Vec3::splat(1.0 / (cosine * cosine) - 1.0)
         });
         assert!((tangent.x - 0.02).abs() < 2e-4, "{tangent}");
         let ball = all(PixelSampler::uniform_ball);
         assert!(ball.length() < 0.006, "{ball}");
         // The mean square distance from the middle of a ball is 3/5.
-        let square = all(|dice| Vec3::splat(dice.uniform_ball().length_squared()));
+        let square = all(|sampler| Vec3::splat(sampler.uniform_ball().length_squared()));
         assert!((square.x - 0.6).abs() < 0.005, "{square}");
         // Half of all facets are steeper than a.
-        let steep = all(|dice| {
-            let facet = dice.sample_microfacet(normal, 0.5);
+        let steep = all(|sampler| {
+            let facet = sampler.sample_microfacet(normal, 0.5);
             let cosine = facet.dot(normal);
             let tangent = (1.0 / (cosine * cosine) - 1.0).max(0.0).sqrt();
             Vec3::splat(f32::from(u8::from(tangent > 0.25)))

@@ -51,19 +51,23 @@ pub(super) struct EmitterOverride {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EmitterStates {
     /// By number; emitters without an entry are as the house says.
-    pub(super) told: BTreeMap<u64, EmitterOverride>,
+    pub(super) overrides: BTreeMap<u64, EmitterOverride>,
     /// Shape (emitter,); empty before the first step.
     pub(super) fades: Vec<GainRamp>,
 }
 
 impl EmitterStates {
     pub(super) fn level_db(&self, house: &House, k: usize) -> f32 {
-        let told = self.told.get(&(k as u64)).and_then(|told| told.level_db);
-        told.unwrap_or(house.emitters[k].level_db)
+        let own = self.overrides.get(&(k as u64));
+        let level_db = own.and_then(|own| own.level_db);
+        level_db.unwrap_or(house.emitters[k].level_db)
     }
 
     pub(super) fn is_on(&self, house: &House, state: &State, k: usize) -> bool {
-        let silent = self.told.get(&(k as u64)).is_some_and(|told| told.silent);
+        let silent = self
+            .overrides
+            .get(&(k as u64))
+            .is_some_and(|own| own.silent);
         !silent && state.is_on(house, house.emitters[k].object)
     }
 

@@ -117,7 +117,7 @@ impl WorldSound {
         self.emitters.update(engines.house(), state);
         for playing in &mut self.playing {
             let target = playing.target();
-            playing.told.fade.update(target);
+            playing.state.fade.update(target);
         }
         if !self.ears.is_empty() {
             let sources = self.sources(engines, rays, state, self.blocks)?;
@@ -223,9 +223,9 @@ impl WorldSound {
         for playing in &self.playing {
             let mut signal = vec![0.0; self.block];
             playing.read(start, &mut signal);
-            playing.told.fade.apply(self.rate_hz, &mut signal);
+            playing.state.fade.apply(self.rate_hz, &mut signal);
             sources.push(BlockSource {
-                id: playing.told.id,
+                id: playing.state.id,
                 position: air_position(rays, playing.heard_from(house, state)),
                 signal,
             });
@@ -274,7 +274,7 @@ impl WorldSound {
         silent: bool,
     ) -> Result<(), WorldError> {
         match self.played(handle) {
-            Some(playing) => playing.told.stopped = silent,
+            Some(playing) => playing.state.stopped = silent,
             None => self.emitter(house, handle)?.silent = silent,
         }
         Ok(())
@@ -287,7 +287,7 @@ impl WorldSound {
         level_db: f32,
     ) -> Result<(), WorldError> {
         match self.played(handle) {
-            Some(playing) => playing.told.request.level_db = level_db,
+            Some(playing) => playing.state.request.level_db = level_db,
             None => self.emitter(house, handle)?.level_db = Some(level_db),
         }
         Ok(())
@@ -295,7 +295,7 @@ impl WorldSound {
 
     fn played(&mut self, handle: u64) -> Option<&mut Playback> {
         let mut playing = self.playing.iter_mut();
-        playing.find(|playing| playing.told.id == handle)
+        playing.find(|playing| playing.state.id == handle)
     }
 
     fn emitter(
@@ -305,9 +305,9 @@ impl WorldSound {
     ) -> Result<&mut emitters::EmitterOverride, WorldError> {
         let count = house.emitters.len();
         if handle < count as u64 {
-            return Ok(self.emitters.told.entry(handle).or_default());
+            return Ok(self.emitters.overrides.entry(handle).or_default());
         }
-        let playing: Vec<u64> = self.playing.iter().map(|p| p.told.id).collect();
+        let playing: Vec<u64> = self.playing.iter().map(|p| p.state.id).collect();
         Err(WorldError::Usage(format!(
             "no sound {handle}: it is over, or never was; the house has {count}, counted from 0, and {playing:?} play"
         )))
@@ -333,12 +333,12 @@ impl WorldSound {
                 object: Some(house.objects[emitter.object].name.clone()),
             });
         let played = self.playing.iter().map(|playing| SoundState {
-            handle: playing.told.id,
-            sound: playing.told.request.sound.clone(),
+            handle: playing.state.id,
+            sound: playing.state.request.sound.clone(),
             position: playing.position(house, state).to_array(),
-            level_db: playing.told.request.level_db,
-            loops: playing.told.request.loops,
-            on: !playing.told.stopped,
+            level_db: playing.state.request.level_db,
+            loops: playing.state.request.loops,
+            on: !playing.state.stopped,
             object: None,
         });
         own.chain(played).collect()

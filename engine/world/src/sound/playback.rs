@@ -64,7 +64,7 @@ pub(super) struct PlaybackState {
 /// A sound that plays.
 #[derive(Clone, Debug)]
 pub(super) struct Playback {
-    pub(super) told: PlaybackState,
+    pub(super) state: PlaybackState,
     signal: Signal,
 }
 
@@ -127,7 +127,7 @@ impl Playback {
         check_level(request.level_db)?;
         check_place(engines.house(), state, &request.place)?;
         let (signal, print) = open(engines, root, rate_hz, &request.sound)?;
-        let told = PlaybackState {
+        let playback = PlaybackState {
             id,
             start,
             stopped: false,
@@ -135,41 +135,47 @@ impl Playback {
             print,
             request,
         };
-        Ok(Self { told, signal })
+        Ok(Self {
+            state: playback,
+            signal,
+        })
     }
 
     /// Restores the sound from its state.
     pub(super) fn restore(
         (engines, root, state): (&Engines, Option<&str>, &State),
         rate_hz: u32,
-        told: PlaybackState,
+        saved: PlaybackState,
     ) -> Result<Self, WorldError> {
-        check_place(engines.house(), state, &told.request.place)?;
-        let (signal, print) = open(engines, root, rate_hz, &told.request.sound)?;
-        if print != told.print {
-            let sound = &told.request.sound;
+        check_place(engines.house(), state, &saved.request.place)?;
+        let (signal, print) = open(engines, root, rate_hz, &saved.request.sound)?;
+        if print != saved.print {
+            let sound = &saved.request.sound;
             return Err(WorldError::Snapshot(format!(
                 "{sound:?} is another sound now than the one that played"
             )));
         }
-        Ok(Self { told, signal })
+        Ok(Self {
+            state: saved,
+            signal,
+        })
     }
 
     /// The target pressure at 1 m, Pa.
     pub(super) fn target(&self) -> f32 {
-        if self.told.stopped {
+        if self.state.stopped {
             0.0
         } else {
-            pa_from_db_spl(self.told.request.level_db)
+            pa_from_db_spl(self.state.request.level_db)
         }
     }
 
     /// Writes the block that begins at `start`, root mean square 1 over the whole sound.
     pub(super) fn read(&self, start: u64, out: &mut [f32]) {
-        let skip = self.told.start.saturating_sub(start).min(out.len() as u64) as usize;
-        let elapsed = start.saturating_sub(self.told.start);
+        let skip = self.state.start.saturating_sub(start).min(out.len() as u64) as usize;
+        let elapsed = start.saturating_sub(self.state.start);
         out[..skip].fill(0.0);
-        if self.told.request.loops {
+        if self.state.request.loops {
             self.signal.read(elapsed, &mut out[skip..]);
         } else {
             self.signal.read_once(elapsed, &mut out[skip..]);
@@ -178,14 +184,14 @@ impl Playback {
 
     /// Returns whether nothing of it can be heard any more in blocks from `start` on.
     pub(super) fn is_over(&self, start: u64) -> bool {
-        let end = self.told.start + self.signal.samples().len() as u64;
-        (!self.told.request.loops && end <= start)
-            || (self.told.stopped && self.told.fade.is_silent())
+        let end = self.state.start + self.signal.samples().len() as u64;
+        (!self.state.request.loops && end <= start)
+            || (self.state.stopped && self.state.fade.is_silent())
     }
 
     /// The point from which it is heard, m: of an object, not from within it, but from above.
     pub(super) fn heard_from(&self, house: &House, state: &State) -> Vec3 {
-        let SoundPlace::Object(object) = self.told.request.place else {
+        let SoundPlace::Object(object) = self.state.request.place else {
             return self.position(house, state);
         };
         let part = house.objects[object].first_part;
@@ -198,7 +204,7 @@ impl Playback {
 
     /// Returns its position now, m.
     pub(super) fn position(&self, house: &House, state: &State) -> Vec3 {
-        match self.told.request.place {
+        match self.state.request.place {
             SoundPlace::Point(point) => point,
             SoundPlace::Object(object) => {
                 let part = house.objects[object].first_part;

@@ -42,7 +42,7 @@ impl WorldSound {
             gaits: self.gaits.clone(),
             next_blow: self.next_blow,
             emitters: self.emitters.clone(),
-            playing: self.playing.iter().map(|p| p.told.clone()).collect(),
+            playing: self.playing.iter().map(|p| p.state.clone()).collect(),
             next_played: self.next_played,
             ears: ears.collect(),
         };
@@ -74,18 +74,18 @@ impl WorldSound {
         let house = engines.house();
         let most = house.emitters.len() as u64;
         let fades = memory.emitters.fades.len() as u64;
-        if memory.emitters.told.keys().any(|k| *k >= most) || (fades != 0 && fades != most) {
+        if memory.emitters.overrides.keys().any(|k| *k >= most) || (fades != 0 && fades != most) {
             let why = "it has sounds that the house does not have";
             return Err(WorldError::Snapshot(why.to_owned()));
         }
         sound.emitters = memory.emitters;
         let root = config.sound_root.as_deref();
-        for told in memory.playing {
-            if !(FIRST_PLAYED_ID..FIRST_PLAYED_ID + memory.next_played).contains(&told.id) {
-                let why = format!("a sound with the handle {}", told.id);
+        for saved in memory.playing {
+            if !(FIRST_PLAYED_ID..FIRST_PLAYED_ID + memory.next_played).contains(&saved.id) {
+                let why = format!("a sound with the handle {}", saved.id);
                 return Err(WorldError::Snapshot(why));
             }
-            let playing = Playback::restore((engines, root, state), sound.rate_hz, told)?;
+            let playing = Playback::restore((engines, root, state), sound.rate_hz, saved)?;
             sound.playing.push(playing);
         }
         sound.next_played = memory.next_played;
