@@ -17,7 +17,7 @@ const RATE_HZ: u32 = 16_000;
 const DURATION_S: f64 = 0.25;
 const SIDES: [&str; 6] = ["west", "east", "floor", "ceiling", "north", "south"];
 /// The absorption that the manifest states, in the order of `SIDES`.
-const TOLD: [f64; 6] = [0.12, 0.1, 0.2, 0.15, 0.08, 0.12];
+const STATED: [f64; 6] = [0.12, 0.1, 0.2, 0.15, 0.08, 0.12];
 const POSITIONS: usize = 12;
 
 /// An impulse response of a box by its image sources, with reflections that keep sqrt(1 - absorption) of the pressure.
@@ -167,7 +167,7 @@ fn write_wav(path: &Path, samples: &[f32]) {
 fn measure(true_absorption: [f64; 6], gain: f32, seed: u64) -> CalibrationReport {
     let mut random = Random::new(seed);
     let mut surfaces = String::new();
-    for (side, absorption) in SIDES.iter().zip(TOLD) {
+    for (side, absorption) in SIDES.iter().zip(STATED) {
         let comma = if surfaces.is_empty() { "" } else { "," };
         write!(
             surfaces,
@@ -222,7 +222,7 @@ fn measure(true_absorption: [f64; 6], gain: f32, seed: u64) -> CalibrationReport
 #[test]
 fn the_surface_with_another_absorption_is_named() {
     for (side, seed) in [(2_usize, 1), (1, 2)] {
-        let mut absorption = TOLD;
+        let mut absorption = STATED;
         absorption[side] = 0.6;
         let report = measure(absorption, 3.0, seed);
         println!("{}: {}", SIDES[side], table(&report));
@@ -253,7 +253,7 @@ fn the_surface_with_another_absorption_is_named() {
 #[test]
 fn nothing_is_found_where_nothing_is_hidden() {
     for (seed, gain) in [(11, 0.1), (12, 5.0)] {
-        let report = measure(TOLD, gain, seed);
+        let report = measure(STATED, gain, seed);
         assert_eq!(
             report.verdict,
             CalibrationVerdict::Nothing,
