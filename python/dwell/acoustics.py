@@ -72,7 +72,7 @@ class AcousticScene:
 
     @property
     def config(self) -> dict[str, Any]:
-        """All settings, with the air as laws make it."""
+        """All settings, with the air under the laws."""
         config: dict[str, Any] = json.loads(self._native.config_json())
         return config
 
@@ -190,7 +190,7 @@ class AcousticScene:
         seed: int = 0,
         threads: int | None = None,
     ) -> Echogram:
-        """Energies over time at the middle of a receiver, from which responses are made."""
+        """The echogram at the middle of a receiver, from which responses are made."""
         receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
         self._tell_outside(source, [receiver])
         text = self._native.echogram_json(

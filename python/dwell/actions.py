@@ -60,7 +60,7 @@ class Outcome:
 
 
 def _camera(name: str, value: object) -> dict[str, Any]:
-    """A camera as what its pixels depend on."""
+    """The camera's parameters on which its pixels depend."""
     if isinstance(value, Camera):
         settings = camera_settings(name, value)
         return {key: part for key, part in settings.items() if key not in _NOT_OF_PIXELS}
@@ -73,7 +73,7 @@ _NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects", "classes"}
 
 @functools.cache
 def action_table() -> dict[str, list[dict[str, Any]]]:
-    """The kinds of actions, and the fields that name what an action is done to."""
+    """The kinds of actions, and the fields that name an action's target."""
     table: dict[str, list[dict[str, Any]]] = json.loads(_native.action_table_json())
     return table
 

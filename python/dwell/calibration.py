@@ -42,7 +42,7 @@ def calibrate(
 
 
 def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
-    """Writes a measured bundle whose world has something that the simulation lacks.
+    """Writes a measured bundle whose world has an effect that the simulation lacks.
 
     Args:
         folder: Where to; made if it is not there.

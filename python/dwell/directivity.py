@@ -52,7 +52,7 @@ class Directivity:
 
     @classmethod
     def polar(cls, level_db: npt.ArrayLike) -> Directivity:
-        """As it was measured.
+        """A measured directivity.
 
         Args:
             level_db: Levels from the axis (0 degrees) to behind (180) at equal steps, dB. Shape
@@ -119,7 +119,7 @@ class Directivity:
         return [float(db) for db in -10.0 * np.log10(mean)]
 
     def to_json(self) -> Any:  # noqa: ANN401 - as the engine takes it
-        """As the engine takes it."""
+        """The engine's form."""
         if self.form == "first_order":
             return {"first_order": {"gradient": list(self.values)}}
         if self.form == "sphere":

@@ -27,7 +27,7 @@ Side = Literal["floor", "walls", "ceiling"]
 
 
 class EditList:
-    """Changes that are noted, one after another; what :class:`HouseEdit` and the builder share.
+    """Edits, one after another: the common part of :class:`HouseEdit` and the builder.
 
     A thing goes where ``at`` is (x, y, z in m), which is the middle of its lower face unless
     ``anchor`` says otherwise, or ``on`` another object: there at ``at``, whose height then does not
@@ -36,7 +36,7 @@ class EditList:
     """
 
     def __init__(self) -> None:
-        """Notes nothing yet."""
+        """Begins without edits."""
         self._edits: list[dict[str, Any]] = []
 
     @property
@@ -73,7 +73,7 @@ class EditList:
         substance: str | None = None,
         srgb: Rgb | None = None,
     ) -> Self:
-        """Adds a thing of the catalogue that generated houses are furnished from.
+        """Adds a model of the catalogue that generated houses are furnished from.
 
         Args:
             kind: ``"sofa"``, ``"dining_chair"``, ``"mug"``, ...: one of :meth:`kinds`; an unknown
@@ -220,7 +220,7 @@ class EditList:
         return self._note("add", {"what": {"copy": what}, "name": name, "place": place})
 
     def remove(self, thing: str, *, with_things: bool = False) -> Self:
-        """Takes an object out, ``with_things`` also what stands on it or lies in it.
+        """Removes an object, ``with_things`` also what stands on it or lies in it.
 
         Objects behind it move up in the list; names stay.
         """
@@ -239,7 +239,7 @@ class EditList:
         anchor: Anchor = "foot",
         with_things: bool = True,
     ) -> Self:
-        """Puts an object elsewhere.
+        """Moves an object.
 
         Args:
             thing: The object's name.
@@ -277,7 +277,7 @@ class EditList:
         roughness: float | None = None,
         keep_look: bool = False,
     ) -> Self:
-        """Makes surfaces of something else, or gives them another colour.
+        """Changes the substance or the colour of surfaces.
 
         Args:
             room: A room, with ``side``: only what that room sees of its walls changes.
@@ -429,7 +429,7 @@ class EditList:
         yaw_deg: float = 0.0,
         agent: int | None = None,
     ) -> Self:
-        """Says where an agent starts, in worlds and where a task asks for no other place.
+        """Sets an agent's start pose, in worlds and where a task sets no other.
 
         Args:
             at: Where its feet are, m; without it nearest to the middle of ``room`` where someone of
@@ -449,7 +449,7 @@ class EditList:
         )
 
     def set_door(self, thing: str, opened: float, *, joint: str | None = None) -> Self:
-        """Sets how far a door, drawer or lid is open at the start.
+        """Sets the initial opening of a door, drawer or lid.
 
         Args:
             thing: The object's name.
@@ -470,7 +470,7 @@ class EditList:
         pickable: bool | None = None,
         switch: bool | None = None,
     ) -> Self:
-        """Says what an object is: category, whether it moves, its mass, whether it starts on."""
+        """Sets attributes of an object: category, mobility, mass, switch."""
         traits = _traits(category, mobility, mass_kg, density_kg_m3, pickable, switch)
         return self._note("describe", {"object": text("thing", thing), "traits": traits or {}})
 
@@ -482,7 +482,7 @@ class EditList:
         room: str | None = None,
         kind: str | None = None,
     ) -> Self:
-        """Gives an object or a room, or without either the house, another name.
+        """Renames an object or a room, or without either the house.
 
         Args:
             to: The new name.
@@ -507,7 +507,7 @@ class HouseEdit(EditList):
         self._made: House | None = None
 
     def __repr__(self) -> str:
-        """The house, and how much was noted."""
+        """The house, and the number of edits."""
         return f"HouseEdit({self._base.name!r}, edits={len(self._edits)})"
 
     def done(self) -> House:

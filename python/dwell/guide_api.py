@@ -9,12 +9,12 @@ from dwell.arguments import point, text, whole
 
 
 class GuideApi:
-    """The part of a world that leads agents."""
+    """The part of a world that guides agents."""
 
     _native: _native.World
 
     def toward(self, goal: Sequence[float], *, agent: int = 0) -> str | None:
-        """The action that leads an agent on along the shortest way, opening doors in it.
+        """The action that leads an agent along the shortest path, opening doors on it.
 
         Args:
             goal: Where to, m; somebody of the agent's size must be able to stand within 0.6 m.

@@ -28,7 +28,7 @@ _MOST_LISTED = 1_000_000
 
 
 class House:
-    """A checked, immutable house. A copy is the same house; a pickle says how to open it again."""
+    """A checked, immutable house. A copy is the same house; a pickle names how to open it again."""
 
     def __init__(
         self,
@@ -198,7 +198,7 @@ class House:
         )
 
     def edit(self) -> HouseEdit:
-        """Begins changes: things added, moved, taken out, made of something else.
+        """Begins edits: things added, moved, removed, or made of something else.
 
         >>> import dwell
         >>> room = dwell.House.shoebox((4.0, 2.5, 3.0), substance="plaster")
@@ -211,7 +211,7 @@ class House:
         return HouseEdit(self)
 
     def map_template(self) -> str:
-        """A map file with everything that stayed unmapped, to be filled in."""
+        """A map file with all unmapped names, to be filled in."""
         return self._native.map_template(self.name)
 
     @property
@@ -225,7 +225,7 @@ class House:
         return self._native.name
 
     def info(self) -> dict[str, Any]:
-        """Counts, rooms, categories, the report of damage, and the names that stayed unmapped."""
+        """Counts, rooms, categories, the report of damage, and the unmapped names."""
         info: dict[str, Any] = json.loads(self._native.info_json())
         return info
 
@@ -300,7 +300,7 @@ class House:
 
     @staticmethod
     def finish_folder(root: str | os.PathLike[str], form: Form) -> None:
-        """Writes what a folder of :meth:`write_into` holds once: after the last house, or again."""
+        """Writes the common files of a folder of :meth:`write_into`: at the end, or again."""
         _native.House.finish_folder(arguments.path("root", root), text("form", form))
 
     def __eq__(self, other: object) -> bool:
@@ -333,7 +333,7 @@ class House:
         return self._again
 
     def __repr__(self) -> str:
-        """The name, and how much there is."""
+        """The name, and the numbers of rooms and objects."""
         rooms, objects = self._native.counts
         return f"House({self.name!r}, rooms={rooms}, objects={objects})"
 

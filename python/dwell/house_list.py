@@ -21,7 +21,7 @@ class HouseList(Sequence[str]):
     """
 
     def __init__(self, houses: Iterable[str] = ()) -> None:
-        """Keeps what it is given; opens nothing. Raises as :meth:`append`."""
+        """Keeps the names; opens nothing. Raises as :meth:`append`."""
         #: One house by its name, or seeds and what follows them.
         self._parts: list[str | tuple[range, str]] = []
         #: How many houses there are up to the end of each part.

@@ -34,7 +34,7 @@ class Source:
     directivity: str | Directivity = "omni"
 
     def to_json(self) -> dict[str, Any]:
-        """As the engine takes it."""
+        """The engine's form."""
         return {
             "pose": _pose(self.position, self.yaw_deg, self.pitch_deg),
             "directivity": directivity_json(self.directivity),
@@ -150,7 +150,7 @@ class Receiver:
         return cls(_pose(point("position", position), yaw_deg, pitch_deg), kind)
 
     def to_json(self) -> dict[str, Any]:
-        """As the engine takes it."""
+        """The engine's form."""
         return {"pose": self.pose, "kind": self.kind}
 
 

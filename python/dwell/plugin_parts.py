@@ -84,7 +84,7 @@ def factory(
 def _refuse_unknown_settings(
     at: str, make: Callable[..., object], fields: Mapping[str, object]
 ) -> None:
-    """Refuses settings that are no arguments of what they are for, where these can be known."""
+    """Refuses settings that are no arguments of their part, where these can be known."""
     try:
         arguments = inspect.signature(make).parameters.values()
     except (TypeError, ValueError):

@@ -319,6 +319,6 @@ _FIELDS = (
 
 
 def _sum(value: object) -> str:
-    """A check sum of what JSON holds."""
+    """A check sum of a JSON value."""
     written = json.dumps(value, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(written.encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""Sounds that a world is told to play."""
+"""Sounds played in a world."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ class SoundApi(StateApi):
         self._native.stop_sound(whole("handle", handle))
 
     def start_sound(self, handle: int) -> None:
-        """Lets the sound of an object sound again that was stopped.
+        """Starts the sound of an object again that was stopped.
 
         Raises:
             UsageError: No sound has the handle, or its object is switched off and stays silent:
@@ -155,7 +155,7 @@ class SoundApi(StateApi):
         self._native.set_sound_level(whole("handle", handle), finite("level_db", level_db))
 
     def sounds(self) -> list[dict[str, Any]]:
-        """Every source: the sounds of objects, then what was told to play.
+        """Every source: the sounds of objects, then those played on request.
 
         Each has handle, sound (``{"signal": name}`` or ``{"file": path}``), position, level_db,
         loops, on and object (whose own sound it is, or None).

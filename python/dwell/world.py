@@ -105,7 +105,7 @@ class World(ActionApi, GuideApi, SoundApi):
     def _again(
         cls, house: House, config: str, seed: int, heads: tuple[Head, ...], snapshot: bytes
     ) -> World:
-        """A world as it was when it was pickled."""
+        """The world of a pickle, in its state."""
         world = cls.__new__(cls)
         world.house, world._config, world._seed, world._heads = house, config, seed, heads
         for head in heads:
@@ -128,7 +128,7 @@ class World(ActionApi, GuideApi, SoundApi):
         return World._again, again
 
     def __repr__(self) -> str:
-        """The house, the time, and how many agents there are."""
+        """The house, the time, and the number of agents."""
         agents = len(self.agents())
         return f"World({self.house.name!r}, time_s={self.time_s:g}, agents={agents})"
 
@@ -144,7 +144,7 @@ class World(ActionApi, GuideApi, SoundApi):
 
     @property
     def sound_rate_hz(self) -> int:
-        """Samples a second of what is heard."""
+        """Sample rate of sound, Hz."""
         return int(json.loads(self._native.config_json())["sound_rate_hz"])
 
     @property
@@ -204,7 +204,7 @@ class World(ActionApi, GuideApi, SoundApi):
         crouched_by_m: float = 0.0,
         wheel_rad_s: Sequence[float] | None = None,
     ) -> None:
-        """Puts an agent somewhere, moving in any way that its body can; at rest by default.
+        """Places an agent, moving in any way that its body can; at rest by default.
 
         Legs slide or fly on with a velocity until feet brake them: what they do by their own will
         they are told in :meth:`step`. Wheels turn as the velocity ahead and the rate of turn ask
@@ -360,7 +360,7 @@ class World(ActionApi, GuideApi, SoundApi):
         return joints
 
     def command_joint(self, joint: int, kind: JointCommand, value: float = 0.0) -> None:
-        """Tells a joint's motor something, until it is told otherwise.
+        """Commands a joint's motor, until the next command.
 
         Args:
             joint: Its id, as in :meth:`joints`.
@@ -376,7 +376,7 @@ class World(ActionApi, GuideApi, SoundApi):
         self._native.command_joint(joint, text("kind", kind), finite("value", value))
 
     def set_joints(self, joints: Mapping[int, tuple[float, float]]) -> None:
-        """Puts joints to a position and a velocity at once; what hangs on them moves along.
+        """Sets positions and velocities of joints at once; what hangs on them moves along.
 
         Args:
             joints: By id, as in :meth:`joints`: (rad or m, and per second).
@@ -423,7 +423,7 @@ class World(ActionApi, GuideApi, SoundApi):
         linear_m_s: Sequence[float] = (0.0, 0.0, 0.0),
         angular_rad_s: Sequence[float] = (0.0, 0.0, 0.0),
     ) -> None:
-        """Puts a thing that moves freely, or the base of a robot that stands free, anywhere.
+        """Places a thing that moves freely, or the base of a free robot.
 
         It is awake afterwards, what hangs on it by joints moves along, and :meth:`body` reads back
         what was set. Joints are set by :meth:`set_joints`, agents by :meth:`place_agent`.
@@ -519,7 +519,7 @@ class World(ActionApi, GuideApi, SoundApi):
         return self._native.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
-        """Goes to where the snapshot was taken; the next steps give the same bits as then."""
+        """Restores a snapshot; the next steps give the same bits as then."""
         if not isinstance(snapshot, bytes):
             raise ConfigError(f"snapshot is {quoted(snapshot)}; expected the bytes of snapshot()")
         self._native.restore(snapshot)

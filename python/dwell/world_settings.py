@@ -52,7 +52,7 @@ def _is_path(laws: str) -> bool:
 
 
 def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
-    """Laws and parameters by address, from all forms in which they are given.
+    """Laws and parameters by address, from all accepted forms.
 
     Raises:
         ConfigError: It is none of them, or a law, a parameter or a number that there is not.
@@ -176,7 +176,7 @@ def with_head(
 def world_settings(
     laws: Laws, parameters: Mapping[str, float] | None, further: Mapping[str, Any] | None
 ) -> dict[str, Any]:
-    """The native WorldConfig. ``parameters`` go before those that stand beside the laws.
+    """The native WorldConfig. ``parameters`` take precedence over those beside the laws.
 
     Raises:
         ConfigError: ``further`` names what has an argument of its own.

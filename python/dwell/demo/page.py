@@ -1,4 +1,4 @@
-"""The page that tells of the demo."""
+"""The page about the demo."""
 
 from __future__ import annotations
 

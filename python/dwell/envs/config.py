@@ -80,7 +80,7 @@ class HouseCache:
     """
 
     def __init__(self, houses: Houses) -> None:
-        """Keeps what it is given, one house counting as a list of one; opens nothing."""
+        """Keeps the houses, one house counting as a list of one; opens nothing."""
         alone = isinstance(houses, str | os.PathLike | House)
         try:
             given = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
@@ -138,7 +138,7 @@ class HouseCache:
         return f"{self.names[index % len(self.names)]}#{seed}"
 
     def episode(self, episode_id: object) -> tuple[int, int]:
-        """House and seed of what :meth:`episode_id` gave.
+        """House and seed of an id of :meth:`episode_id`.
 
         Raises:
             ConfigError: It is none, or of a house that is not here.

@@ -1,4 +1,4 @@
-"""In which houses the environments of a batch are."""
+"""Assignment of a batch's environments to houses."""
 
 from __future__ import annotations
 
@@ -65,5 +65,5 @@ class HouseAssignment:
         self._ahead.want(self._next.values())
 
     def close(self) -> None:
-        """Nobody waits any more."""
+        """Drops all waiting environments."""
         self._ahead.close()

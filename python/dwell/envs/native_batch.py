@@ -1,4 +1,4 @@
-"""A batch of native environments with its buffers: what single and vector share."""
+"""A batch of native environments with its buffers: the common part of single and vector."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ class NativeBatch:
         return self.plays[env].save() if self.plays else b""
 
     def restore(self, snapshot: bytes, parts: bytes, seed: int, *, env: int = 0) -> None:
-        """Lets an environment go to a snapshot, of an episode of ``seed``."""
+        """Restores an environment's snapshot, of an episode of ``seed``."""
         states = self.loaded(env, parts)
         self.batch.restore(env, snapshot)
         if states is not None:

@@ -1,4 +1,4 @@
-"""Makes in the background what will be wanted."""
+"""Prefetching: values are made in the background before they are wanted."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ _Prepared = TypeVar("_Prepared")
 
 
 class Prefetcher(Generic[_Key, _Prepared]):
-    """Makes things in a thread before they are wanted, at most so many.
+    """Makes values in a thread before they are wanted, at most so many.
 
     The thread lives as long as there is something to make. A forked child has none of it: what was
     made is there, what was not begins anew.
     """
 
     def __init__(self, make: Callable[[_Key], _Prepared], most: int) -> None:
-        """Makes nothing yet.
+        """Begins empty.
 
         Args:
             make: Makes what belongs to a key; called in another thread.
@@ -94,7 +94,7 @@ class Prefetcher(Generic[_Key, _Prepared]):
         return made
 
     def close(self) -> None:
-        """Drops everything, and waits for what is in the making."""
+        """Drops everything, and waits for the value in the making."""
         self.want(())
         thread = self._thread
         if thread is not None and thread is not threading.current_thread():

@@ -1,4 +1,4 @@
-"""Plays tasks, rewards and sensors that are written in Python upon native environments."""
+"""Tasks, rewards and sensors that are written in Python, on native environments."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def split(
     reward: RewardChoice,
     sensors: Sensors,
 ) -> tuple[NativeSettings, PythonTask]:
-    """Parts what the engine does from what is played in Python."""
+    """Separates the engine's settings from the parts that are played in Python."""
     make_task = None
     if not isinstance(task, str) or ":" in task:
         make_task = factory("task", task, Task, settings)
@@ -133,7 +133,7 @@ class PythonEpisode:
         self._seed = 0
 
     def move(self, house: House) -> None:
-        """From now on the environment is in another house."""
+        """Moves the environment into another house."""
         self._world = World.of_env(house, _native.World.of_env(self._batch, self._env))
 
     def _parts(self) -> dict[str, Task | Reward | Sensor]:
@@ -295,14 +295,14 @@ class PythonEpisode:
         return {name: mapping(f"{at}: {name}", state) for name, state in states.items()}
 
     def load(self, states: Mapping[str, dict[str, Any]], seed: int) -> None:
-        """Goes to where :meth:`save` was called, in an episode of ``seed``."""
+        """Restores the state that :meth:`save` wrote, in an episode of ``seed``."""
         self._seed = seed
         for name, part in self._parts().items():
             part.state = states[name]
 
 
 def _refuse_what_changes(at: str, value: object) -> None:
-    """Refuses what JSON gives back as another kind."""
+    """Refuses values that JSON returns as another kind."""
     if isinstance(value, dict):
         for key, part in value.items():
             if not isinstance(key, str):
@@ -365,7 +365,7 @@ def _add(
     name: str,
     space: object,
 ) -> None:
-    """Notes one more space; ``at``: whose it is, for errors."""
+    """Adds a space; ``at``: its owner, for errors."""
     if name in found or name in native:
         raise ConfigError(f"observations: found {name!r} twice; allowed is each name once")
     if not isinstance(space, _SPACES):

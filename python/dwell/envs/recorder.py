@@ -1,4 +1,4 @@
-"""Episodes are recorded while they are played."""
+"""Recording of episodes while they are played."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class _EpisodeInProgress:
         self._success = False
 
     def check(self, state_hash: int, what: str) -> None:
-        """Refuses a world that is not as the last step left it; ``what``: whose it is.
+        """Refuses a world that is not as the last step left it; ``what``: its owner.
 
         Raises:
             UsageError: No file can hold how it came there.
@@ -68,7 +68,7 @@ class _EpisodeInProgress:
         self._success = success
 
     def write(self, folder: Path) -> None:
-        """Writes what was played so far, if anything was."""
+        """Writes the steps so far, if there are any."""
         if not self._actions:
             return
         replay = dataclasses.replace(

@@ -39,7 +39,7 @@ def register_envs() -> None:
 
 
 def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]) -> None:
-    """Registers a task of one's own with gymnasium.
+    """Registers a user's task with gymnasium.
 
     Args:
         env_id: What ``gymnasium.make`` and ``make_vec`` will know it by, such as ``"me/Fetch-v0"``.

@@ -219,7 +219,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return image
 
     def close(self) -> None:
-        """Lets go of the worlds; may be called again. After it everything else is refused."""
+        """Closes the worlds; may be called again. After it everything else is refused."""
         self._runner_of.cache_clear()
         self._closed = True
 
@@ -244,7 +244,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         )
 
     def restore(self, snapshot: bytes) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Goes to where the snapshot was taken; the next steps give the same bits as they did then.
+        """Restores a snapshot; the next steps give the same bits as they did then.
 
         The episode is truncated at the same step, too, whether ``max_episode_steps`` says at which
         or a ``TimeLimit`` wrapper of gymnasium through which it was last reset.
@@ -278,7 +278,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner.batch.instruction(0)
 
     def agents(self) -> list[dict[str, Any]]:
-        """The agents' states, as :meth:`dwell.World.agents` tells them."""
+        """The agents' states, as those of :meth:`dwell.World.agents`."""
         return agent_states(self._runner.batch.agents_json(0))
 
     def describe(self, level: str = "house") -> list[str]:

@@ -1,4 +1,4 @@
-"""Snapshots of environments that step together: each with what its episode needs to go on."""
+"""Snapshots of environments that step together: each with all that its episode needs to go on."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class BatchSnapshot:
 
 
 def with_checksum(content: bytes) -> bytes:
-    """Content behind its check sum, which finds what was damaged, not what was forged."""
+    """Content with its check sum, which detects damage, but no forgery."""
     return b"\0".join((_sum(content), content))
 
 

@@ -219,11 +219,11 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         return stream
 
     def _draw(self, stream: np.random.Generator) -> tuple[int, int]:
-        """The next episode's house and seed, as a single environment draws them."""
+        """The next episode's house and seed, drawn as a single environment draws them."""
         return int(stream.integers(len(self._shelf.names))), int(stream.integers(2**63))
 
     def _look_ahead(self, which: NDArray[np.bool_]) -> None:
-        """Has the houses opened in which the environments of ``which`` go on after this episode."""
+        """Opens ahead the houses in which environments of ``which`` go on after this episode."""
         # Of copies: drawn again when the episodes begin.
         following = {
             k: self._draw(deepcopy(self._stream(k))) for k in np.flatnonzero(which).tolist()
@@ -281,7 +281,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
     def _asked(
         self, episodes: object, which: NDArray[np.bool_]
     ) -> dict[int, tuple[int, int]] | None:
-        """House and seed of the episodes that are asked for by their ids, by environment."""
+        """House and seed of the episodes that are requested by their ids, by environment."""
         expected = f"expected one for each of {self.num_envs} environments, or None"
         if episodes is None:
             return None
@@ -430,7 +430,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         return rows
 
     def restore(self, snapshots: Sequence[bytes | None]) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Lets environments go to where snapshots were taken; the next steps give the same bits.
+        """Restores snapshots in environments; the next steps give the same bits.
 
         A snapshot may go to another environment, and to several.
 
@@ -494,7 +494,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         return tuple(self._runner.batch.render(k, view) for k in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature
-        """Lets go of the worlds; after it everything but ``close`` is refused."""
+        """Closes the worlds; after it everything but ``close`` is refused."""
         # Not there where making these environments failed.
         if places := getattr(self, "_places", None):
             places.close()

@@ -1,4 +1,4 @@
-"""A recording for the Rerun viewer in the making."""
+"""Writing of a recording for the Rerun viewer."""
 
 from __future__ import annotations
 
