@@ -1,4 +1,4 @@
-//! Surfaces that absorb by the angle of incidence, and what that makes of a tail's directions.
+//! Surfaces with angle-dependent absorption, and their effect on a tail's directions.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 const C: f64 = 343.2;
 /// A long, low room.
 const SIZE_M: [f32; 3] = [9.7, 2.7, 5.5];
-/// The octave that is looked at; all are alike.
+/// The octave tested; all are alike.
 const BAND: usize = 4;
 
 fn config(by_angle: bool, rays: usize) -> AcousticConfig {
@@ -61,9 +61,9 @@ fn squares_of(cell: usize) -> [f64; 3] {
     squares
 }
 
-/// Returns what is left, at some times, of sound that filled a room with mirrors for walls evenly: its energy, and the mean squares of
-/// its directions, known by cell. Each direction u meets the walls across axis i `c |u_i| / L_i` times a second, always at the
-/// same angle.
+/// Returns the remainder, at some times, of sound that filled a room with mirroring walls evenly: its energy, and the mean
+/// squares of its directions, by cell. Each direction u meets the walls across axis i `c |u_i| / L_i` times a second,
+/// always at the same angle.
 fn mirrors(kept: impl Fn(f64) -> f64, times_s: &[f64]) -> Vec<(f64, [f64; 3])> {
     // Many directions lie along walls, where much happens between two angles; each stands for a part of all.
     let n = 120;

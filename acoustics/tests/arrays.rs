@@ -1,4 +1,4 @@
-//! Arrays, ambisonics and sources with a front.
+//! Arrays, ambisonics and directional sources.
 
 mod common;
 
@@ -100,7 +100,7 @@ fn the_tail_is_as_coherent_as_a_diffuse_field() {
     assert!(found.iter().all(|value| value.norm() > 0.9), "{found:?}");
 }
 
-/// V18: a 6-microphone array of 10 cm hears a source far away with the delays r.u/c, within 1 microsecond.
+/// V18: a 6-microphone array of 10 cm receives a distant source with the delays r.u/c, within 1 microsecond.
 #[test]
 fn an_array_hears_differences_of_time() {
     let hall = Hall::shoebox([400.0, 400.0, 400.0], &material(1.0, 0.0), config(0));
@@ -147,7 +147,7 @@ fn an_array_hears_differences_of_time() {
     }
 }
 
-/// Each microphone has early paths of its own: in a mirroring room it hears what one that stands there alone hears.
+/// Each microphone has its own early paths: in a mirroring room it receives what a single microphone there does.
 #[test]
 fn the_microphones_of_an_array_hear_their_own_early_paths() {
     let hall = box_of(0.2, 0.0, 0);
@@ -232,7 +232,7 @@ fn a_directive_source_fills_the_room_with_less() {
     assert!(error > 0.0 && error < 0.02, "{error}");
 }
 
-/// Receivers asked together hear what they hear alone, within the errors that are told.
+/// Receivers computed together hear what they hear alone, within the reported errors.
 #[test]
 fn receivers_share_rays() {
     let hall = box_of(0.2, 0.4, 4000);

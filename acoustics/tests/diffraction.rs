@@ -1,4 +1,4 @@
-//! Sound around edges, against the exact solution for a wedge, and what must hold of any edge.
+//! Diffraction around edges, against the exact solution for a wedge, and properties of any edge.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -15,7 +15,7 @@ use std::f64::consts::{PI, TAU};
 
 const SPEED_M_S: f64 = 343.2;
 
-/// No tail and no reflections: what bends alone.
+/// No tail and no reflections: diffraction alone.
 fn bending() -> AcousticConfig {
     AcousticConfig {
         image_order: 0,
@@ -207,8 +207,8 @@ fn a_doorway_has_six_edges() {
     assert_eq!(edges.iter().filter(seam).count(), 0, "{edges:?}");
 }
 
-/// Around one corner of the frame where the other does not stand in the way, around both where it does; low notes get around
-/// better.
+/// Around one corner of the frame where the other is not in the way, around both where it is; low frequencies are
+/// diffracted more.
 #[test]
 fn sound_goes_around_a_door_frame() {
     let hall = doorway();
@@ -294,7 +294,7 @@ fn walking_out_of_sight_is_smooth() {
     assert!(kinds.contains(&0) && kinds.contains(&1), "{kinds:?}");
 }
 
-/// A curtain that lets most sound through: what comes through and what goes around are together no more than a free path.
+/// A curtain that transmits most sound: transmitted and diffracted sound together are no more than a free path.
 #[test]
 fn what_comes_through_does_not_go_around_as_well() {
     for loss_db in [0.5, 3.0, 20.0] {

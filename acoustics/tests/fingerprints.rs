@@ -29,7 +29,7 @@ const FAR: Vec3 = Vec3::new(7.0, 1.4, 3.1);
 /// Levels of the tones at 1 m, 50 dB apart.
 const QUIET_PA: f64 = 0.1;
 const LOUD_PA: f64 = 30.0;
-/// Bands that are looked at: 250 Hz to 4 kHz.
+/// Bands tested: 250 Hz to 4 kHz.
 const BANDS: std::ops::Range<usize> = 2..7;
 
 fn room() -> Hall {
@@ -82,7 +82,7 @@ fn heard(
     response.unwrap()
 }
 
-/// Returns what a microphone records of a signal in known noise.
+/// Returns the recording of a signal by a microphone in known noise.
 fn recording(hall: &Hall, hidden: &[LawSpec], at: Vec3, seed: u64, signal: &[f32]) -> Vec<f32> {
     let mut laws = vec![known_noise()];
     laws.extend(hidden.iter().cloned());
@@ -163,7 +163,7 @@ fn direct(response: &[f32]) -> Vec<f32> {
     response[peak - 24..peak + 24].to_vec()
 }
 
-/// By how many samples the direct sound comes later than in `stated`: the slope of the phase from 1 to 5 kHz.
+/// Returns the delay of the direct sound re `stated`, samples: the slope of the phase from 1 to 5 kHz.
 fn lateness(stated: &[f32], measured: &[f32]) -> f64 {
     let phase = |frequency_hz| {
         let of = |h: &[f32]| component(&direct(h), 0, frequency_hz).1;
@@ -178,8 +178,8 @@ fn lateness(stated: &[f32], measured: &[f32]) -> f64 {
     peak_of(measured) as f64 - peak_of(stated) as f64 + between
 }
 
-/// A16: where the microphone at [`NEAR`] is against what is said, m: from opposite sides, what comes later from one comes earlier
-/// from the other. A delay and warmth are equal on both.
+/// A16: position of the microphone at [`NEAR`] relative to the stated one, m: between opposite sides, delays differ in
+/// sign. A delay and warmth are equal on both.
 fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
     let side = |offset: Vec3| {
         let late = |side: Vec3| {
@@ -193,7 +193,7 @@ fn displacement(hall: &Hall, hidden: &[LawSpec]) -> Vec3 {
     Vec3::new(side(2.0 * Vec3::X), side(Vec3::Y), side(2.0 * Vec3::Z))
 }
 
-/// Returns whether first-order ambisonics at [`NEAR`] hear known sources from elsewhere than they are, by the largest angle, degrees.
+/// Returns the largest angle, degrees, between directions of known sources in first-order ambisonics at [`NEAR`] and the true ones.
 fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let from = |laws: &[LawSpec], side: Vec3| {
         let receiver = Receiver::ambisonics(Pose::from_position(NEAR), 1);
@@ -216,8 +216,8 @@ fn turned_deg(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     angle(-2.0 * Vec3::X).max(angle(-2.0 * Vec3::Z))
 }
 
-/// A12: by how many decibels more the direct sound of a talker at [`NEAR`] differs from what is stated for one turn than for
-/// another.
+/// A12: returns the difference in level, dB, of the direct sound of a talker at [`NEAR`] from the stated one between two
+/// orientations.
 fn uneven_db(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     let ear = Receiver::omni(NEAR + Vec3::X);
     let change = [-0.5, 0.0, 0.5].map(|turns: f32| {
@@ -230,7 +230,7 @@ fn uneven_db(hall: &Hall, hidden: &[LawSpec]) -> f64 {
     spread(&change)
 }
 
-/// The law that the recordings speak of.
+/// Returns the law that the recordings indicate.
 fn verdict(hall: &Hall, hidden: &[LawSpec], seed: u64) -> Option<&'static str> {
     // A15: does it depend on the level? 50 dB more at the source are 50 dB more in the recording. The loud tone is 15 Pa without the
     // room, which may take 10 dB of it away: still more than any limit that is hidden.
@@ -350,7 +350,7 @@ fn either_sign(random: &mut Random, low: f64, high: f64) -> f64 {
     if random.bits() & 1 == 0 { size } else { -size }
 }
 
-/// A law with numbers drawn from where it can be told from nothing.
+/// Returns a law with numbers drawn from the range in which it is detectable.
 fn hide(id: &str, random: &mut Random) -> LawSpec {
     let uniform = |random: &mut Random, low: f64, high: f64| low + (high - low) * random.uniform();
     let response = |random: &mut Random| {

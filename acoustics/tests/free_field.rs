@@ -1,4 +1,4 @@
-//! Sound where nothing reflects.
+//! Sound in the free field.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -89,7 +89,7 @@ fn air_takes_what_iso_9613_says() {
     }
 }
 
-/// Cross-correlation below 1.5 kHz, as V17 asks: how much later the right channel is, s.
+/// Cross-correlation below 1.5 kHz, as in V17: delay of the right channel, s.
 fn interaural_delay_s(left: &[f32], right: &[f32], rate_hz: f64) -> f64 {
     // Correlation of band-limited signals by their cross spectrum, sampled every microsecond.
     let spectrum = |x: &[f32], f: f64| {
@@ -165,7 +165,7 @@ fn a_source_to_the_left_comes_to_the_left_ear_first_and_louder() {
     }
 }
 
-/// A head is small against long waves: both ears hear what a microphone in its place hears.
+/// A head is small against long waves: both ears receive what a microphone at its centre does.
 #[test]
 fn low_frequencies_are_equal_at_both_ears_and_at_a_microphone() {
     let hall = nowhere(dry(0));
@@ -199,7 +199,8 @@ fn a_point_that_is_nowhere_is_refused() {
     assert!(refused.unwrap_err().to_string().contains("the source"));
 }
 
-/// Returns what air takes in 1 m by ISO 9613-1:1993, equations (3) to (5), in its own form: dB/m at 20 degrees Celsius, 50 % and 101.325 kPa.
+/// Returns the absorption by air by ISO 9613-1:1993, equations (3) to (5), computed independently: dB/m at 20 degrees
+/// Celsius, 50 % and 101.325 kPa.
 fn iso_9613_1_db_per_m(frequency_hz: f64) -> f64 {
     let (t, t0, t01) = (293.15_f64, 293.15_f64, 273.16_f64);
     let vapour = 50.0 * 10.0_f64.powf(-6.8346 * (t01 / t).powf(1.261) + 4.6151);
@@ -212,7 +213,7 @@ fn iso_9613_1_db_per_m(frequency_hz: f64) -> f64 {
     8.686 * frequency_hz.powi(2) * (1.84e-11 * (t / t0).sqrt() + (t / t0).powf(-2.5) * both)
 }
 
-/// Above the highest band, too, air takes what ISO 9613-1 says at each frequency: 0.36 dB/m at 16 kHz, not the 0.10 dB/m of 8 kHz.
+/// Above the highest band, too, absorption by air is that of ISO 9613-1 at each frequency: 0.36 dB/m at 16 kHz, not the 0.10 dB/m of 8 kHz.
 #[test]
 fn air_takes_of_every_frequency_what_the_standard_says() {
     assert!((iso_9613_1_db_per_m(16_000.0) - 0.365).abs() < 2e-3);

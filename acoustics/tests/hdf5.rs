@@ -1,5 +1,5 @@
-//! HDF5 files, sound and damaged. Both samples were written by h5py: with the oldest forms of the format that hold them, and with the
-//! newest. `python/tests/test_hdf5.py` compares many more with h5py itself.
+//! HDF5 files, valid and damaged. Both samples were written by h5py: with the oldest forms of the format that hold them,
+//! and with the newest. `python/tests/test_hdf5.py` compares many more with h5py itself.
 
 use dwell_acoustics::hdf5::Hdf5;
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
@@ -13,7 +13,7 @@ static HEAP: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 /// One test at a time counts.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// The most that questions about a damaged file of 15 KB may ask of the system, bytes, what is given back in between counted as well.
+/// Most memory that queries of a damaged file of 15 KB may allocate, bytes, counting memory that is freed in between as well.
 const MOST_BYTES: usize = 100 << 20;
 
 const SAMPLES: [(&str, &[u8]); 2] = [
@@ -29,7 +29,7 @@ const VARIABLES: [&str; 6] = [
     "ListenerView",
 ];
 
-/// Asks for everything that a head is made of; gives how many questions were answered.
+/// Queries everything that a head is made of; returns the number of successful queries.
 fn ask(bytes: Vec<u8>) -> usize {
     let Ok(file) = Hdf5::open(bytes) else {
         return 0;

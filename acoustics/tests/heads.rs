@@ -1,4 +1,4 @@
-//! Heads that were measured: a head that is known exactly is measured by its own responses, and must be heard again.
+//! Measured heads: an exactly known head is measured by its own responses, and must be reproduced.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -30,7 +30,7 @@ fn nowhere(rate_hz: u32) -> Hall {
     Hall::new(pieces(vec![(panel, material(0.5, 0.5))]), config)
 }
 
-/// Returns what a head hears of a source in a direction in head space, from its centre. Shape (channel, sample).
+/// Returns the response of a head in a direction in head space, from its centre. Shape (channel, sample).
 fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     scene.add_head(head);
@@ -43,7 +43,7 @@ fn heard(hall: &Hall, head: &Head, in_head: Vec3) -> [Vec<f32>; 2] {
     [0, 1].map(|ear| response.channel(ear).to_vec())
 }
 
-/// A sphere's responses from so many directions on a spiral.
+/// A sphere's responses from `count` directions on a spiral.
 fn measure(count: usize) -> HrirMeasurement {
     let hall = nowhere(MEASURED_HZ as u32);
     let head = Head::sphere(RADIUS_M).unwrap();
@@ -151,8 +151,8 @@ fn spread(count: usize, seed: u64) -> Vec<Vec3> {
     (0..count).map(|_| stream.direction()).collect()
 }
 
-/// Places between the directions, in scenes of other sample rates: 10 us and 0.5 dB up to nearly 8 kHz. Left out is what lies
-/// opposite to an ear, where the bright spot and its rings are narrower than the grid.
+/// Places between the directions, in scenes of other sample rates: 10 us and 0.5 dB up to nearly 8 kHz. Excluded are
+/// directions opposite to an ear, where the bright spot and its rings are narrower than the grid.
 #[test]
 fn a_measured_sphere_is_heard_as_the_sphere() {
     let sphere = Head::sphere(RADIUS_M).unwrap();

@@ -18,7 +18,7 @@ const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
 /// The number of the source that sounds.
 const ID: u64 = 5;
 
-/// Every law with numbers at which it is plainly heard.
+/// Every law with parameters at which it is clearly audible.
 fn each() -> Vec<LawSpec> {
     let response = [("db_250", -6.0), ("db_2000", 4.0), ("db_4000", -9.0)];
     let every = vec![
@@ -50,7 +50,7 @@ fn each() -> Vec<LawSpec> {
     every
 }
 
-/// Returns whether a law has an impulse response: it neither looks at the level nor at the clock, and adds nothing.
+/// Returns whether a law has an impulse response: it depends on neither level nor clock, and adds nothing.
 fn has_response(law: &LawSpec) -> bool {
     let others = [
         "background_noise",
@@ -115,7 +115,7 @@ fn play(
     heard
 }
 
-/// Returns what [`Stream`] convolves with, computed offline under the laws. Shape (channel, sample).
+/// Returns the response that [`Stream`] convolves with, computed offline under the laws. Shape (channel, sample).
 fn response(hall: &Hall, laws: &[LawSpec]) -> [Vec<f32>; 2] {
     let mut scene = hall.scene.clone();
     let mut state = State::new(&hall.house);
@@ -202,7 +202,7 @@ fn a_law_at_its_default_changes_no_bit() {
     assert_eq!(response(&hall, &[]), response(&hall, &defaults));
 }
 
-/// All laws at once, put on amid the sound, and a snapshot while they remember: the restored stream goes on bit for bit.
+/// All laws at once, installed during sound, and a snapshot of their state: the restored stream goes on bit for bit.
 #[test]
 fn a_restored_stream_goes_on_bit_for_bit_under_all_laws() {
     let hall = room();

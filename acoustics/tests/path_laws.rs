@@ -73,7 +73,7 @@ fn warmth_stretches_all_arrivals_alike() {
     }
 }
 
-/// A2: what is missing is decibels for every metre, more the higher the frequency, in the direct sound too.
+/// A2: the missing absorption is decibels a metre, more the higher the frequency, in the direct sound too.
 #[test]
 fn missing_air_is_decibels_for_every_metre() {
     let hall = hall();
@@ -148,8 +148,8 @@ fn sources_change_direct_and_late_sound_alike() {
     }
 }
 
-/// A12: all paths change by the pattern's gain towards where they leave, the level in front stays, and sources that face
-/// elsewhere are those that are said to.
+/// A12: all paths change by the pattern's gain in their direction of departure, the level on the axis stays, and sources
+/// with an orientation error equal sources stated with that orientation.
 #[test]
 fn sources_turn_and_narrow() {
     let hall = hall();
@@ -217,7 +217,8 @@ fn sources_turn_and_narrow() {
     }
 }
 
-/// A16: a microphone that is elsewhere hears what one there hears, and a head that faces elsewhere what one does that faces there.
+/// A16: a microphone with a position error hears what one at that position hears, and a head with an orientation error what
+/// one with that orientation does.
 #[test]
 fn receivers_are_where_laws_put_them() {
     let hall = hall();

@@ -83,7 +83,7 @@ fn a_wall_insulates_by_its_reduction_index() {
         let difference_db = mean_db(&found[..3], band) - mean_db(&found[3..], band);
         assert!((difference_db - 30.0).abs() < 1.0, "{difference_db} dB");
     }
-    // What is heard beside the source is the same, bit for bit, whoever listens behind the wall.
+    // The response beside the source is the same, bit for bit, with and without a listener behind the wall.
     let alone = hear(&hall, source, &near);
     assert!(alone[0] == found[0]);
     // Nothing comes through where it is not asked for.

@@ -1,4 +1,4 @@
-//! From one room into another: what is remembered of a tail ends with the room in which it was heard.
+//! From one room into another: the reused tail ends with the room in which it was heard.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -69,7 +69,7 @@ impl Walk {
         }
     }
 
-    /// Returns what is heard where the way ends.
+    /// Returns the echogram at the end of the walk.
     fn heard(&self, hall: &Hall, settings: StreamConfig, seed: u64) -> Echogram {
         let key = RandomKey::root(seed);
         let mut stream = Stream::new(hall.scene.clone(), settings, key, Threads::ONE).unwrap();

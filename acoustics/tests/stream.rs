@@ -1,4 +1,4 @@
-//! Blocks of sound in step with a world.
+//! Streams: blocks of sound in step with a world.
 
 #![allow(clippy::unwrap_used, reason = "tests may stop at the first surprise")]
 
@@ -399,8 +399,8 @@ fn a_restored_stream_continues_bit_for_bit() {
     );
 }
 
-/// Responses are not kept but rendered again from their energies, wherever the noise of their tails came from: a head that turned, a
-/// second source that took the first one's, air that became warmer. An array's are kept, with each microphone's own paths.
+/// Responses are not stored but rendered again from their energies, wherever the noise of their tails came from: a rotated
+/// head, a second source that reused the first one's, warmer air. An array's are stored, with each microphone's own paths.
 #[test]
 fn responses_come_back_to_the_bit() {
     let hall = room();
@@ -519,7 +519,7 @@ fn wrong_buffers_are_refused_and_change_nothing() {
     assert_eq!(stream.hash(), before);
 }
 
-/// Of two sources only the first may be heard. The second rings out from before and gets nothing more to ring with.
+/// Of two sources only the first may be heard. The second rings out without further input.
 #[test]
 fn a_source_that_is_left_out_rings_out_and_is_not_fed() {
     let hall = room();

@@ -22,7 +22,7 @@ use std::sync::Arc;
 const SOURCE: Vec3 = Vec3::new(1.0, 1.2, 1.0);
 const EAR: Vec3 = Vec3::new(7.0, 1.2, 3.0);
 
-/// A material through which sound passes with a loss of so many dB.
+/// A material with a transmission loss in dB.
 fn leaky(loss_db: f32) -> Material {
     Material {
         transmission_loss_db: Bands::constant(loss_db),
@@ -165,8 +165,8 @@ fn a_closed_door_silences_and_an_open_one_does_not() {
     assert!(level_at(0.0, 0.0) <= 0.0);
 }
 
-/// While a door swings, a stream remembers much of the tail, and is close to what all rays tell; when the door has come to rest, it
-/// is what a stream that begins then hears, to the bit.
+/// While a door swings, a stream reuses much of the tail, and is close to a full trace; when the door has come to rest, it
+/// gives what a stream that begins then does, to the bit.
 #[test]
 fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     let wall = material(0.1, 0.3);
@@ -231,8 +231,8 @@ fn few(rays: usize) -> AcousticConfig {
     }
 }
 
-/// A door opens while many things sound: no block traces more rays than it may, whoever waits has a turn, and when all have had theirs,
-/// what is heard is what a stream that begins then hears, to the bit. Snapshots hold what was traced of a response so far.
+/// A door opens while many sources sound: no block traces more rays than it may, every waiting source has a turn, and when
+/// all have had theirs, the output is that of a stream that begins then, to the bit. Snapshots hold partial traces.
 #[test]
 fn a_door_with_many_sounds_takes_little_in_each_block() {
     let wall = material(0.1, 0.3);

@@ -1,4 +1,4 @@
-//! The hand: each refusal has its code and a sentence a person can act on.
+//! Hand actions: each refusal has its code and a sentence with a remedy.
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::{AgentControl, OutcomeCode, actions};

@@ -165,7 +165,7 @@ fn it_falls_from_a_table() {
     assert!(run.state.agents[id].position.y.abs() < 1e-3);
 }
 
-/// Whatever the speed and the highest step, nobody stays hanging on an edge.
+/// Whatever the speed and the highest step, an agent does not stay hanging on an edge.
 #[test]
 fn it_comes_off_a_table_at_any_speed() {
     for (speed, step_height_m) in [(0.1, 0.2), (0.1, 0.02), (1.0, 0.02), (1.0, 0.0), (0.3, 0.1)] {
@@ -287,8 +287,8 @@ fn maze() -> Build {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// From the southern half of the maze, whatever it does, an agent never gets to the northern half or outside: the
-    /// wall at z = 3 has a closed door, and speeds go up to 60 m/s (0.5 m in a physics step).
+    /// From the southern half of the maze, whatever it does, an agent never gets to the northern half or outside: the wall
+    /// at z = 3 has a closed door, and speeds go up to 60 m/s (0.5 m in a physics step).
     #[test]
     fn no_wall_is_ever_passed(
         x in 0.4_f32..5.6,

@@ -152,7 +152,7 @@ pub(crate) const STRONG: Servo = Servo {
     feed_forward: true,
 };
 
-/// The promise of issue 3: set at rest with position motors that hold that pose, within 1e-3 rad for 10 s; 2 kg in hand.
+/// Issue 3: an arm set at rest with position motors that hold its pose keeps it within 1e-3 rad for 10 s; 2 kg in hand.
 #[test]
 fn an_arm_told_to_hold_its_pose_holds_it() {
     let mut run = arm(2.0, Some(STRONG)).run_with(awake());
@@ -174,7 +174,7 @@ fn an_arm_told_to_hold_its_pose_holds_it() {
     }
 }
 
-/// Torque balance: without feed-forward each joint gives way by its load over its stiffness.
+/// Torque balance: without feed-forward each joint deflects by its load over its stiffness.
 #[test]
 fn a_plain_position_motor_gives_way_by_load_over_stiffness() {
     let servo = Servo {
@@ -221,8 +221,8 @@ fn efforts_that_balance_the_weight_hold_the_arm() {
     }
 }
 
-/// The promise of issue 3: 10,000 random poses and velocities read back. The state keeps the very numbers; the bodies that
-/// physics has stand there too, each read by itself.
+/// Issue 3: 10,000 random poses and velocities are read back. The state keeps the exact values; the bodies in physics
+/// agree, each read by itself.
 #[test]
 fn any_pose_and_velocity_reads_back() {
     let mut run = arm(2.0, Some(STRONG)).run_with(awake());
@@ -240,7 +240,7 @@ fn any_pose_and_velocity_reads_back() {
             run.state.joint_velocity[JointId(k as u32)] = v[k];
         }
         run.world.adopt(&mut run.state).unwrap();
-        // What physics itself has, not what was written.
+        // The values of physics itself, not those written.
         for k in 0..6 {
             let id = JointId(k as u32);
             let (there, speed) = run.world.measure_joint(&run.state, id).unwrap();
@@ -320,8 +320,8 @@ fn pendulum_energy(state: &State) -> f64 {
     kinetic + mass * g * (height + 1.0)
 }
 
-/// The promise of issue 3: without friction the energy of a double pendulum is kept within 5 % over 10 s, swinging freely,
-/// tumbling over, and with motors that are told to give nothing.
+/// Issue 3: without friction the energy of a double pendulum is kept within 5 % over 10 s, swinging freely, tumbling over,
+/// and with motors under zero effort commands.
 #[test]
 fn a_double_pendulum_keeps_its_energy() {
     let limp = Servo {
@@ -374,8 +374,8 @@ fn turntable(friction: f32, damping: f32, armature: f32) -> (Run, JointId, f32) 
     (build.run_with(awake()), joint, inertia + armature)
 }
 
-/// Stick test: below the friction's torque nothing moves, above it the rest of the torque accelerates it, and coasting it
-/// stops after I w / F.
+/// Stick test: below the friction's torque nothing moves, above it the remaining torque accelerates it, and it coasts to a
+/// stop after I w / F.
 #[test]
 fn friction_of_a_joint_takes_its_own_torque_and_no_more() {
     let friction = 0.05;
@@ -411,7 +411,7 @@ fn friction_of_a_joint_takes_its_own_torque_and_no_more() {
     }
 }
 
-/// Told a velocity, the joint keeps it less what damping takes: w = g w* / (g + d).
+/// Under a velocity command, the joint keeps it less the effect of damping: w = g w* / (g + d).
 #[test]
 fn a_velocity_motor_keeps_its_speed() {
     let (mut run, joint, _) = turntable(0.0, 2.0, 0.0);
@@ -431,8 +431,8 @@ fn set(run: &mut Run, address: &str, value: f64) {
     run.world.apply_parameters(&mut run.state).unwrap();
 }
 
-/// Link length, gear, mass and friction change while the world runs: what hangs on a longer link stands further out at once,
-/// a weaker gear lets the arm sink, and all of it is in snapshot and hash.
+/// Link length, gear, mass and friction change while the world runs: the body on a longer link moves out at once, a weaker
+/// gear lets the arm sink, and all of it is in snapshot and hash.
 #[test]
 fn parameters_of_a_robot_change_at_run_time() {
     let mut run = arm(1.0, Some(STRONG)).run_with(awake());
@@ -453,7 +453,7 @@ fn parameters_of_a_robot_change_at_run_time() {
     run.steps(40);
     let q = angles(&run.state);
     assert!(q.iter().all(|q| q.abs() < 1e-3), "{q:?}");
-    // A fork that goes on from the snapshot gives the same bits, changed parameters included.
+    // A fork from the snapshot gives the same bits, changed parameters included.
     let (state, physics) = (run.state.to_bytes(&run.house), run.world.snapshot());
     set(&mut run, "part/arm/part_5/mass_kg", 3.0);
     set(&mut run, "joint/1/gear", 0.1);
@@ -511,8 +511,8 @@ fn a_stated_inertia_is_the_one_that_swings() {
     assert!(worst < 1.5e-3, "{worst}");
 }
 
-/// Links that no joint joins stop at each other, as users of URDF expect: an arm that is told to fold onto itself comes to
-/// rest on its own body, short of where it is told to go. Those that a joint joins do not feel each other.
+/// Links that no joint connects stop at each other, as users of URDF expect: an arm commanded to fold onto itself comes to
+/// rest on its own body, short of its target. Links connected by a joint do not collide.
 #[test]
 fn a_folded_arm_stops_at_its_own_body() {
     let mut run = arm(0.0, Some(STRONG)).run_with(awake());

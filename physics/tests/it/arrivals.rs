@@ -55,13 +55,13 @@ fn a_body_that_no_room_has_room_for_is_refused() {
             assert!(message.contains(part), "{message}");
         }
     }
-    // The same by numbers that are set in the start's state.
+    // The same by values set in the initial state.
     let mut tall = state(&house, plain, at);
     let height = "agent/0/body/height_m".parse().unwrap();
     tall.set_parameter(&house, &height, 2.9).unwrap();
     let message = refused(&house, tall);
     assert!(message.contains("height 2.9 m"), "{message}");
-    // What just fits between the walls is not refused.
+    // A body that just fits between the walls is not refused.
     let wide = AgentBody {
         radius_m: 0.95,
         height_m: 2.2,
@@ -93,14 +93,14 @@ fn an_agent_that_begins_in_a_table_stands_beside_it() {
     assert!((report[0].distance_m - now.distance(middle)).abs() < 1e-6);
     run.steps(5);
     assert!(run.state.agents[AgentId(0)].position.distance(now) < 1e-3);
-    // Who has room stays, bit for bit.
+    // An agent with room stays, bit for bit.
     let free = Vec3::new(3.0, 0.0, 1.0);
     let run = begun(AgentBody::default(), free);
     assert_eq!(run.state.agents[AgentId(0)].position, free);
     assert!(run.report.agents.is_empty());
 }
 
-/// Agents that are told one place stand beside each other, the first where it was told; more than the room has place for share it.
+/// Agents with one start pose stand beside each other, the first at the pose; those for which there is no room share a position.
 #[test]
 fn agents_that_are_told_one_place_stand_beside_each_other() {
     let at = Vec3::new(3.0, 0.0, 1.0);

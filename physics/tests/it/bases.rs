@@ -7,7 +7,7 @@ use dwell_scene::{AgentBody, AgentId, DifferentialDrive, HolonomicBase, Locomoti
 use glam::Vec3;
 use std::f64::consts::TAU;
 
-/// Wheels that have their speed almost at once: on the way to 10 rad/s they lose `w^2 / (2 a)` = 5e-5 rad.
+/// Wheels that reach their speed almost at once: during the ramp to 10 rad/s they lose `w^2 / (2 a)` = 5e-5 rad.
 pub(crate) fn quick() -> DifferentialDrive {
     DifferentialDrive {
         max_wheel_acceleration_rad_s2: 1e6,
@@ -39,7 +39,7 @@ fn wheels(left: f32, right: f32) -> AgentControl {
     }
 }
 
-/// Returns where a planar pose is in the world for an agent that started at `at` with `yaw`.
+/// Returns the world position of a planar pose for an agent that started at `at` with `yaw`.
 fn in_world(pose: &PlanarPose, at: Vec3, yaw: f32) -> Vec3 {
     let turn = glam::Quat::from_rotation_y(yaw);
     at + turn * Vec3::new(-pose.y_m as f32, 0.0, -pose.x_m as f32)
@@ -58,7 +58,7 @@ fn constant_wheel_speeds_draw_the_circle_of_their_closed_form() {
         let pose = PlanarPose::default().advanced(&twist, t);
         let agent = &run.state.agents[id];
         let expected = in_world(&pose, at, yaw);
-        // Sixty seconds of 7200 roundings in f32; without what is kept back of them it would be a millimetre.
+        // Sixty seconds of 7200 roundings in f32; without the kept remainders they would be a millimetre.
         assert!(
             (agent.position - expected).length() < 1e-4,
             "{t} s: {} {expected}",
@@ -122,7 +122,7 @@ fn wheels_gather_speed_as_fast_as_they_may_and_no_faster_than_their_limit() {
     );
 }
 
-/// A forward speed and a rate of turn become wheel speeds; what is too fast keeps its curvature.
+/// A forward speed and a yaw rate become wheel speeds; one that is too fast keeps its curvature.
 #[test]
 fn velocities_are_driven_with_the_curvature_that_was_asked_for() {
     let (mut run, id) = differential(quick(), Vec3::new(10.0, 0.0, 10.0), 0.0);
@@ -146,7 +146,7 @@ fn velocities_are_driven_with_the_curvature_that_was_asked_for() {
     assert!((yaw / forward_m_s - 1.6).abs() < 1e-5);
 }
 
-/// Against a wall the body stops, and the wheels go on turning: odometry believes in a way that was not made.
+/// Against a wall the body stops, and the wheels keep turning: odometry counts a distance that was not travelled.
 #[test]
 fn against_a_wall_wheels_slip_and_odometry_is_deceived() {
     let (mut run, id) = differential(quick(), Vec3::new(10.0, 0.0, 1.0), 0.0);

@@ -24,8 +24,8 @@ pub(crate) fn set_pair(run: &mut Run, a: &str, b: &str, values: [(&str, f64); 2]
     run.world.apply_parameters(&mut run.state).unwrap();
 }
 
-/// The heights over `floor_m` to which a thing rises between its bounces: while it flies, `y + v^2 / 2 g` of its middle is the
-/// same in each step.
+/// Returns the heights over `floor_m` to which an object rises between its bounces: in flight, `y + v^2 / 2 g` of its
+/// middle is the same in each step.
 fn tops(run: &mut Run, thing: ObjectId, floor_m: f32, count: usize) -> Vec<f32> {
     let mut tops = Vec::new();
     let mut rising = false;
@@ -81,9 +81,9 @@ fn energy_j(run: &Run, things: &[(ObjectId, f64)]) -> f64 {
     run.world.kinetic_energy_j() + things.iter().map(height).sum::<f64>()
 }
 
-/// Boxes that fall on corners, edges and faces, turning, with any restitution and both ways of friction: their energy never
-/// grows by more than 0.5 % of what they fell with
-/// (rapier turns what flies by its spin at the beginning of a step: up to 0.3 % in a flight).
+/// Boxes that fall on corners, edges and faces, turning, with any restitution and both friction models: their energy never
+/// grows by more than 0.5 % of their initial one (rapier turns a flying body by its spin at the beginning of a step: up to
+/// 0.3 % in a flight).
 #[test]
 fn boxes_that_bounce_on_corners_gain_no_energy() {
     for (way, restitution) in [
@@ -121,8 +121,8 @@ fn boxes_that_bounce_on_corners_gain_no_energy() {
             let mass = 500.0 * 8.0 * f64::from(half.element_product());
             let things = [(thing, mass)];
             let start = energy_j(&run, &things);
-            // A step in which it is stopped at the surface ends with the height that it lost still missing: what counts is the
-            // lesser energy of two steps.
+            // A step in which it is stopped at the surface ends with the lost height still missing: the lesser energy of
+            // two steps counts.
             let (mut least, mut last) = (start, start);
             for _ in 0..360 {
                 run.steps(1);
@@ -190,8 +190,8 @@ fn a_box_that_lands_on_its_face_bounces_without_turning() {
     assert!(spin < 0.02, "{spin} rad/s");
 }
 
-/// Two balls that meet in the air part with `e` times the speed at which they met, and keep their momentum but for what
-/// gravity adds: within 1 %.
+/// Two balls that meet in the air part with `e` times their approach speed, and keep their momentum except for gravity:
+/// within 1 %.
 #[test]
 fn a_ball_that_hits_a_loose_ball_keeps_momentum() {
     let mut build = Build::room_of([4.0, 4.0, 4.0], "marble");
@@ -239,8 +239,8 @@ fn a_ball_that_hits_a_loose_ball_keeps_momentum() {
     );
 }
 
-/// A leaf that stands, of 0.8 m and as heavy as the ball or 20 times so, takes the angular momentum about its hinge that the ball
-/// gives away in the step of the blow: within 3 %.
+/// A leaf at rest, of 0.8 m and as heavy as the ball or 20 times so, takes the angular momentum about its hinge that the
+/// ball loses in the step of the impact: within 3 %.
 #[test]
 fn a_leaf_at_rest_takes_the_momentum_of_what_strikes_it() {
     let (ball_density, volume) = (500.0_f32, 4.0 / 3.0 * std::f32::consts::PI * 1e-3);
@@ -306,7 +306,7 @@ fn a_ball_bounces_off_a_leaf_that_gives_way() {
     let start = run.world.kinetic_energy_j();
     run.steps(60);
     assert!(run.state.joint_position[hinge].abs() > 0.05);
-    // What it fell in half a second comes on top.
+    // The velocity gained by falling for half a second is added.
     let fell = 500.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-3 * 9.81 * 1.2;
     assert!(run.world.kinetic_energy_j() < start + fell);
 }

@@ -1,4 +1,4 @@
-//! Carrying: what is held passes no wall, whatever its holder does.
+//! Carrying: a held object passes no wall, whatever its holder does.
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::{AgentControl, Grasp, OutcomeCode, actions};
@@ -6,7 +6,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 
-/// A wall at z = 3 with a doorway from x = 2 to 3 whose door stands open; a thing in the agent's hand.
+/// A wall at z = 3 with a doorway from x = 2 to 3 whose door is open; an object in the agent's hand.
 fn doorway(half: Vec3, grasp: Grasp) -> (Run, AgentId, ObjectId) {
     let mut build = Build::room([6.0, 3.0, 6.0]);
     let (_, joint) = build.wall_with_door(3.0, 6.0);
@@ -38,7 +38,7 @@ fn crosses(a: Vec3, b: Vec3) -> bool {
     !(2.0..=3.0).contains(&at.x) || at.y > 2.1
 }
 
-/// Contacts are soft: the middle of a card 1 mm thick may sink 2 mm into a wall it is pressed at.
+/// Contacts are soft: the middle of a card 1 mm thick may sink 2 mm into a wall that it is pressed against.
 const SINKS_M: f32 = 2e-3;
 
 fn outside(at: Vec3) -> bool {

@@ -293,7 +293,7 @@ impl Run {
             .unwrap()
     }
 
-    /// Returns where an agent can stand and walk about, the nearest to `point` first.
+    /// Returns positions where an agent can stand and walk about, the nearest to `point` first.
     pub(crate) fn places_by(&self, point: Vec3) -> Vec<Vec3> {
         let grid = NavGrid::build(&self.house, &self.state, &NavConfig::default()).unwrap();
         let largest = grid.walkable().filter(|cell| grid.island(*cell) == Some(0));
@@ -325,7 +325,7 @@ impl Run {
         outcome
     }
 
-    /// Waits for the end of something that takes time.
+    /// Waits for the end of an operation that takes time.
     pub(crate) fn told(&mut self, steps: usize) -> Option<dwell_physics::ActionOutcome> {
         (0..steps).find_map(|_| {
             self.walk(1, &[]);
@@ -359,7 +359,7 @@ impl Run {
         self.world.adopt(&mut self.state).unwrap();
     }
 
-    /// State and physics in one number.
+    /// State and physics as one number.
     pub(crate) fn hash(&self) -> (u64, Vec<u8>) {
         (self.state.hash(), self.world.moment())
     }

@@ -1,4 +1,4 @@
-//! Putting things in: open and roomy, or refused with the reason.
+//! Putting objects into containers: free spots, or refusals with the reason.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{HandAction, OutcomeCode, actions};
@@ -80,7 +80,7 @@ fn an_open_drawer_takes_a_thing_and_carries_it_when_it_is_shut() {
     room.run.steps(20);
     assert_eq!(lies_in(&room), [room.chest]);
     assert!(room.run.position(room.thing).z < 2.2, "it came along");
-    // Shut away, it can be neither seen nor taken.
+    // In a closed drawer, it can be neither seen nor picked up.
     let told = room.run.act(room.agent, actions::Pick::new(room.thing));
     assert_eq!(told.code, OutcomeCode::NotVisible, "{}", told.sentence);
 }

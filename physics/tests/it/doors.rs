@@ -1,4 +1,4 @@
-//! Doors: shut ones stay shut, opened ones swing, blocked ones say so.
+//! Doors: closed ones stay closed, opened ones swing, blocked ones report it.
 
 use crate::common::{Build, Piece, forward};
 use dwell_physics::{OutcomeCode, actions};
@@ -114,7 +114,7 @@ fn a_blocked_door_says_what_is_in_the_way() {
     assert_eq!(run.state.joint_command[joint], JointCommand::Off);
 }
 
-/// Shut on an agent that stands in the doorway, the door stops at its body and says so.
+/// A door closed on an agent in the doorway stops at its body and reports it.
 #[test]
 fn a_door_does_not_shut_through_an_agent() {
     let mut build = Build::room([6.0, 3.0, 6.0]);

@@ -1,4 +1,4 @@
-//! Impacts, scrapes and rolling: when, how hard, how fast, of what, where.
+//! Impacts, sliding and rolling: time, impulse, speed, substances, position.
 
 use crate::common::Run;
 use crate::common::{Build, Piece, gravity, pair};
@@ -101,7 +101,7 @@ fn events_come_in_the_order_of_time_and_pair() {
             if event.kind != ContactKind::Impact {
                 continue;
             }
-            // An impact that lasts longer is told later: by at most three steps.
+            // An impact that lasts longer is reported later: by at most three steps.
             assert!(
                 event.time_s >= last - 3.5 / 120.0,
                 "{} after {last}",
@@ -113,7 +113,7 @@ fn events_come_in_the_order_of_time_and_pair() {
     assert!(last > 0.3);
 }
 
-/// t = sqrt(2 h / g) and v = sqrt(2 g h): what flies freely follows its parabola, and the moment of an impact within the
+/// t = sqrt(2 h / g) and v = sqrt(2 g h): a body in free flight follows its parabola, and the time of an impact within the
 /// physics step comes from gap and approach before it.
 #[test]
 fn a_dropped_ball_meets_the_floor_at_its_time_and_speed() {
@@ -169,7 +169,7 @@ fn on_a_slope(
     (build.run(), thing)
 }
 
-/// The events of one kind that are of the pair of the slope and the thing, with how long after the start their middle is.
+/// Returns the events of one kind between the slope and the object, with the time of their middle after the start.
 fn told(run: &Run, kind: ContactKind) -> Vec<(f32, ContactEvent)> {
     let same = |event: &&ContactEvent| event.kind == kind && event.phase != ContactPhase::End;
     let middle = |event: &ContactEvent| (event.time_s as f32 + 0.5 * event.duration_s, *event);
@@ -267,8 +267,8 @@ fn a_scrape_begins_goes_on_and_ends() {
     assert!(slips.collect::<Vec<_>>().is_sorted_by(|a, b| a >= b));
 }
 
-/// The limit holds in every step, what is told is the strongest, and what is not is counted with its impulse: the sums
-/// with and without a limit agree.
+/// The limit holds in every step, the strongest events are reported, and the others are counted with their impulse: the
+/// sums with and without a limit agree.
 #[test]
 fn five_hundred_falling_things_stay_bounded() {
     let run_with = |most: usize| {

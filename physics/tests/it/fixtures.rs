@@ -1,4 +1,4 @@
-//! Taps and lids of the built-in apartment: what is turned on runs, what is opened stays open and takes things in.
+//! Taps and lids of the built-in apartment: taps that are turned on run, containers that are opened stay open and take objects.
 
 use crate::common::Run;
 use dwell_physics::{OutcomeCode, PhysicsConfig, actions};

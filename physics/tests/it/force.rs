@@ -1,4 +1,4 @@
-//! Throwing, pushing, pulling: as strong as a person, and never through what is shut.
+//! Throwing, pushing, pulling: as strong as a person, and never through a closed door.
 
 use crate::common::{Build, Piece, Run, gravity};
 use dwell_physics::{HandAction, OutcomeCode, Target, actions};
@@ -319,7 +319,7 @@ fn nobody_takes_or_pushes_what_somebody_stands_on() {
     );
 }
 
-/// A second push while the first goes on ends that, and says so in the next step.
+/// A second push during the first ends it, with an outcome in the next step.
 #[test]
 fn a_push_that_gives_way_to_another_is_told_of() {
     let mut build = hall();

@@ -5,8 +5,9 @@ use dwell_physics::{ContactFriction, ContactKind, PhysicsConfig};
 use dwell_scene::math::{atan2, sin_cos};
 use glam::{Quat, Vec3};
 
-/// A box that slides down a slope tells `mu m g cos(t) T` of friction over `T`, and `m g cos(t) T` of pressure, within 0.1 %;
-/// and in any case what the box itself lost to friction, which with friction by point is up to 9 % less than Coulomb's.
+/// A box that slides down a slope reports `mu m g cos(t) T` of friction over `T`, and `m g cos(t) T` of normal impulse,
+/// within 0.1 %; and in any case the box's own loss to friction, which with friction by point is up to 9 % less than
+/// Coulomb's.
 #[test]
 fn a_box_that_slides_down_tells_all_of_its_friction() {
     let (mu, _) = pair("oak", "steel");
@@ -30,7 +31,7 @@ fn a_box_that_slides_down_tells_all_of_its_friction() {
                 contact_friction: way,
                 ..PhysicsConfig::default()
             });
-            // From when it slides at a speed that is told.
+            // From the time at which its sliding speed is reported.
             run.steps(4);
             run.events.clear();
             let from = run.velocity(block);
@@ -58,10 +59,10 @@ fn a_box_that_slides_down_tells_all_of_its_friction() {
     }
 }
 
-/// A ball that hits the floor aslant without spin is pushed along it until it rolls, by 2/7 of its momentum along the floor,
-/// within 12 %, because rapier's lever ends in the middle of the gap that was left when the step began; or slips and is
-/// pushed by `mu` times what stops it, within 2 %: rapier gives the rebound back without friction. What is told is what the
-/// ball lost, within 0.1 %.
+/// A ball that hits the floor obliquely without spin is pushed along it until it rolls, by 2/7 of its momentum along the
+/// floor, within 12 %, because rapier's lever ends in the middle of the gap that was left when the step began; or slips and
+/// is pushed by `mu` times the normal impulse, within 2 %: rapier applies the rebound without friction. The reported
+/// impulse is the ball's loss, within 0.1 %.
 #[test]
 fn a_ball_that_hits_aslant_tells_what_the_floor_took() {
     for way in [ContactFriction::Patch, ContactFriction::Point] {

@@ -87,7 +87,7 @@ fn a_crouched_agent_passes_under_a_beam_and_stands_up_only_behind_it() {
     assert!(run.state.agents[id].position.z < 3.4);
 }
 
-/// The capsule that others feel is as low as the agent.
+/// The capsule that others collide with is as low as the agent.
 #[test]
 fn what_hangs_above_a_crouched_agent_is_hit_when_it_stands_in_the_way() {
     for (crouch, hit) in [(true, false), (false, true)] {

@@ -1,4 +1,4 @@
-//! Grippers of two fingers, from files: what they hold, what slips, and that a grip is a matter of friction alone.
+//! Grippers of two fingers, from files: objects that they hold or lose, by friction alone.
 
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run, gravity};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const EDGE_M: f32 = 0.05;
 const FRICTION: f32 = 0.5;
-/// Of the fingers' motors in the file for MuJoCo.
+/// Stiffness of the fingers' motors in the file for MuJoCo.
 const STIFFNESS_N_M: f32 = 1000.0;
 
 /// A robot with a gripper over a cube of oak on the floor.
@@ -94,8 +94,8 @@ impl Gantry {
         }
     }
 
-    /// Lets each finger press with this force, N: by the motors' strength where one motor drives both, else by how much
-    /// further than the cube's side they are told to go against their stiffness.
+    /// Lets each finger press with this force, N: by the motors' strength where one motor drives both, else by the distance
+    /// that they are commanded beyond the cube's side against their stiffness.
     fn squeeze(&mut self, force_n: f32) {
         if !self.follows {
             self.closed = 0.03 + force_n / STIFFNESS_N_M;
@@ -138,7 +138,7 @@ impl Gantry {
         self.run.steps(20);
     }
 
-    /// Returns where the cube is to the palm, m.
+    /// Returns the position of the cube relative to the palm, m.
     fn in_hand(&self) -> Vec3 {
         let palm = self.run.house.joints[self.shift].child;
         let palm = self.run.state.part_pose[palm];
@@ -154,7 +154,7 @@ impl Gantry {
 fn a_gripper_holds_what_friction_carries_and_no_more() {
     let mass_kg = 0.5;
     let needed_n = mass_kg * gravity() / (2.0 * FRICTION);
-    // Two motors of their own press by how much further they are told to go than the cube's side, which gives by half a
+    // Two separate motors press by the distance that they are commanded beyond the cube's side, which yields by half a
     // millimetre: half a newton of five.
     for (file, fixed, off) in [
         ("gripper.urdf", true, 0.1),

@@ -1,4 +1,4 @@
-//! Very many things: what a world holds begins and goes on, and what it cannot hold is refused before room is taken for it.
+//! Very many objects: worlds within the limits run, and those beyond are refused before memory is allocated.
 
 use crate::common::{Build, Piece};
 use dwell_physics::{PhysicsConfig, PhysicsError, PhysicsWorld};
@@ -14,7 +14,7 @@ fn cube(at: Vec3) -> Piece {
     Piece::cuboid(Vec3::splat(HALF_M), at)
 }
 
-/// Returns what is said of a house that is too much.
+/// Returns the refusal of a house that is too large.
 fn refusal(house: Arc<House>) -> String {
     let mut state = State::new(&house);
     let made = PhysicsWorld::new(house, PhysicsConfig::default(), &mut state);
@@ -24,7 +24,7 @@ fn refusal(house: Arc<House>) -> String {
     }
 }
 
-/// An object of `count` bodies on hinges, 2 m apart; `on`: the part that each hangs on.
+/// An object of `count` bodies on hinges, 2 m apart; `on`: the parent part of each.
 fn hinges(count: usize, servo: Option<Servo>, on: impl Fn(usize) -> Option<PartId>) -> Build {
     let mut build = Build::room([10.0, 3.0, 10.0]);
     let object = build.object("machine", Mobility::Articulated, &[cube(Vec3::ONE)]);
@@ -73,7 +73,7 @@ fn a_thousand_things_at_one_place_are_refused_with_a_sentence() {
     assert!(said.contains(expected), "{said}");
 }
 
-/// Each of them is in all others: beyond some, no way out is looked for.
+/// Each of them overlaps all others: beyond some number, they are not freed.
 #[test]
 fn what_is_in_a_crowd_is_frozen_and_told() {
     let mut build = Build::room([4.0, 3.0, 4.0]);
@@ -116,7 +116,7 @@ fn more_bodies_than_a_world_holds_are_refused_by_number() {
     assert!(said.contains(expected), "{said}");
 }
 
-/// The efforts of joints that act on each other are found together; those of others are not.
+/// The efforts of joints that act on each other are computed together; those of others are not.
 #[test]
 fn a_long_chain_is_refused_and_as_many_joints_apart_are_not() {
     let said = refusal(hinges(20_000, None, on_the_one_before).house());

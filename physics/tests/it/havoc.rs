@@ -1,4 +1,4 @@
-//! Everything at random, wrong ids and numbers included: nothing panics, and what must hold holds.
+//! Everything at random, wrong ids and numbers included: nothing panics, and invariants hold.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{AgentControl, Grasp, HandAction, Target, actions};
@@ -36,7 +36,7 @@ fn house() -> Run {
     run
 }
 
-/// A number that is usually sensible.
+/// A number that is usually valid.
 fn number(stream: &mut RandomStream, size: f32) -> f32 {
     match stream.below(24) {
         0 => f32::NAN,

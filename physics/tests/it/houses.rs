@@ -42,7 +42,7 @@ fn say(name: &str, run: &Run) {
     );
 }
 
-/// Returns how far the object has gone that went furthest, and its name.
+/// Returns the largest displacement of an object, and its name.
 fn drift(run: &Run, before: &[Vec3]) -> Vec<(String, f32)> {
     let mut all: Vec<_> = run
         .house
@@ -59,7 +59,7 @@ fn drift(run: &Run, before: &[Vec3]) -> Vec<(String, f32)> {
     all
 }
 
-/// `stray` things may go further than `furthest_m`; none tips by more than two degrees.
+/// At most `stray` objects move further than `furthest_m`; none tips by more than two degrees.
 fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     say(name, &run);
     let before: Vec<Vec3> = run.house.objects.ids().map(|id| run.position(id)).collect();
@@ -112,7 +112,7 @@ fn settles(name: &str, mut run: Run, furthest_m: f32, stray: usize) {
     }
 }
 
-/// Returns how far each movable thing has tipped from how it stood, degrees, the furthest first.
+/// Returns the tilt of each movable object from its initial orientation, degrees, the largest first.
 fn tilts(run: &Run, upright: &[Vec3]) -> Vec<(f32, String)> {
     let mut tilts: Vec<(f32, String)> = run
         .house
@@ -181,8 +181,8 @@ fn walks(mut run: Run) {
     );
 }
 
-/// One joint after the other: told to open, it opens, unless something stands in its way, and shuts: what stands firm to
-/// the bit, a lid on something loose within its tolerance.
+/// One joint after the other: commanded to open, it opens, unless something is in its way, and closes: on a fixed object to
+/// the bit, a lid on a loose one within its tolerance.
 #[test]
 fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
     let mut run = apartment();

@@ -1,4 +1,4 @@
-//! Blows against what hangs on joints: it takes its part of them.
+//! Impacts on jointed bodies, which take their share of the impulse.
 
 use crate::bounces::{each_step, set_pair};
 use crate::common::{Build, Piece, Run};
@@ -31,12 +31,12 @@ struct Blow {
     sleeping: bool,
 }
 
-/// Ball and leaf before or after a blow.
+/// Ball and leaf before or after an impact.
 struct Seen {
-    /// The ball's velocity, m/s, and the place of its middle against a point of the hinge, m.
+    /// The ball's velocity, m/s, and the position of its middle relative to a point of the hinge, m.
     velocity: DVec3,
     at: DVec3,
-    /// Of the joint: rad or m, and per second.
+    /// Position of the joint, rad or m, and its velocity, per second.
     position: f64,
     speed: f64,
     energy: f64,
@@ -46,7 +46,7 @@ struct Seen {
 
 /// The impact point of ball and leaf.
 struct Meeting {
-    /// The place of the ball's middle against the hinge, m.
+    /// Position of the ball's middle relative to the hinge, m.
     at: DVec3,
     /// Of the leaf.
     normal: DVec3,
@@ -55,7 +55,7 @@ struct Meeting {
 }
 
 impl Meeting {
-    /// Returns how fast ball and leaf part, m/s.
+    /// Returns the separation speed of ball and leaf, m/s.
     fn parts(&self, seen: &Seen) -> f64 {
         seen.velocity.dot(self.normal) + seen.speed * self.lever
     }
@@ -146,7 +146,7 @@ impl Blow {
         ball_kg() * ball + seen.turning
     }
 
-    /// Returns where they meet that move on like this.
+    /// Returns the impact point of ball and leaf in uniform motion.
     fn meeting(&self, seen: &Seen) -> Meeting {
         if self.kind == JointKind::Slide {
             return Meeting {
@@ -181,7 +181,7 @@ impl Blow {
         at(low).0
     }
 
-    /// Restitution, the energy over what it was, and what is missing of the momentum as a share of the ball's, of the one blow.
+    /// Returns restitution, the ratio of energies, and the lost momentum as a share of the ball's, of the one impact.
     fn made(&self) -> [f64; 3] {
         let (mut run, ball, joint) = self.build();
         let mut before = self.look(&run, ball, joint);
@@ -224,8 +224,8 @@ const SLIDE: Blow = Blow {
     sleeping: false,
 };
 
-/// A ball against a slide that is lighter, as heavy, or heavier, at rest, asleep, receding and coming towards it, in its middle
-/// and beside it: they part with `e` times the speed at which they met, and momentum along the slide is kept.
+/// A ball against a slide that is lighter, as heavy, or heavier, at rest, asleep, receding and approaching, in its middle
+/// and beside it: they part with `e` times their approach speed, and momentum along the slide is kept.
 #[test]
 fn a_slide_parts_with_restitution_and_keeps_momentum() {
     for restitution in [1.0, 0.5] {
@@ -257,8 +257,8 @@ fn a_slide_parts_with_restitution_and_keeps_momentum() {
     }
 }
 
-/// A ball against a free leaf, at several distances from its hinge, straight and askew: restitution within 1 %, angular momentum
-/// about the hinge within 0.1 %, and no energy from nowhere.
+/// A ball against a free leaf, at several distances from its hinge, straight and oblique: restitution within 1 %, angular
+/// momentum about the hinge within 0.1 %, and no gain of energy.
 #[test]
 fn a_leaf_parts_with_restitution_and_keeps_angular_momentum() {
     for restitution in [1.0, 0.5] {
@@ -288,7 +288,7 @@ fn a_leaf_parts_with_restitution_and_keeps_angular_momentum() {
                         (parts - restitution).abs() < 0.01 * restitution,
                         "{blow:?}: {parts}"
                     );
-                    // Where the leaf turns in the step of the blow, friction acts a little beside it.
+                    // Where the leaf turns in the step of the impact, friction acts a little beside it.
                     let within = if friction > 0.0 { 3e-3 } else { 1e-3 };
                     assert!(momentum.abs() < within, "{blow:?}: {momentum}");
                     assert!(energy < 1.001, "{blow:?}: {energy}");
@@ -298,7 +298,7 @@ fn a_leaf_parts_with_restitution_and_keeps_angular_momentum() {
     }
 }
 
-/// A leaf that stands at its stop, or is shut, is a wall to what pushes it there, and a leaf to what pushes it open.
+/// A leaf at its stop, or latched, is a wall to an impact towards the stop, and a leaf to one that opens it.
 #[test]
 fn a_leaf_at_its_stop_is_struck_as_a_wall_from_the_other_side_as_a_leaf() {
     for (limits, gives) in [([0.0, 1.5], true), ([-1.5, 0.0], false)] {

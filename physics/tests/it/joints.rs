@@ -148,7 +148,7 @@ fn a_damped_slide_sinks_at_its_terminal_speed() {
     );
 }
 
-/// A servo of stiffness k under a load torque t stands t / k below its target.
+/// A servo of stiffness k under a load torque t comes to rest t / k below its target.
 #[test]
 fn a_servo_goes_to_its_target_less_the_load_over_its_stiffness() {
     let mut build = Build::room([4.0, 4.0, 4.0]);

@@ -1,4 +1,4 @@
-//! Bases on wheels that land while they move otherwise than their wheels would.
+//! Landing of wheeled bases with a motion that their wheels do not have.
 
 use crate::bases::{quick, robot};
 use crate::bounces::each_step;
@@ -12,8 +12,8 @@ fn friction(run: &Run, agent: AgentId) -> f32 {
     run.state.agents[agent].body.max_slope_rad.tan()
 }
 
-/// A base thrown from half a metre, its wheels told to stand: it slides on as it flew, slower by `mu g t`, and comes to rest
-/// after `v^2 / (2 mu g)`, forwards, aside and askew.
+/// A base thrown from half a metre, its wheels commanded to stop: it slides on as it flew, slower by `mu g t`, and comes to
+/// rest after `v^2 / (2 mu g)`, forwards, sideways and obliquely.
 #[test]
 fn landing_brakes_what_wheels_cannot_roll_by_friction() {
     let omni = HolonomicBase {

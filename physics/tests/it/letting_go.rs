@@ -1,4 +1,4 @@
-//! Motors that let go, delays that begin while a motor holds, and limits that a start does not keep.
+//! Motors that are switched off, delays that begin while a motor holds, and limits that a start violates.
 
 use crate::common::{Build, Piece, Run};
 use crate::laws::spec;
@@ -63,7 +63,7 @@ fn a_delay_that_begins_while_a_motor_holds_drops_nothing() {
         let at = run.state.joint_position[LIFT];
         assert!((at - before).abs() < 2e-3, "{at} m instead of {before}");
     }
-    // What it is told from now on comes late: nothing happens for 0.2 s.
+    // Commands from now on come late: nothing happens for 0.2 s.
     run.state.joint_command[LIFT] = JointCommand::Position(0.6);
     run.steps(3);
     let early = run.state.joint_position[LIFT];
@@ -73,7 +73,7 @@ fn a_delay_that_begins_while_a_motor_holds_drops_nothing() {
     assert!((late - 0.6).abs() < 0.03, "{late}");
 }
 
-/// As a parameter may have set them before the world began.
+/// As overrides may have set them before the world began.
 #[test]
 fn a_start_beyond_its_limits_stands_at_the_nearer_one_from_the_beginning() {
     let house = lift().house();

@@ -1,11 +1,11 @@
-//! Joints that follow others.
+//! Mimic joints.
 
 use crate::arms::{STRONG, angles, arm, awake};
 use crate::common::Run;
 use dwell_physics::JointState;
 use dwell_scene::{JointCommand, JointId, Mimic};
 
-/// An arm whose third joint follows its second; the motors of the others are told to go to `position`, rad.
+/// An arm whose third joint follows its second; the motors of the others are commanded to `position`, rad.
 pub(crate) fn linked(position: f32) -> Run {
     linked_within(None, position)
 }
@@ -29,7 +29,7 @@ fn linked_within(stops: Option<[f32; 2]>, position: f32) -> Run {
     run
 }
 
-/// A joint that follows another stands at its multiple, also under load.
+/// A mimic joint keeps its multiple of the leader, also under load.
 #[test]
 fn a_follower_keeps_to_its_leader() {
     let mut run = linked(0.6);
@@ -39,8 +39,8 @@ fn a_follower_keeps_to_its_leader() {
     assert!((q[2] - (0.1 - 0.5 * q[1])).abs() < 2e-3, "{q:?}");
 }
 
-/// A follower that is set elsewhere than its leader asks, comes there together with it: a tenth of what they are apart in a physics
-/// step, so that 0.9^6 of it is left after a control step, and not beyond.
+/// A mimic joint that is set elsewhere than at its multiple converges with its leader: a tenth of the difference in a
+/// physics step, so that 0.9^6 of it is left after a control step, and without overshoot.
 #[test]
 fn a_linkage_that_was_set_apart_comes_together() {
     let mut run = linked(0.0);

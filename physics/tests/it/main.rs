@@ -1,4 +1,4 @@
-//! Behaviour of physics against theory and against itself.
+//! Tests of physics against theory and against itself.
 #![expect(
     clippy::unwrap_used,
     clippy::print_stdout,

@@ -1,5 +1,5 @@
-//! Every number of bodies, joints and agents, set while a world runs: together where they bound each other, and with the
-//! consequences that mechanics says they have.
+//! Every number of bodies, joints and agents, set while a world runs: together where they bound each other, and with their
+//! mechanical consequences.
 
 use crate::arms::{STRONG, awake};
 use crate::common::{Build, Piece, Run, forward};
@@ -148,7 +148,7 @@ fn a_dumbbell_with_one_heavy_end_has_its_mass_there() {
             assert!((at(&run) - before).length() < 2e-3, "{}", at(&run) - before);
         }
     }
-    // On the move: what spins goes on as it did when the mass wanders.
+    // In motion: a spinning body goes on as before when its mass distribution changes.
     put(&mut run, Vec3::new(0.3, 0.0, 0.0), Vec3::Y);
     let before = run.state.part_velocity[root];
     set(
@@ -165,7 +165,7 @@ fn a_dumbbell_with_one_heavy_end_has_its_mass_there() {
     assert!((now.angular - before.angular).length() < 1e-5);
 }
 
-/// The object's own mass goes before its parts', in the shares that they have.
+/// The object's own mass precedes its parts', in their shares.
 #[test]
 fn an_objects_mass_is_shared_as_its_parts_weigh() {
     let mut build = Build::room([4.0, 3.0, 4.0]);
@@ -204,7 +204,7 @@ fn an_objects_mass_is_shared_as_its_parts_weigh() {
     assert!((found / expected - 1.0).abs() < 1e-4, "{found} {expected}");
 }
 
-/// A lid whose hinge is turned opens the other way: independent kinematics by hand.
+/// A lid whose hinge axis is turned opens the other way: independent kinematics by hand.
 #[test]
 fn an_axis_that_turns_takes_what_hangs_on_it_along() {
     let mut build = Build::room([4.0, 3.0, 4.0]);
@@ -256,7 +256,7 @@ fn an_axis_that_turns_takes_what_hangs_on_it_along() {
     assert!((middle(&run) - Vec3::new(c, 0.0, -s) * 0.3).length() < 1e-4);
 }
 
-/// A follower goes to what its linkage says now, and a motor that no longer carries the weight gives way by load over
+/// A mimic joint moves to its new multiple, and a motor that no longer compensates the weight deflects by load over
 /// stiffness.
 #[test]
 fn linkages_and_carried_weights_change_at_run_time() {
@@ -282,7 +282,7 @@ fn linkages_and_carried_weights_change_at_run_time() {
         follows(&run, 0.25, -0.1)
     );
     let held = run.state.joint_position[JointId(1)];
-    // It carries its follower's share, which no controller knows of.
+    // It carries the mimic joint's share, which no controller knows of.
     assert!((held - 0.6).abs() < 0.02, "{held}");
     set(&mut run, &[("joint/1/feed_forward", 0.5)]).unwrap();
     run.steps(80);
@@ -297,7 +297,7 @@ fn linkages_and_carried_weights_change_at_run_time() {
     );
 }
 
-/// Every listed number of a robot, an agent on legs and two on wheels: each set to something else in its range, read back,
+/// Every listed number of a robot, an agent on legs and two on wheels: each set to another value in its range, read back,
 /// kept by a snapshot, and gone with the one before.
 #[test]
 fn every_listed_number_is_set_read_back_and_restored() {
@@ -365,8 +365,7 @@ fn every_listed_number_is_set_read_back_and_restored() {
         run.state = start.0.clone();
         run.world.restore(&mut run.state, &start.1).unwrap();
         assert!(run.hash() == start.2, "{address}");
-        // What used to happen: an override that says what the house says stayed, and with it another hash. Bands of materials
-        // stay set.
+        // Regression: an override equal to the house's value stayed, and with it another hash. Bands of materials stay set.
         if matches!(address.words()[..], ["material", _, _, _]) {
             continue;
         }
@@ -379,7 +378,7 @@ fn every_listed_number_is_set_read_back_and_restored() {
     assert_eq!(fov, None);
 }
 
-/// Gravity as people write it, 9.80665, is what the house has, though its nearest f32 is another f64.
+/// Gravity as usually written, 9.80665, is the house's, though its nearest f32 is another f64.
 #[test]
 fn a_number_that_stands_there_anyway_is_not_kept() {
     let mut run = Build::room([4.0, 3.0, 4.0]).run();
@@ -442,8 +441,8 @@ fn what_is_too_heavy_now_falls_from_the_hand() {
     assert_eq!(run.state.agents[agent].holding, Some(cube));
 }
 
-/// A door with 0.5 N m of friction and as much damping is opened by 40 N m and not by 0.3: an agent's hand has its own number, and
-/// commands that no agent gives have one of the world.
+/// A door with 0.5 N m of friction and as much damping is opened by 40 N m and not by 0.3: an agent's hand has its own
+/// number, and commands that come from no agent have one of the world.
 #[test]
 fn a_hand_that_is_too_weak_opens_no_door() {
     let mut build = Build::room([6.0, 3.0, 6.0]);
@@ -518,13 +517,13 @@ fn an_agent_grows_where_it_has_room_and_not_into_walls() {
         .unwrap();
     let message = set(&mut run, &tall).unwrap_err();
     assert!(message.contains("height 1.9"), "{message}");
-    // Another agent is no room either.
+    // Another agent blocks it too.
     run.agent(Vec3::new(4.0, 0.0, 5.0), 0.0);
     let message = set(&mut run, &[("agent/1/body/radius_m", 0.6)]).unwrap_err();
     assert!(message.contains("agent 1"), "{message}");
 }
 
-/// Arms, strength and legs of other numbers do other things, from the next action on.
+/// Arms, strength and legs with other numbers act accordingly, from the next action on.
 #[test]
 fn what_an_agent_can_do_follows_its_numbers() {
     let mut build = Build::room([8.0, 3.0, 8.0]);

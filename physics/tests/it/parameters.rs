@@ -93,7 +93,7 @@ fn an_overridden_mass_is_what_it_weighs() {
     assert!(outcome.success, "{}", outcome.sentence);
 }
 
-/// Half the density is half the mass; a part's own mass goes before its material's, and the whole object's before both.
+/// Half the density is half the mass; a part's own mass precedes its material's, and the whole object's precedes both.
 #[test]
 fn an_overridden_density_is_what_a_thing_weighs() {
     let (mut run, sled) = sled();

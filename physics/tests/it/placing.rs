@@ -1,4 +1,4 @@
-//! Putting things down: what is put down stands, or it is refused with the reason.
+//! Placing objects: a placed object stands, or the action is refused with the reason.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::{OutcomeCode, PhysicsConfig, Target, actions};

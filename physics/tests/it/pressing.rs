@@ -74,9 +74,9 @@ fn momentum(run: &Run) -> DVec3 {
     .sum()
 }
 
-/// Whichever way it presses, a motor told a place 15 mm into the body presses with its stiffness times that: friction holds the
-/// finger against 0.85 of `mu F` and lets it go at 1.15. And nothing pushes the robot: what the finger presses with comes back through
-/// the slide.
+/// Whichever way it presses, a motor commanded 15 mm into the body presses with its stiffness times that: friction holds
+/// the finger against 0.85 of `mu F` and lets it slip at 1.15. And nothing pushes the robot: the finger's force returns
+/// through the slide.
 #[test]
 fn a_robot_presses_on_itself_as_hard_any_way_and_goes_nowhere() {
     let tilted = Vec3::new(0.6, 0.8, 0.0);
@@ -103,7 +103,7 @@ fn a_robot_presses_on_itself_as_hard_any_way_and_goes_nowhere() {
         println!("{way}: {worst:.1e} kg m/s, held {held:.1e} m, slipped {slipped:.1e} m");
         // A thousandth of the 30 N s of one side.
         assert!(worst < 0.03, "{way}: {worst}");
-        // What friction holds creeps a little at first; unheld it goes four metres.
+        // A sticking finger creeps a little at first; a free one goes four metres.
         assert!(held.abs() < 0.01, "{way}: {held}");
         // 2 N at 0.5 kg for 0.15 s, and what had crept.
         assert!(slipped > 0.04, "{way}: {slipped}");

@@ -1,4 +1,4 @@
-//! Every code that an action can end with comes about somewhere, with its sentence.
+//! Every outcome code of actions, with its sentence.
 
 use crate::common::{Build, Piece, Run, forward};
 use dwell_physics::{ActionOutcome, HandAction, OutcomeCode, Target, actions};
@@ -394,7 +394,7 @@ fn of_what_is_in_the_way() -> Vec<Case> {
     cases
 }
 
-/// Returns what somebody stands on stays; what is caught slips from the hand.
+/// An object that an agent stands on stays; one that is caught slips from the hand.
 fn of_feet_and_slips() -> Vec<Case> {
     use OutcomeCode as C;
     let mut build = room();
@@ -467,7 +467,7 @@ fn every_code_comes_about_and_says_what_to_do() {
         assert_eq!(told.success, works, "{code:?}: {}", told.sentence);
         seen.insert(code);
     }
-    // No scene is known in which the solver loses something; `src/lost.rs` makes it do so.
+    // No scene is known in which the solver loses a body; a unit test makes it do so.
     seen.insert(OutcomeCode::Lost);
     let missing: Vec<_> = OutcomeCode::ALL
         .iter()

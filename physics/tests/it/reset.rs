@@ -59,8 +59,8 @@ fn told(run: &Run, part: PartId) -> BodyState {
     }
 }
 
-/// The origin of the thing is 0.4 m from its centre of mass, so that its velocity is not the one the engine holds. The state
-/// says what was set, bit for bit; what the engine itself has differs by the rounding of some 10 m/s.
+/// The origin of the object is 0.4 m from its centre of mass, so that its velocity is not that of rapier's body. The state
+/// has the values that were set, bit for bit; those of rapier differ by the rounding of some 10 m/s.
 #[test]
 fn any_pose_and_velocity_of_a_free_body_reads_back() {
     let mut build = Build::room([4.0, 3.0, 4.0]);

@@ -68,7 +68,7 @@ fn what_fell_asleep_keeps_no_pairs() {
             steps += 1;
         }
         assert_eq!(run.world.awake_count(), 0, "round {round}");
-        // It is looked for now and then.
+        // Caching is periodic.
         run.steps(8);
         let (found, by_hand) = (run.world.pair_counts(), near_by_hand(&run));
         let told = run.state.contacts.len();
@@ -81,7 +81,7 @@ fn what_fell_asleep_keeps_no_pairs() {
     }
 }
 
-/// Boxes are drawn tight while things fall asleep one by one; a world restored right then goes on alike.
+/// Boxes are shrunk while bodies fall asleep one by one; a world restored then goes on alike.
 #[test]
 fn a_world_restored_while_things_fall_asleep_continues_bit_for_bit() {
     let mut run = slats();

@@ -1,4 +1,4 @@
-//! Agents and robots of URDF that are put to any pose and velocity.
+//! Setting agents and robots of URDF to any pose and velocity.
 
 use crate::arms::awake;
 use crate::common::{Build, Piece, Run, gravity};
@@ -49,8 +49,8 @@ fn one_of_each() -> (Run, [AgentId; 3]) {
     (run, [legs, drive, base])
 }
 
-/// The promise of issue 3 for agents: 10,000 poses and velocities of legs, of two wheels and of a holonomic base, each with all
-/// that its body has, read back; and once in a while what follows is a step like any other.
+/// Issue 3 for agents: 10,000 poses and velocities of legs, of two wheels and of a holonomic base, each with all values of
+/// its body, are read back; and once in a while followed by a normal step.
 #[test]
 fn any_pose_and_velocity_of_an_agent_reads_back() {
     let (mut run, [legs, drive, base]) = one_of_each();
@@ -251,8 +251,8 @@ fn by_parts(run: &Run, joint: JointId) -> [f64; 2] {
     }
 }
 
-/// A drawer 40 m from the origin, where its pose in f32 is coarse to 4e-6 m, is put to any position and speed, and is where these
-/// take it a step later: it moves by its own numbers.
+/// A drawer 40 m from the origin, where its pose in f32 is coarse to 4e-6 m, is set to any position and speed, and follows
+/// them exactly a step later: it moves by its own coordinates.
 #[test]
 fn a_slide_goes_on_from_the_very_numbers_it_is_put_to() {
     let mut build = Build::room([44.0, 3.0, 44.0]);

@@ -1,4 +1,4 @@
-//! Things that come to rest before a world begins.
+//! Settling of objects before a world begins.
 
 use crate::common::{Build, Piece, Run};
 use dwell_physics::PhysicsConfig;
@@ -59,7 +59,7 @@ fn other_durations_are_refused() {
     }
 }
 
-/// A furnished house that has settled goes on as one that ran for as long, but for the time that it tells.
+/// A furnished house that has settled goes on as one that ran for as long, but for its time.
 #[test]
 fn a_house_has_settled_as_one_that_ran() {
     let house = Arc::new(dwell_houses::open("builtin:studio").unwrap().0);

@@ -24,7 +24,7 @@ fn tower(count: u8) -> (Build, Vec<ObjectId>) {
     boxes(&(0..count).map(at).collect::<Vec<_>>())
 }
 
-/// Until all is asleep and laid aside.
+/// Runs until all is asleep and cached.
 fn rest(run: &mut Run) {
     for _ in 0..40 {
         run.steps(8);
@@ -57,7 +57,7 @@ fn contacts_are_told_of_what_is_laid_aside() {
     );
     rest(&mut run);
     assert_eq!(run.state.contacts, awake);
-    // Those of one that leaves go with it, and come again.
+    // Contacts of a removed body go with it, and come again.
     put(&mut run, objects[2], Vec3::new(4.0, HALF_M, 4.0));
     run.steps(5);
     let part = run.root(objects[2]);
@@ -88,7 +88,7 @@ fn what_loses_its_support_falls() {
     }
 }
 
-/// However fast it comes, it gives what it would give to a thing that never sleeps.
+/// However fast an impact is, it transfers what it would to a body that never sleeps.
 #[test]
 fn what_is_hit_moves_as_if_it_had_been_awake() {
     for speed in [0.3, 2.0, 8.0, 20.0] {
@@ -116,7 +116,7 @@ fn what_is_hit_moves_as_if_it_had_been_awake() {
         let [(laid, far), (awake, far_awake)] = ends;
         println!("  {speed} m/s: {laid} and {awake} m/s, to {far} and {far_awake} m");
         assert!(awake > 0.2 * speed, "{speed}: {awake}");
-        // Friction takes 0.04 m/s in a physics step, and the blow may come a step earlier or later.
+        // Friction takes 0.04 m/s in a physics step, and the impact may come a step earlier or later.
         assert!(
             (laid - awake).abs() < 0.02 * awake + 0.05,
             "{speed}: {laid} for {awake}"
@@ -145,7 +145,7 @@ fn a_row_is_pushed_as_one() {
     rest(&mut run);
 }
 
-/// An agent that walks into what is laid aside pushes it on.
+/// An agent that walks into a cached body pushes it on.
 #[test]
 fn a_walker_pushes_what_is_laid_aside() {
     let (build, objects) = boxes(&[Vec3::new(4.0, HALF_M, 3.0)]);
@@ -157,7 +157,7 @@ fn a_walker_pushes_what_is_laid_aside() {
     assert!(found.z < 2.9, "{found}");
 }
 
-/// A snapshot of a world in which much is laid aside goes on alike when something is thrown into it.
+/// A snapshot of a world with many cached bodies goes on alike when something is thrown into it.
 #[test]
 fn a_restored_world_wakes_the_same_things() {
     let (build, objects) = tower(5);

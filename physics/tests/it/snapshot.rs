@@ -6,7 +6,7 @@ use dwell_scene::{AgentId, LawSpec, ObjectId, State};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// A room with a heap, a door, two agents, one of which holds something.
+/// A room with a heap, a door, two agents, one of which holds an object.
 fn busy() -> (Run, ObjectId, AgentId) {
     let mut build = Build::room([6.0, 3.0, 6.0]);
     let (door, _) = build.wall_with_door(3.0, 6.0);
@@ -72,7 +72,7 @@ fn a_restored_world_continues_bit_for_bit_over_200_steps() {
         }
         let physics = run.world.snapshot();
         let state = run.state.to_bytes(&run.house);
-        // Into a world that has gone another way meanwhile.
+        // Into a world that has meanwhile diverged.
         let mut other = run.clone();
         other.walk(30, &[forward(2.0)]);
         other.state = State::from_bytes(&run.house, &state).unwrap();
@@ -81,7 +81,7 @@ fn a_restored_world_continues_bit_for_bit_over_200_steps() {
             other.world.snapshot() == physics,
             "a restored world has the snapshot it came from"
         );
-        // Into a world that was just made.
+        // Into a new world.
         let mut fresh = Run::over(run.house.clone(), PhysicsConfig::default());
         fresh.state = State::from_bytes(&run.house, &state).unwrap();
         fresh.world.restore(&mut fresh.state, &physics).unwrap();
@@ -365,7 +365,7 @@ fn a_flipped_bit_is_found_wherever_it_is() {
     assert!(before == run.hash());
 }
 
-/// Taken while a hand holds by a spring, another firmly, a door swings, some things sleep and others fall: it goes on alike.
+/// Taken while one hand holds by a spring, another firmly, a door swings, some bodies sleep and others fall: it goes on alike.
 #[test]
 fn holds_swings_and_sleep_go_on_bit_for_bit() {
     let (mut run, _, agent) = busy();

@@ -1,4 +1,4 @@
-//! Robots that nothing bolts down: on a base, on legs, in the air.
+//! Robots with a free base: standing on a base, on legs, and in the air.
 
 use crate::arms::{STRONG, arm_on, awake};
 use crate::common::{Build, Piece, Run, gravity, pair};
@@ -8,7 +8,7 @@ use dwell_scene::{
 };
 use glam::Vec3;
 
-/// The promise of issue 3 for what only stands: within 1e-3 rad for 10 s.
+/// Issue 3 for a robot that only stands: within 1e-3 rad for 10 s.
 #[test]
 fn a_robot_that_stands_on_its_base_holds_its_pose() {
     for pose in [
@@ -83,8 +83,8 @@ fn four_legs(servo: Servo) -> (Build, [f32; 8]) {
     (build, pose)
 }
 
-/// The same for one whose legs carry it. Its motors carry what stands on them; feet sink a tenth of a millimetre into the
-/// floor when they are loaded, which bends the knees for as long as the motors need to answer.
+/// The same for one whose legs carry it. Its motors compensate the weight on them; feet sink a tenth of a millimetre into
+/// the floor when they are loaded, which bends the knees for as long as the motors need to respond.
 #[test]
 fn a_robot_that_stands_on_its_legs_holds_its_pose() {
     let (build, pose) = four_legs(STRONG);

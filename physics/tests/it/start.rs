@@ -74,7 +74,7 @@ fn what_needs_more_than_the_bound_is_frozen_and_named() {
     assert_eq!(run.world.fastest_m_s(), 0.0);
 }
 
-/// A frozen thing stands for good; who gives it a velocity frees it, so that it meets what is in its way.
+/// A frozen object stays for good; giving it a velocity frees it, so that it collides with what is in its way.
 #[test]
 fn a_frozen_thing_with_a_velocity_is_free() {
     let mut build = Build::room([6.0, 3.0, 6.0]);
@@ -205,7 +205,7 @@ fn what_stands_around_makes_way() {
         |name: &str, x: f32| build.movable(name, Piece::cuboid(half, Vec3::new(x, 0.4, 3.0)));
     let (left, right) = (tall("left", 1.0), tall("right", 1.372));
     let middle = tall("middle", 1.186);
-    // What stands behind and before leaves no way out that is shorter.
+    // Objects behind and in front leave no shorter way out.
     for (name, z) in [("behind", 2.7), ("before", 3.3)] {
         let wide = Vec3::new(1.0, 0.4, 0.19);
         build.fixed(name, Piece::cuboid(wide, Vec3::new(1.186, 0.4, z)));

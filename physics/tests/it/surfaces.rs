@@ -73,8 +73,8 @@ fn on_a_slope(angle_rad: f32, on_rubber: bool, parts: usize) -> (Run, ObjectId) 
     (build.run_with(config), object)
 }
 
-/// Down a slope between the two angles of friction the thing slides with `g (sin t - mu cos t)` on its steel, within 1 %, and
-/// stays on its rubber; events name what touches.
+/// Down a slope between the two angles of friction the object slides with `g (sin t - mu cos t)` on its steel, within 1 %,
+/// and stays on its rubber; events name the substance in contact.
 #[test]
 fn a_thing_of_steel_and_rubber_slides_or_stays_by_which_touches() {
     let (steel, rubber) = (pair("oak", "steel").0, pair("oak", "rubber").0);

@@ -1,7 +1,7 @@
 //! Joints that turn on and on: their angle is the integral of their velocity, and stops after several turns hold.
 //!
-//! Turns were once counted from control step to control step: a wheel at 100 rad/s, which makes most of a turn in 50 ms, read any
-//! angle, and stops beyond half a turn came too early or too late.
+//! Regression: turns were counted from control step to control step: a wheel at 100 rad/s, which makes most of a turn in 50
+//! ms, read any angle, and stops beyond half a turn came too early or too late.
 
 use crate::arms::{awake, double_pendulum};
 use crate::common::{Build, Piece, Run};

@@ -35,7 +35,7 @@ fn chassis(run: &Run) -> PartId {
     run.house.objects[run.house.object_named("cart").unwrap()].first_part
 }
 
-/// `v = w r`, from the way of the fourth second: within 1 % of what the motors are told, straight ahead within 1 % of it.
+/// `v = w r`, from the displacement in the fourth second: within 1 % of the command, straight ahead within 1 % of it.
 #[test]
 fn a_cart_goes_as_fast_as_its_wheels_are_told_to_turn() {
     for told_rad_s in [2.0_f32, 10.0, 30.0] {
@@ -101,7 +101,7 @@ fn a_braked_cart_stands_on_a_slope() {
     assert!(way.length() < 2e-3, "{way}");
 }
 
-/// While wheels roll, rapier is asked about their contacts whatever the materials say: no parameter may take that for a change.
+/// While wheels roll, rapier asks the hook about their contacts whatever the materials are: no parameter may take that for a change.
 #[test]
 fn a_number_set_and_set_back_while_wheels_roll_leaves_no_trace() {
     let play = |touched: bool| {

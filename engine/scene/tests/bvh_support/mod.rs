@@ -73,7 +73,7 @@ impl Soup {
         tree(&self.corners, |k| TriangleTag::new(self.ids[k]))
     }
 
-    /// Returns where the instances of [`Self::split`] stand.
+    /// Returns the transforms of the instances of [`Self::split`].
     pub(crate) fn poses(key: RandomKey, count: usize) -> Vec<Affine3A> {
         let mut stream = key.stream();
         let pose = |_| {
@@ -221,8 +221,8 @@ impl Oracle {
         }
     }
 
-    /// All hits with a margin of `slack` beyond the edges (inside them when negative): distance, id, and by how much the
-    /// distance may be off when coordinates are.
+    /// Returns all hits with a margin of `slack` beyond the edges (inside them when negative): distance, id, and the error
+    /// of the distance for errors of the coordinates.
     fn hits(&self, ray: &Ray, slack: f64) -> Vec<(f64, i32, f64)> {
         let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
         let mut hits = Vec::new();

@@ -78,7 +78,7 @@ fn who_opens_doors_goes_through_and_pays_for_it() {
     assert!(priced.route(WEST, EAST).unwrap().shut_doors.is_empty());
 }
 
-/// Door and boxes at random places, one or all moving at a time: following them gives what building anew gives.
+/// Door and boxes at random places, one or all moving at a time: updating equals building anew.
 #[test]
 fn following_what_moves_equals_building_anew() {
     let mut data = room_with_door();

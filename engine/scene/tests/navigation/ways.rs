@@ -1,4 +1,4 @@
-//! Distances and ways against plain searches and closed forms.
+//! Distances and paths against plain searches and closed forms.
 
 use crate::support::{furnished, grid_of, length_m, scattered};
 use dwell_scene::LevelId;
@@ -7,8 +7,8 @@ use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use proptest::prelude::*;
 
-/// Returns whether the straight way between the middles of two columns touches free columns only: each closed square that the
-/// segment meets, found one by one by separating axes, in whole numbers (half columns).
+/// Returns whether the straight line between the middles of two columns touches free columns only: each closed square that
+/// the segment meets, found one by one by separating axes, in whole numbers (half columns).
 fn touches_free_only(map: &Occupancy, from: [i64; 2], to: [i64; 2]) -> bool {
     let [dx, dz] = [2 * (to[0] - from[0]), 2 * (to[1] - from[1])];
     for z in from[1].min(to[1])..=from[1].max(to[1]) {
@@ -26,8 +26,8 @@ fn touches_free_only(map: &Occupancy, from: [i64; 2], to: [i64; 2]) -> bool {
     true
 }
 
-/// Shortest ways by relaxing every given piece until nothing changes (Bellman 1958). `pieces`: for each cell, whither and
-/// how far.
+/// Shortest paths by relaxing every given piece until nothing changes (Bellman 1958). `pieces`: for each cell, targets and
+/// lengths.
 fn relaxed(pieces: &[Vec<(usize, f64)>], start: usize) -> Vec<f64> {
     let mut distance = vec![f64::INFINITY; pieces.len()];
     distance[start] = 0.0;
@@ -128,7 +128,7 @@ fn compare_with_the_shortest(seed: u64) -> Result<(), TestCaseError> {
             .geodesic_m(grid.position(cell), grid.position(start))
             .unwrap();
         prop_assert!(route >= shortest - 1e-5 && route <= rough + 1e-5);
-        // Pulling a way tight leaves it on its side of what stands in between, which may be the longer one.
+        // Shortening a path leaves it on its side of what is in between, which may be the longer one.
         prop_assert!(route <= 1.02 * shortest + 1e-5, "{} {}", route, shortest);
         within += usize::from(route <= 1.01 * shortest + 1e-5);
         all += 1;

@@ -202,7 +202,7 @@ fn within_its_deadband_a_motor_does_nothing_and_beyond_it_all() {
     }
 }
 
-/// All that motors remember is in the snapshot.
+/// All state of motor laws is in the snapshot.
 #[test]
 fn laws_of_motors_continue_bit_for_bit_from_a_snapshot() {
     let laws = vec![
@@ -243,7 +243,7 @@ fn laws_of_motors_continue_bit_for_bit_from_a_snapshot() {
     assert!(run.hash() == other.hash());
 }
 
-/// Two laws of one kind on one motor each keep what they remember when parameters are applied anew.
+/// Two laws of one kind on one motor each keep their state when parameters are applied again.
 #[test]
 fn equal_laws_on_one_motor_keep_their_own_memory() {
     let laws = || {
@@ -268,8 +268,8 @@ fn equal_laws_on_one_motor_keep_their_own_memory() {
     assert!(plain.state.joint_position[joint].abs() > 0.05);
 }
 
-/// Told another velocity, a motor turns round through the play at once, and the joint coasts on: they meet after 2 b / 2 w, and
-/// from then on the joint goes with the motor.
+/// Under a reversed velocity command, a motor turns back through the play at once, and the joint coasts on: they meet after
+/// 2 b / 2 w, and from then on the joint moves with the motor.
 #[test]
 fn a_joint_with_play_coasts_until_its_motor_has_turned_round() {
     let (b, w) = (0.05_f32, 0.25_f32);
@@ -307,7 +307,7 @@ fn a_joint_with_play_coasts_until_its_motor_has_turned_round() {
     }
 }
 
-/// Told an effort, a motor with inertia gives it once it has crossed the play: `v = u / I (t - sqrt(2 b J / u))` from the middle.
+/// Under an effort command, a motor with inertia exerts it once it has crossed the play: `v = u / I (t - sqrt(2 b J / u))` from the middle.
 #[test]
 fn an_effort_comes_once_the_motor_has_crossed_the_play() {
     let (b, effort, motor) = (0.1_f32, 0.05_f32, 0.02_f32);
@@ -329,7 +329,7 @@ fn an_effort_comes_once_the_motor_has_crossed_the_play() {
     }
 }
 
-/// Setting a joint is no motion: whatever was before, equal states go on alike.
+/// Setting a joint is no motion: whatever was before, equal states evolve alike.
 #[test]
 fn joints_that_are_set_forget_their_springs_and_their_play() {
     let laws = || {

@@ -1,4 +1,4 @@
-//! Laws by their addresses: what is set at run time is what is installed.
+//! Laws by their addresses: setting them at run time equals installing them.
 
 use super::{lively, spec, spec_of};
 use crate::common::Run;
@@ -28,7 +28,7 @@ fn put(run: &mut Run, laws: Vec<LawSpec>) {
     run.world.apply_parameters(&mut run.state).unwrap();
 }
 
-/// Laws of masses: setting one looks at all contacts anew, which rounds otherwise.
+/// Laws of masses: setting one computes all contacts anew, which rounds otherwise.
 fn weighs(info: &LawInfo) -> bool {
     ["buoyancy", "center_of_mass_offset", "inertia_error"].contains(&info.id)
 }
@@ -66,8 +66,8 @@ fn a_law_set_by_its_addresses_is_the_law_installed() {
 }
 
 /// For every number of every law in the list: changed by its address while the world runs, the world goes on bit for bit as
-/// one in which the law is installed with that number at that moment, what the law remembers included; and set back before
-/// the next step, as if nothing had been (bit for bit, but for laws of masses: to 1e-5 m).
+/// one in which the law is installed with that number at that time, its state included; and set back before the next step,
+/// as if nothing had been (bit for bit, but for laws of masses: to 1e-5 m).
 #[test]
 fn a_number_changed_by_its_address_is_the_law_with_that_number() {
     for info in laws::all() {
@@ -106,7 +106,7 @@ fn a_number_changed_by_its_address_is_the_law_with_that_number() {
     }
 }
 
-/// A change of the play's width or of a delay leaves what the motor was told on its way: the joint goes on from where it is.
+/// A change of the play's width or of a delay keeps the commands in progress: the joint goes on from where it is.
 #[test]
 fn what_a_law_remembers_outlives_a_change_of_its_numbers() {
     for (id, name, values) in [
@@ -127,7 +127,7 @@ fn what_a_law_remembers_outlives_a_change_of_its_numbers() {
             run.steps(1);
             lowest = lowest.min(run.state.joint_position[joint]);
         }
-        // A law that had forgotten would let go of the joint or lead it from its start again.
+        // A law without its state would release the joint or lead it from its start again.
         assert!(lowest > before - 2e-3, "{id}: from {before} to {lowest}");
     }
 }

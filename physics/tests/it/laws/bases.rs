@@ -48,9 +48,9 @@ fn heading_error(run: &Run, agent: AgentId) -> f64 {
     error - TAU * (error / TAU).round()
 }
 
-/// A square of four metres, of straight lines and turns on the spot, as the robot believes to drive it. Wheels that
-/// differ by `e_d` bend the way by `2 (e_d - 1) / (e_d + 1) r / b` on each radian of both wheels, the same in both
-/// directions (type B); a base longer by `e_b` turns less by its inverse (type A).
+/// A square of four metres, of straight lines and turns on the spot, by the robot's odometry. Wheels that differ by `e_d`
+/// bend the path by `2 (e_d - 1) / (e_d + 1) r / b` on each radian of both wheels, the same in both directions (type B); a
+/// base longer by `e_b` turns less by its inverse (type A).
 #[test]
 fn a_square_shows_unequal_wheels_and_a_wrong_base_as_borenstein_and_feng_have_it() {
     let square = |laws: Vec<LawSpec>, direction: f32| {
@@ -92,7 +92,7 @@ fn a_square_shows_unequal_wheels_and_a_wrong_base_as_borenstein_and_feng_have_it
     assert!((way - 0.51).abs() < 1e-5, "{way}");
 }
 
-/// While it gathers speed to `W`, slip takes `k r^2 W^2 / 2` from the way, however fast it is gathered; at a steady speed
+/// While it accelerates to `W`, slip costs `k r^2 W^2 / 2` of the distance, however fast it accelerates; at a steady speed
 /// nothing; and braking gives it back.
 #[test]
 fn slip_costs_the_square_of_the_speed_that_is_gathered() {
@@ -173,8 +173,8 @@ fn laws_of_bases_name_agents_that_exist() {
     }
 }
 
-/// Legs have neither wheels nor a gyro between them: a law that needs them says so, and one without a target takes those
-/// agents that have them.
+/// Legs have neither wheels nor a gyro: a law that needs them is refused, and one without a target applies to the agents
+/// that have them.
 #[test]
 fn laws_of_bases_are_refused_by_who_walks() {
     let house = Build::room([20.0, 3.0, 20.0]).house();

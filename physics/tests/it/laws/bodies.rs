@@ -192,7 +192,7 @@ fn a_box_tips_once_its_centre_of_mass_is_beyond_its_edge() {
     }
 }
 
-/// A knife whose centre of mass is a metre aside is refused, with the knife, what was asked and what may be.
+/// A knife whose centre of mass is a metre away is refused, with its name, the value and the allowed ones.
 #[test]
 fn a_centre_of_mass_far_outside_its_object_is_refused() {
     let mut build = Build::room([4.0, 3.0, 4.0]);

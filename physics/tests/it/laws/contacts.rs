@@ -1,4 +1,4 @@
-//! Laws that act where things touch.
+//! Laws of contacts.
 
 use super::spec;
 use crate::common::{Build, Piece, Run, forward, gravity, pair};
@@ -328,8 +328,8 @@ fn torsional_friction_slows_a_spinning_ball_evenly() {
     assert!((kept - 10.0).abs() < 1e-3, "{kept} rad/s");
 }
 
-/// Soft contacts give back at most what they took: a cube that lands on its corners, edges and faces never rises above where
-/// it fell from, and comes to rest and to sleep.
+/// Compliant contacts return at most the energy that they took: a cube that lands on its corners, edges and faces never
+/// rises above its initial height, and comes to rest and to sleep.
 #[test]
 fn a_tumbling_soft_cube_gains_no_energy_and_comes_to_rest() {
     for (k, (frequency_hz, zeta)) in [(25.0, 0.05), (60.0, 0.2), (150.0, 0.5)]

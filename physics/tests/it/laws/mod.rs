@@ -38,7 +38,7 @@ fn tower() -> Build {
         "other",
         Piece::ball(0.1, Vec3::new(1.0, 99.0, 2.0)).density(30.0),
     );
-    // What slides and what rolls, spinning, on the floor.
+    // A sliding and a rolling, spinning body on the floor.
     let half = Vec3::new(0.2, 0.1, 0.15);
     build.movable("sled", Piece::cuboid(half, Vec3::new(1.0, 0.1, 1.0)));
     let marble = Piece::ball(0.05, Vec3::new(1.0, 0.25, 3.0)).of("glass");
@@ -62,7 +62,7 @@ fn tower() -> Build {
     build
 }
 
-/// Causes that look like a law and are none of this engine: numbers of the scene, of clocks, trackers and sensors.
+/// Causes that resemble a law but belong to other engines: parameters of the scene, of clocks, trackers and sensors.
 const NUISANCES: &[&str] = &[
     "collision_shape",
     "frame_tilt",
@@ -124,8 +124,8 @@ fn a_law_at_its_default_changes_no_bit() {
     }
 }
 
-/// Every law that acts on things changes where they go, and every law goes on with the same bits in a world that was
-/// restored, whatever it remembers.
+/// Every law that acts on bodies changes their motion, and every law goes on with the same bits in a restored world,
+/// whatever its state.
 #[test]
 fn a_law_acts_and_goes_on_bit_for_bit_after_a_restore() {
     let mut without = lively(Vec::new());
@@ -148,7 +148,7 @@ fn a_law_acts_and_goes_on_bit_for_bit_after_a_restore() {
     }
 }
 
-/// Laws that come while a world runs and go again leave masses, inertia and contacts as they were.
+/// Laws that are installed and removed while a world runs leave masses, inertia and contacts as they were.
 #[test]
 fn laws_that_go_leave_nothing_behind() {
     let mut without = lively(Vec::new());

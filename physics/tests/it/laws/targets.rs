@@ -1,4 +1,4 @@
-//! One law on one thing, in whatever words it is named, and on whoever comes later.
+//! One law on one target, however it is named, and on agents that are added later.
 
 use super::{spec, tower};
 use crate::common::{Build, Run};
@@ -44,7 +44,7 @@ fn a_joint_in_three_spellings_has_a_law_once() {
     assert_eq!(state, before);
 }
 
-/// A law in a list on one thing under two names is refused. (Under one name it is two laws one after the other.)
+/// Laws in a list on one target under two names are refused. (Under one name they are two laws one after the other.)
 #[test]
 fn a_law_on_one_thing_under_two_names_is_refused() {
     let house = tower().house();
@@ -128,7 +128,7 @@ fn body() -> AgentBody {
     }
 }
 
-/// A law for all bases takes those that come later; one for a single base does not.
+/// A law for all bases applies to those added later; one for a single base does not.
 #[test]
 fn a_law_for_all_bases_reaches_those_that_come_later() {
     let house = Build::room([20.0, 3.0, 20.0]).house();
