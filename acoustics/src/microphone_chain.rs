@@ -119,7 +119,7 @@ impl MicrophoneChain {
             };
             if let Some(place) = known.iter().position(same) {
                 link.stage.recall(&known.remove(place).1);
-            } else if link.stage.starts_softly() {
+            } else if link.stage.needs_fade_in() {
                 samples.chunks_exact_mut(size.max(1)).for_each(rise);
             }
             link.hear(listener, false, samples);
@@ -148,7 +148,7 @@ impl MicrophoneChain {
             if length == 0 {
                 return samples;
             }
-            let longer = length + link.stage.longer(length);
+            let longer = length + link.stage.extra_samples(length);
             let mut out = vec![0.0; channels * longer];
             for (out, channel) in out
                 .chunks_exact_mut(longer)

@@ -90,7 +90,7 @@ impl ContactRecord {
     }
 
     /// Emits the remaining events of a control step; `first`: the index of its first event.
-    pub(crate) fn tell(
+    pub(crate) fn emit_remaining(
         &mut self,
         dynamics: &Dynamics,
         events: &mut Vec<ContactEvent>,

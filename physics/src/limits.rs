@@ -124,7 +124,7 @@ pub(crate) fn check_passing(
 /// Returns the number of pairs that rapier keeps as a world begins.
 fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, PhysicsError> {
     /// The owner of all static pieces.
-    const STANDS: u32 = u32::MAX;
+    const STATIC_OWNER: u32 = u32::MAX;
     let mut boxes: Vec<Aabb> = Vec::new();
     let mut owners: Vec<u32> = Vec::new();
     let mut add = |owner: u32, bounds: dwell_scene::Aabb| {
@@ -132,7 +132,7 @@ fn broad_phase_pairs(model: &PhysicsModel, state: &State) -> Result<usize, Physi
         owners.push(owner);
     };
     for piece in &model.statics {
-        add(STANDS, shapes::bounds(&piece.shape, &piece.place));
+        add(STATIC_OWNER, shapes::bounds(&piece.shape, &piece.place));
     }
     for (index, plan) in model.bodies.iter().enumerate() {
         let place = to_rapier(&state.part_pose[plan.root()]);

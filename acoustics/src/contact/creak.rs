@@ -15,7 +15,7 @@ const PIN_M: f64 = 0.005;
 const DROP: f64 = 0.15;
 const SLIP_S: f64 = 0.0006;
 /// Share of that force that bends the leaf and the frame: the pin pulls along them, at their edge. Estimate.
-const BENDS: f64 = 0.02;
+const BENDING_SHARE: f64 = 0.02;
 /// The pin's speed above which it slides smoothly, m/s (Stribeck's curve): estimate.
 const SMOOTH_M_S: f64 = 0.012;
 
@@ -52,7 +52,7 @@ impl CreakSound {
         let [from, to] = self.angle_rad.map(f64::from);
         let turned = to - from;
         let speed_m_s = turned.abs() / self.length() * PIN_M;
-        let force_n = BENDS * DROP * f64::from(self.friction_n_m).max(0.0) / PIN_M;
+        let force_n = BENDING_SHARE * DROP * f64::from(self.friction_n_m).max(0.0) / PIN_M;
         let ease = libm::exp(-(speed_m_s / SMOOTH_M_S) * (speed_m_s / SMOOTH_M_S));
         let impulse_n_s = force_n * SLIP_S * ease;
         if turned == 0.0 || !turned.is_finite() || impulse_n_s <= 0.0 {

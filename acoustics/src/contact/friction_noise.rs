@@ -27,9 +27,9 @@ const ROLL: f64 = 0.01;
 const BY_ROUGHNESS: f64 = 0.9;
 const BY_SPEED: f64 = 0.9;
 /// Modulus at which the force is halved because fibres and soft rubber yield to roughness, Pa. Estimate.
-const GIVES_WAY_PA: f64 = 1e8;
+const SOFT_MODULUS_PA: f64 = 1e8;
 /// Bound of the RMS force over the normal force.
-const MOST: f64 = 0.5;
+const MAX_FORCE_SHARE: f64 = 0.5;
 /// Contact length, m: of asperities at the least, with this many roughnesses more, and of the patch of a rolling body.
 const ASPERITY_M: f64 = 5e-6;
 const ROUGHNESSES: f64 = 5.0;
@@ -79,8 +79,8 @@ impl FrictionSound {
         let rough = libm::pow(self.roughness_m() / 1e-5, BY_ROUGHNESS);
         let [a, b] = [0, 1].map(|k| self.partners[k].substance.as_str());
         let modulus = modulus_pa(a, b);
-        let hard = modulus / (modulus + GIVES_WAY_PA);
-        (normal * factor * hard * rough * libm::pow(speed, BY_SPEED)).min(MOST * normal)
+        let hard = modulus / (modulus + SOFT_MODULUS_PA);
+        (normal * factor * hard * rough * libm::pow(speed, BY_SPEED)).min(MAX_FORCE_SHARE * normal)
     }
 
     fn roughness_m(&self) -> f64 {

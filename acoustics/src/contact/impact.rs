@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// Largest share of an impact's energy that goes into vibration: for compact bodies some percent (J. Reed, J. Phys. D 18,
 /// 2329, 1985; I. M. Hutchings, J. Phys. D 12, 1819, 1979); the rest is rebound, deformation and heat.
-const RINGS: f64 = 0.02;
+const MAX_VIBRATION_SHARE: f64 = 0.02;
 
 /// An impact between two bodies as a sound.
 ///
@@ -45,7 +45,7 @@ impl ImpactSound {
         let mut force = vec![0.0; samples(lasts, rate_hz) + 1];
         let impulse = f64::from(self.impulse_n_s).max(0.0);
         add_half_sine(&mut force, rate_hz, 0.0, impulse, lasts);
-        radiator.bound(impulse, lasts, RINGS * 0.5 * impulse * speed);
+        radiator.bound(impulse, lasts, MAX_VIBRATION_SHARE * 0.5 * impulse * speed);
         radiator.respond(&force, rate_hz, &mut out);
         out.into_iter().map(|x| x as f32).collect()
     }

@@ -4,9 +4,9 @@ use crate::bands::{BAND_COUNT, NOMINAL_CENTRES_HZ};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Transmitted energy at the shadow boundary: -5 dB.
-const AT_BORDER: f64 = 0.316_227_766_016_837_94;
+const AT_SHADOW_BOUNDARY: f64 = 0.316_227_766_016_837_94;
 /// Fresnel number of half of the full effect of a bend, for a thick obstacle's second edge.
-const SLIGHT: f64 = 0.1;
+const HALF_EFFECT_FRESNEL: f64 = 0.1;
 
 /// Fresnel numbers of a detour of 1 m. Shape (band,).
 pub(super) fn per_metre(speed_m_s: f64) -> [f64; BAND_COUNT] {
@@ -22,19 +22,19 @@ pub(super) fn per_metre(speed_m_s: f64) -> [f64; BAND_COUNT] {
 pub(super) fn passed(n: f64) -> f64 {
     let x = (TAU * n.abs()).sqrt();
     if x < 1e-6 {
-        return AT_BORDER;
+        return AT_SHADOW_BOUNDARY;
     }
     // The shadow: 5 dB + 20 lg(x / tanh x).
     if n >= 0.0 {
         let ratio = libm::tanh(x) / x;
-        return AT_BORDER * ratio * ratio;
+        return AT_SHADOW_BOUNDARY * ratio * ratio;
     }
     if x >= FRAC_PI_2 {
         return 1.0;
     }
     // The lit side: tan in place of tanh.
     let ratio = libm::tan(x) / x;
-    (AT_BORDER * ratio * ratio).min(1.0)
+    (AT_SHADOW_BOUNDARY * ratio * ratio).min(1.0)
 }
 
 /// Returns the factor of a second edge `apart_m` behind the first on the energy that one edge with the same detour passes:
@@ -47,7 +47,7 @@ pub(super) fn second_edge(n: f64, wavelength_m: f64, apart_m: f64, bends: [f64; 
     let ratio = 5.0 * wavelength_m / apart_m.max(1e-6);
     let square = ratio * ratio;
     let full = (1.0 + square) / (1.0 / 3.0 + square);
-    let share = |bend: f64| bend.max(0.0) / (bend.max(0.0) + SLIGHT);
+    let share = |bend: f64| bend.max(0.0) / (bend.max(0.0) + HALF_EFFECT_FRESNEL);
     let c3 = 1.0 + (full - 1.0) * share(bends[0]) * share(bends[1]);
     let n = n.max(0.0);
     (3.0 + 20.0 * n) / (3.0 + 20.0 * c3 * n)

@@ -70,7 +70,7 @@ impl Hdf5 {
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, or the name leads elsewhere.
     pub fn shape(&self, name: &str) -> Result<Option<Vec<u64>>, AcousticsError> {
-        self.told(name, |source| {
+        self.with_source(name, |source| {
             let Some(header) = self.variable(source, name)? else {
                 return Ok(None);
             };
@@ -87,7 +87,7 @@ impl Hdf5 {
     /// # Errors
     /// [`AcousticsError::Hdf5`] when the file is damaged, the name leads elsewhere, or the attribute is no text.
     pub fn text(&self, of: Option<&str>, name: &str) -> Result<Option<String>, AcousticsError> {
-        self.told(of.unwrap_or("the file"), |source| {
+        self.with_source(of.unwrap_or("the file"), |source| {
             let header = match of {
                 Some(variable) => self.variable(source, variable)?,
                 None => Some(self.root(source)?),
@@ -102,14 +102,14 @@ impl Hdf5 {
     /// [`AcousticsError::Hdf5`] when there is no such variable, it is damaged or not numeric, its values are in another
     /// file, or it has more than [`MOST_NUMBERS`].
     pub fn numbers(&self, name: &str) -> Result<Hdf5Array, AcousticsError> {
-        self.told(name, |source| match self.variable(source, name)? {
+        self.with_source(name, |source| match self.variable(source, name)? {
             Some(header) => numbers(source, &header),
             None => refuse("missing"),
         })
     }
 
-    /// Does what is told of a place in the file.
-    fn told<T>(
+    /// Runs a query of the file; errors name the place `at`.
+    fn with_source<T>(
         &self,
         at: &str,
         work: impl FnOnce(&FileBytes<'_>) -> Hdf5Result<T>,

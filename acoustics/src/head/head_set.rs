@@ -46,14 +46,14 @@ impl HeadSet {
 
     /// Adds a head that receivers may use.
     pub(crate) fn add(&mut self, head: &Head) {
-        if !self.knows(head.id()) {
+        if !self.contains(head.id()) {
             let tables = head.tables(self.speed_m_s, self.rate_hz, self.bins);
             self.others.insert(head.id(), (head.clone(), tables));
         }
     }
 
     /// Returns whether a head is in the set.
-    pub(crate) fn knows(&self, id: HeadId) -> bool {
+    pub(crate) fn contains(&self, id: HeadId) -> bool {
         self.others.contains_key(&id)
     }
 

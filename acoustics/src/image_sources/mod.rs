@@ -99,8 +99,8 @@ fn straight(
             }
             _ => {
                 paths = diffraction::around_edges(data, rays, source, receiver);
-                if let Some(wall_chance) = &direct {
-                    subtract_transmitted(data, wall_chance, &mut paths);
+                if let Some(transmitted) = &direct {
+                    subtract_transmitted(data, transmitted, &mut paths);
                 }
             }
         }
@@ -112,13 +112,13 @@ fn straight(
 /// Subtracts the sound transmitted through a screen from the paths around it: it is not missing behind it (Babinet's principle).
 fn subtract_transmitted(
     data: &PropagationData,
-    wall_chance: &PropagationPath,
+    transmitted: &PropagationPath,
     around: &mut Vec<PropagationPath>,
 ) {
-    let whole = data.spread(wall_chance.length_m);
+    let whole = data.spread(transmitted.length_m);
     let kept: [f32; BAND_COUNT] = std::array::from_fn(|band| {
         // Over a long distance air absorbs high frequencies completely.
-        let passed = f64::from(wall_chance.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
+        let passed = f64::from(transmitted.energy[band]) / whole[band].max(f64::MIN_POSITIVE);
         let left = 1.0 - passed.min(1.0).sqrt();
         (left * left) as f32
     });

@@ -48,11 +48,11 @@ const HALF: usize = 32;
 /// Tabulated points between two samples.
 const PHASES: usize = 256;
 /// Lag after a skip back where the recording would overtake the world, s.
-const BACK_S: f64 = 0.01;
+const RESET_LAG_S: f64 = 0.01;
 /// Largest lag beyond the offset, s.
-const MOST_S: f64 = 1.0;
+const MAX_LAG_S: f64 = 1.0;
 /// Part of that lag that one skip ahead removes, s.
-const AHEAD_S: f64 = 0.5;
+const SKIP_S: f64 = 0.5;
 /// Crossfade of a skip, s.
 const FADE_S: f64 = 0.005;
 
@@ -104,9 +104,9 @@ fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     Box::new(DriftingClock {
         growth: drift / (1.0 + drift),
         offset,
-        back: (BACK_S * rate_hz).max(3.0 * HALF as f64),
-        most: offset + MOST_S * rate_hz,
-        ahead: AHEAD_S * rate_hz,
+        back: (RESET_LAG_S * rate_hz).max(3.0 * HALF as f64),
+        most: offset + MAX_LAG_S * rate_hz,
+        ahead: SKIP_S * rate_hz,
         fade: (FADE_S * rate_hz) as usize,
         lag: offset,
         old_lag: offset,
@@ -228,13 +228,13 @@ impl MicrophoneStage for DriftingClock {
         }
     }
 
-    fn longer(&self, length: usize) -> usize {
+    fn extra_samples(&self, length: usize) -> usize {
         // The lag at the end, less where the clock is slow.
         let at_the_end = self.offset + self.growth * length as f64 / (1.0 - self.growth);
         (at_the_end + HALF as f64).ceil().max(0.0) as usize
     }
 
-    fn starts_softly(&self) -> bool {
+    fn needs_fade_in(&self) -> bool {
         true
     }
 }

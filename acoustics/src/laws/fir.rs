@@ -71,11 +71,11 @@ impl MicrophoneStage for FirFilter {
         }
     }
 
-    fn longer(&self, _length: usize) -> usize {
+    fn extra_samples(&self, _length: usize) -> usize {
         self.reach()
     }
 
-    fn starts_softly(&self) -> bool {
+    fn needs_fade_in(&self) -> bool {
         self.delay > 0
     }
 }

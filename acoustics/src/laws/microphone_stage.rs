@@ -86,12 +86,12 @@ pub(crate) trait MicrophoneStage: fmt::Debug + Send + Sync {
     }
 
     /// Returns the number of samples by which its output is longer than its input of `length` samples.
-    fn longer(&self, _length: usize) -> usize {
+    fn extra_samples(&self, _length: usize) -> usize {
         0
     }
 
     /// Returns whether its first block must fade in when it is installed during sound: a late output would begin with a step.
-    fn starts_softly(&self) -> bool {
+    fn needs_fade_in(&self) -> bool {
         false
     }
 }

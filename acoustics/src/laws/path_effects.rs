@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PathEffects {
     /// Difference of the true from the stated air temperature, K.
-    pub(super) warmer_k: f64,
+    pub(super) temperature_error_k: f64,
     /// Share of the air's absorption, 0 to 1.
     pub(super) air_absorption: f64,
     /// Level of all sources above the stated one, dB. Shape (band,).
@@ -43,7 +43,7 @@ fn turn([yaw_deg, pitch_deg, roll_deg]: [f32; 3]) -> Quat {
 impl Default for PathEffects {
     fn default() -> Self {
         Self {
-            warmer_k: 0.0,
+            temperature_error_k: 0.0,
             air_absorption: 1.0,
             source_db: [0.0; BAND_COUNT],
             source_turn_deg: [0.0; 2],
@@ -58,7 +58,7 @@ impl Default for PathEffects {
 impl PathEffects {
     /// Returns the settings with the true air, kept within the range of [`Air::check`].
     pub(crate) fn config(&self, stated: &AcousticConfig) -> AcousticConfig {
-        let temperature_c = stated.air.temperature_c + self.warmer_k;
+        let temperature_c = stated.air.temperature_c + self.temperature_error_k;
         AcousticConfig {
             air: Air {
                 temperature_c: temperature_c.clamp(-40.0, 60.0),

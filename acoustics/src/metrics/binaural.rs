@@ -103,14 +103,14 @@ fn in_time(samples: &[f32], end: usize) -> Vec<f32> {
 }
 
 /// Returns the lag of `right` behind `left` (s) at which their normalized cross-correlation, over lags of up to `lags`
-/// samples, is largest, and its value; `upside_down`: whether a negative one counts by its magnitude. `None` where an ear
+/// samples, is largest, and its value; `by_magnitude`: whether a negative one counts by its magnitude. `None` where an ear
 /// is silent.
 fn peak(
     left: &[f32],
     right: &[f32],
     lags: usize,
     rate_hz: f64,
-    upside_down: bool,
+    by_magnitude: bool,
 ) -> Option<(f64, f64)> {
     let norm = (energy(left) * energy(right)).sqrt();
     if norm <= 0.0 {
@@ -122,7 +122,7 @@ fn peak(
         .collect();
     let value = |place: usize| {
         let between = between(&at, SINC as f64 + place as f64 / FINER as f64);
-        if upside_down { between.abs() } else { between }
+        if by_magnitude { between.abs() } else { between }
     };
     let values: Vec<f64> = (0..=2 * lags * FINER).map(value).collect();
     let best = (0..values.len()).max_by(|a, b| values[*a].total_cmp(&values[*b]))?;

@@ -91,7 +91,7 @@ impl AcousticScene {
 
     /// Adds a head that receivers of this scene may use ([`Receiver::wearing`]). A head that is known already costs nothing.
     pub fn add_head(&mut self, head: &Head) {
-        if !self.heads.knows(head.id()) {
+        if !self.heads.contains(head.id()) {
             Arc::make_mut(&mut self.heads).add(head);
         }
     }
@@ -348,7 +348,7 @@ impl AcousticScene {
     pub(crate) fn check_receiver(&self, receiver: &Receiver) -> Result<(), AcousticsError> {
         receiver.check()?;
         match receiver.kind {
-            ReceiverKind::Head(id) if !self.heads.knows(id) => {
+            ReceiverKind::Head(id) if !self.heads.contains(id) => {
                 Err(AcousticsError::UnknownHead { id: id.0 })
             }
             _ => Ok(()),

@@ -14,7 +14,7 @@ use dwell_scene::{Pose, State};
 use glam::Vec3;
 
 /// Factor by which update distances are smaller for responses without gliding delays.
-const STIFF: f32 = 5.0;
+const UPDATE_DIVISOR: f32 = 5.0;
 /// Distance from another source, plus the listener's displacement since, within which a new source begins with its tail, m.
 const BESIDE_M: f64 = 2.0;
 /// Displacement in a block below which large parts count as still, m.
@@ -28,7 +28,7 @@ pub(super) struct PlannedSource {
     /// Positions of source and receiver.
     pub(super) place: (Vec3, Pose),
     /// The new impulse response, and its situation; `None`: as before.
-    pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
     /// Early paths outside the impulse response, at their present positions; `None`: none are.
     pub(super) followed: Option<Vec<PropagationPath>>,
     /// The block since which a new response waits for its turn.
@@ -79,7 +79,7 @@ impl Stream {
                 distance_m: if glides {
                     distance_m
                 } else {
-                    distance_m / STIFF
+                    distance_m / UPDATE_DIVISOR
                 },
                 angle_rad: self.config.update_angle_rad,
                 part_m: self.config.update_part_m,
@@ -98,7 +98,7 @@ impl Stream {
                 .voice
                 .is_some_and(|voice| voice.moved.followed.is_some());
             let moved = follows || last.is_some_and(|last| last != want.place);
-            let known = want.news.as_ref().or(heard);
+            let known = want.new_response.as_ref().or(heard);
             let elsewhere =
                 known.is_some_and(|(then, _)| (then.source, then.receiver.pose) != want.place);
             // A source that waits is rendered with its direct path and known reflections as they are now.
@@ -116,7 +116,7 @@ impl Stream {
                 followed,
                 since: want.is_waiting.then_some(want.since),
                 job: want.job,
-                news: want.news,
+                new_response: want.new_response,
             }
         });
         Ok(planned.collect())
@@ -171,7 +171,7 @@ impl Stream {
                 .and_then(|voice| voice.waiting.since)
                 .unwrap_or(self.block),
             now,
-            news: None,
+            new_response: None,
             job: PartialTrace::Unchanged,
             is_waiting: false,
         })

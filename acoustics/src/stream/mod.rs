@@ -225,7 +225,7 @@ impl Stream {
             id,
             named,
             place,
-            news,
+            new_response,
             followed,
             since,
             job,
@@ -258,9 +258,9 @@ impl Stream {
                 heard.as_ref().map(|(situation, _)| situation.effects)
             };
             let effects_before = effects(&voice.heard);
-            let other = news.is_some() || before.is_some() != followed.is_some();
-            if let Some(news) = news {
-                voice.heard = Some(news);
+            let other = new_response.is_some() || before.is_some() != followed.is_some();
+            if let Some(new_response) = new_response {
+                voice.heard = Some(new_response);
             }
             let same_channels = channels(&voice.heard) == channels_before;
             let jumps = effects(&voice.heard) != effects_before;

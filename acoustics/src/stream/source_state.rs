@@ -51,7 +51,7 @@ pub(super) struct UpdateThreshold {
 
 /// Factor on a part's displacement: near a door the tail changes that much faster with it than with the listener's own; a
 /// quarter turn changes all.
-const PART_WAYS: f32 = 25.0;
+const PART_MOVEMENT_FACTOR: f32 = 25.0;
 
 /// Returns the largest displacement, m, or rotation, rad, of the parts: a part that rotates by an angle moves its far edge
 /// by about as many metres. Shape of both: (large part,).
@@ -70,10 +70,10 @@ fn angle(a: glam::Quat, b: glam::Quat) -> f32 {
 }
 
 impl ListeningSituation {
-    /// Returns the displacement of source and receiver to `now`, m; displacements of large parts count [`PART_WAYS`] times.
+    /// Returns the displacement of source and receiver to `now`, m; displacements of large parts count [`PART_MOVEMENT_FACTOR`] times.
     pub(super) fn moved_m(&self, now: &Self) -> f64 {
         let receivers = self.receiver.position().distance(now.receiver.position());
-        let parts = PART_WAYS * largest_movement(&self.parts, &now.parts);
+        let parts = PART_MOVEMENT_FACTOR * largest_movement(&self.parts, &now.parts);
         f64::from(self.source.distance(now.source) + receivers + parts)
     }
 

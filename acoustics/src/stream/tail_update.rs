@@ -7,21 +7,21 @@ use crate::tail::spans;
 /// Distance over which early sound stays similar, m.
 const NEAR_M: f64 = 0.3;
 /// Share of its path length over which late sound stays similar: it has mixed.
-const OF_THE_WAY: f64 = 0.3;
+const SIMILAR_SHARE: f64 = 0.3;
 
 /// Least weight of the new rays, in their share: the reused tail comes from many updates.
-const LEAST: f64 = 0.67;
+const MIN_NEW_WEIGHT: f64 = 0.67;
 
 /// Time before which sound has not mixed: it changes with every step, s.
 const MIXED_S: f64 = 0.04;
 /// Variation of a mixed tail's level between places in one room, as a logarithm of energies: 0.5 dB.
-const PLACES: f64 = 0.115;
+const PLACE_VARIATION: f64 = 0.115;
 /// Difference that exceeds chance and place, in standard deviations of a normal distribution.
-const SURPRISE: f64 = 5.0;
+const OTHER_TAIL_DEVIATIONS: f64 = 5.0;
 /// Difference from which the weight of the new increases with it.
-const DOUBT: f64 = 3.0;
+const WEIGHT_DEVIATIONS: f64 = 3.0;
 /// Relative error above which there are too few rays for a comparison.
-const FEW: f64 = 0.5;
+const MAX_RELATIVE_ERROR: f64 = 0.5;
 
 /// The previous tail, and the changes since.
 pub(super) struct TailHistory<'a> {
@@ -62,8 +62,8 @@ impl TailHistory<'_> {
         for span in spans::span_of(MIXED_S)..SPAN_COUNT {
             let error = |of: &Echogram| f64::from(of.trace.error_over_time[span]);
             let (before, after) = (error(self.before), error(now));
-            if old[span] > 0.0 && new[span] > 0.0 && before.max(after) <= FEW {
-                let variance = before * before + after * after + PLACES * PLACES;
+            if old[span] > 0.0 && new[span] > 0.0 && before.max(after) <= MAX_RELATIVE_ERROR {
+                let variance = before * before + after * after + PLACE_VARIATION * PLACE_VARIATION;
                 squares += libm::log(new[span] / old[span]).powi(2) / variance;
                 count += 1.0;
             }
@@ -91,12 +91,13 @@ impl TailHistory<'_> {
             return false;
         }
         let surprise = self.deviation_score(now);
-        if surprise > SURPRISE {
+        if surprise > OTHER_TAIL_DEVIATIONS {
             return false;
         }
-        let doubt = (1.0 - (DOUBT / surprise.max(DOUBT)).powi(2)).max(LEAST * self.share);
+        let doubt = (1.0 - (WEIGHT_DEVIATIONS / surprise.max(WEIGHT_DEVIATIONS)).powi(2))
+            .max(MIN_NEW_WEIGHT * self.share);
         let weight_at = |time_s: f64| {
-            let reach_m = NEAR_M + OF_THE_WAY * now.speed_m_s * time_s;
+            let reach_m = NEAR_M + SIMILAR_SHARE * now.speed_m_s * time_s;
             1.0 - (1.0 - doubt) * libm::exp(-self.moved_m / reach_m)
         };
         let (bin_s, per_direction) = (now.tail.bin_s, now.tail.bins_per_direction.max(1));

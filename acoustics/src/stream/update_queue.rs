@@ -19,11 +19,11 @@ use dwell_scene::Pose;
 use glam::Vec3;
 
 /// Cost of a response's early paths and synthesis, in rays.
-const OF_A_RESPONSE: usize = 150;
+const RESPONSE_COST_RAYS: usize = 150;
 /// Cost of rotating a response, in rays.
-const OF_A_TURN: usize = 50;
+const ROTATION_COST_RAYS: usize = 50;
 /// Fewest rays that give information on a tail.
-const FEWEST: usize = 64;
+const MIN_RAYS: usize = 64;
 
 /// A source in a block, and its needs.
 pub(super) struct UpdateRequest<'a> {
@@ -41,7 +41,7 @@ pub(super) struct UpdateRequest<'a> {
     pub(super) stale: bool,
     /// The block in which a new response became due.
     pub(super) since: u64,
-    pub(super) news: Option<(ListeningSituation, ImpulseResponse)>,
+    pub(super) new_response: Option<(ListeningSituation, ImpulseResponse)>,
     pub(super) job: PartialTrace,
     /// True while a new response still waits for its turn or for rays.
     pub(super) is_waiting: bool,
@@ -171,15 +171,15 @@ impl Stream {
                 return Ok(());
             }
             (SituationChange::Turned, Some((then, response))) => {
-                want.is_waiting = !budget.allows(OF_A_TURN);
+                want.is_waiting = !budget.allows(ROTATION_COST_RAYS);
                 if !want.is_waiting {
-                    budget.spend(OF_A_TURN);
+                    budget.spend(ROTATION_COST_RAYS);
                     report.turned += 1;
                     // The echogram stays that of the place where it was traced.
                     let mut turned = then.clone();
                     turned.receiver.pose.rotation = want.now.receiver.pose.rotation;
                     let response = self.scene.turn(response, &turned.receiver, turned.noise);
-                    want.news = Some((turned, response));
+                    want.new_response = Some((turned, response));
                 }
                 return Ok(());
             }
@@ -192,7 +192,7 @@ impl Stream {
         let mut others = self.voices.iter().filter_map(|voice| voice.heard.as_ref());
         if let Some(known) = others.find(|(then, _)| usable(then)) {
             want.job = PartialTrace::None;
-            want.news = Some(known.clone());
+            want.new_response = Some(known.clone());
             return Ok(());
         }
         let alike = |then: &ListeningSituation| {
@@ -218,11 +218,11 @@ impl Stream {
     ) -> Result<(), AcousticsError> {
         let rays = rays_of(self.scene.config(), self.config.update_share);
         want.is_waiting =
-            want.need() != UpdateUrgency::Immediate && !budget.allows(rays + OF_A_RESPONSE);
+            want.need() != UpdateUrgency::Immediate && !budget.allows(rays + RESPONSE_COST_RAYS);
         if want.is_waiting {
             return Ok(());
         }
-        budget.spend(rays + OF_A_RESPONSE);
+        budget.spend(rays + RESPONSE_COST_RAYS);
         let memory = TailHistory {
             before: &response.echogram,
             moved_m: then.moved_m(&want.now),
@@ -236,7 +236,7 @@ impl Stream {
         report.rays += response.echogram.trace.rays as usize;
         want.now.rough = around.passing || then.rough || !known;
         want.job = PartialTrace::None;
-        want.news = Some((want.now.clone(), response));
+        want.new_response = Some((want.now.clone(), response));
         Ok(())
     }
 
@@ -253,14 +253,14 @@ impl Stream {
             let share = rays_of(self.scene.config(), self.config.update_share);
             let rays = share
                 .min(budget.left.unwrap_or(all))
-                .clamp(FEWEST.min(all), all);
-            budget.spend(rays + OF_A_RESPONSE);
+                .clamp(MIN_RAYS.min(all), all);
+            budget.spend(rays + RESPONSE_COST_RAYS);
             let way = self.way(around, want.id, &want.now);
             let response = way.trace_few(rays)?;
             report.traced += 1;
             report.rays += rays;
             want.now.rough = true;
-            want.news = Some((want.now.clone(), response));
+            want.new_response = Some((want.now.clone(), response));
             return Ok(());
         }
         let is_waiting = want.need() != UpdateUrgency::Immediate;
@@ -268,7 +268,7 @@ impl Stream {
             Some(left) if is_waiting => left,
             _ => usize::MAX,
         };
-        if is_waiting && !budget.allows(FEWEST) {
+        if is_waiting && !budget.allows(MIN_RAYS) {
             want.is_waiting = true;
             return Ok(());
         }
@@ -293,10 +293,10 @@ impl Stream {
         report.rays += rays;
         budget.spend(rays);
         if let Some(response) = response {
-            budget.spend(OF_A_RESPONSE);
+            budget.spend(RESPONSE_COST_RAYS);
             report.traced += 1;
             want.job = PartialTrace::None;
-            want.news = Some((job.situation, response));
+            want.new_response = Some((job.situation, response));
         } else {
             want.is_waiting = true;
             want.job = PartialTrace::Advanced(job);

@@ -207,7 +207,7 @@ impl Synthesizer {
                 // Bands are known at their centres: levels are those before absorption above.
                 let omni = PathListening {
                     channels: &[ReceiverChannel::Omni],
-                    there: true,
+                    at_channel: true,
                     air: None,
                 };
                 self.add_paths(echogram, &echogram.paths, &omni, &mut paths);
@@ -215,9 +215,9 @@ impl Synthesizer {
             });
             noise.add(&arrivals, levels, &channels, &mut out);
         }
-        let listening = |channels, there| PathListening {
+        let listening = |channels, at_channel| PathListening {
             channels,
-            there,
+            at_channel,
             air,
         };
         let Some(early) = early else {
@@ -265,7 +265,7 @@ impl Synthesizer {
     ) -> impl Iterator<Item = Wavelet> + 'a {
         let PathListening {
             channels,
-            there,
+            at_channel,
             air,
         } = *listening;
         let air = air.map(|air| air.along(path.length_m));
@@ -282,7 +282,7 @@ impl Synthesizer {
                 amplitude = -amplitude;
             }
             let mut delay_s = channel.shade(speed_m_s, path.arrival, &mut spectrum);
-            if there {
+            if at_channel {
                 delay_s = 0.0;
             }
             let early = channel.rings_early();
@@ -312,7 +312,7 @@ impl Synthesizer {
         let channels = ReceiverChannel::of(hearing.receiver, hearing.heads, speed_m_s);
         let listening = PathListening {
             channels: &channels,
-            there: false,
+            at_channel: false,
             air: hearing.air,
         };
         let mut fft = self.filters.fft();
@@ -352,7 +352,7 @@ impl Synthesizer {
 struct PathListening<'a> {
     channels: &'a [ReceiverChannel],
     /// True for paths that end at the channel itself rather than at the centre.
-    there: bool,
+    at_channel: bool,
     air: Option<&'a UpperAir>,
 }
 

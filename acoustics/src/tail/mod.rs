@@ -33,7 +33,7 @@ const CHUNKS_PER_WAVE: usize = 32;
 const MOST_BYTES: usize = 64 << 20;
 /// Probability that a ray that hits a wall also goes on behind it: over the hundred reflections of a ray less than 1, so
 /// that rays behind several walls do not multiply.
-const THROUGH: f32 = 0.005;
+const TRANSMISSION_PROBABILITY: f32 = 0.005;
 /// Rays that probe the surroundings of a receiver, at least and at most.
 const PROBES: (usize, usize) = (128, 512);
 /// Distance that a probe counts that leaves the house, m.
@@ -102,7 +102,7 @@ pub(crate) struct TraceProgress {
     /// Number of chunks traced.
     chunks: usize,
     /// Set once the error is small enough.
-    enough: bool,
+    converged: bool,
     segments: u64,
     escaped: u64,
     length_m: f64,
@@ -121,7 +121,7 @@ impl TraceProgress {
         };
         Self {
             chunks: 0,
-            enough: false,
+            converged: false,
             segments: 0,
             escaped: 0,
             length_m: 0.0,
@@ -252,7 +252,7 @@ impl<'a> TailTrace<'a> {
             times,
             roulette: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
             wall_chance: if config.transmission && hidden {
-                THROUGH
+                TRANSMISSION_PROBABILITY
             } else {
                 0.0
             },
@@ -263,7 +263,7 @@ impl<'a> TailTrace<'a> {
         let bytes =
             self.listeners.len() * (bin_count + times * CELL_COUNT) * size_of::<BandValues>();
         let at_once = (MOST_BYTES / bytes.max(1)).clamp(1, CHUNKS_PER_WAVE);
-        while progress.chunks < end && !progress.enough {
+        while progress.chunks < end && !progress.converged {
             let first = progress.chunks;
             // The pieces of a wave depend on memory, the results do not.
             let wave_end = (first / CHUNKS_PER_WAVE + 1) * CHUNKS_PER_WAVE;
@@ -285,10 +285,10 @@ impl<'a> TailTrace<'a> {
             if config.max_error > 0.0 && progress.chunks == wave_end {
                 let errors = progress.sums.iter();
                 let errors = errors.flat_map(|sums| sums.relative_error(wave_end));
-                progress.enough = errors.fold(0.0, f64::max) <= config.max_error;
+                progress.converged = errors.fold(0.0, f64::max) <= config.max_error;
             }
         }
-        progress.chunks >= chunks || progress.enough
+        progress.chunks >= chunks || progress.converged
     }
 
     /// Returns the tails of all rays so far. Shape (receiver,).

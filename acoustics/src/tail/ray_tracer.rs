@@ -22,7 +22,7 @@ use std::ops::Range;
 /// Least length of shadow rays, m: it bounds the variance of near surfaces.
 const NEAREST_M: f32 = 0.1;
 /// Probability that a surface sends shadow rays through walls.
-const LOOK_THROUGH: f32 = 0.1;
+const WALL_SHADOW_RAY_PROBABILITY: f32 = 0.1;
 /// Least area of walls and doors, m².
 const WALL_M2: f32 = 0.5;
 /// Most reflections of a ray.
@@ -232,7 +232,8 @@ impl RayTracer<'_> {
         aside: &mut RandomStream,
         chunk: &mut RayChunk,
     ) {
-        let looks_through = self.wall_chance > 0.0 && aside.uniform_f32() < LOOK_THROUGH;
+        let looks_through =
+            self.wall_chance > 0.0 && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
         for (receiver, listener) in self.listeners.iter().enumerate() {
             if one.walls > 0 && !listener.hidden {
                 continue;
@@ -262,7 +263,7 @@ impl RayTracer<'_> {
                 let Some((passed, _)) = passed else {
                     continue;
                 };
-                multiply(&mut share, &passed.map(|p| p / LOOK_THROUGH));
+                multiply(&mut share, &passed.map(|p| p / WALL_SHADOW_RAY_PROBABILITY));
             }
             let nearest = distance_m.max(NEAREST_M);
             multiply(&mut share, scattered);

@@ -40,7 +40,7 @@ thread_local! {
     /// That of the call that this thread works for; none: the call cannot be cancelled.
     static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
     /// Set only on the calling thread.
-    static ASK: Cell<PollSchedule> = const { Cell::new(None) };
+    static POLL: Cell<PollSchedule> = const { Cell::new(None) };
 }
 
 /// Restores the previous values, also when the stack unwinds.
@@ -53,7 +53,7 @@ impl ScopeGuard {
     fn set_and_guard(token: Option<CancelToken>, ask: PollSchedule) -> Self {
         Self {
             token: TOKEN.replace(token),
-            ask: ASK.replace(ask),
+            ask: POLL.replace(ask),
         }
     }
 }
@@ -61,7 +61,7 @@ impl ScopeGuard {
 impl Drop for ScopeGuard {
     fn drop(&mut self) {
         TOKEN.set(self.token.take());
-        ASK.set(self.ask);
+        POLL.set(self.ask);
     }
 }
 
@@ -96,7 +96,7 @@ pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
 
 /// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
 pub fn check() {
-    if ASK.get().is_some_and(|(_, next)| Instant::now() >= next) {
+    if POLL.get().is_some_and(|(_, next)| Instant::now() >= next) {
         ask_now();
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
@@ -139,13 +139,13 @@ fn is_set(token: &CancelToken) -> bool {
 }
 
 /// Returns whether this thread polls.
-pub(crate) fn asks() -> bool {
-    ASK.get().is_some()
+pub(crate) fn polls() -> bool {
+    POLL.get().is_some()
 }
 
 /// Polls, and stores the result for all threads of the call.
 pub(crate) fn ask_now() {
-    let Some((ask, _)) = ASK.get() else {
+    let Some((ask, _)) = POLL.get() else {
         return;
     };
     if ask() {
@@ -155,7 +155,7 @@ pub(crate) fn ask_now() {
             }
         });
     }
-    ASK.set(Some((ask, Instant::now() + INTERVAL)));
+    POLL.set(Some((ask, Instant::now() + INTERVAL)));
 }
 
 /// Returns the token of the call that this thread works for.
@@ -166,7 +166,7 @@ pub(crate) fn token() -> Option<CancelToken> {
 /// Runs a piece of the work of the call that `token` belongs to, on any thread.
 pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
     // The calling thread polls, too, when it has pieces to do itself.
-    let _restore = ScopeGuard::set_and_guard(token.cloned(), ASK.get());
+    let _restore = ScopeGuard::set_and_guard(token.cloned(), POLL.get());
     check();
     work()
 }
@@ -244,10 +244,10 @@ mod tests {
             let mut pace = PollEvery::new(10);
             for count in turns {
                 // Every check polls.
-                ASK.set(Some((note, Instant::now())));
+                POLL.set(Some((note, Instant::now())));
                 pace.turns(*count);
             }
-            ASK.set(None);
+            POLL.set(None);
             ASKED.load(Ordering::Relaxed)
         };
         assert_eq!([looks(&[1]), looks(&[1; 10]), looks(&[1; 11])], [1, 1, 2]);
@@ -270,6 +270,6 @@ mod tests {
     fn a_panic_is_no_interruption() {
         let panicked = catch_unwind(|| interruptible(no, || panic!("on purpose")));
         assert!(panicked.is_err());
-        assert!(!asks() && token().is_none());
+        assert!(!polls() && token().is_none());
     }
 }

@@ -9,7 +9,7 @@ use crate::outcome::{OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
 /// Tolerance of the openness that an action asks for.
-const THERE: f32 = 0.02;
+const OPENNESS_TOLERANCE: f32 = 0.02;
 
 impl ActionContext<'_> {
     pub(super) fn swing(
@@ -45,7 +45,7 @@ impl ActionContext<'_> {
             let sentence = format!("The {name} is closed already.");
             return refuse(OutcomeCode::AlreadyClosed, sentence);
         }
-        if all(&|share| (share - fraction).abs() <= THERE) {
+        if all(&|share| (share - fraction).abs() <= OPENNESS_TOLERANCE) {
             let percent = (fraction * 100.0).round();
             let sentence = format!("The {name} is {percent:.0} % open already.");
             return refuse(OutcomeCode::AlreadyOpen, sentence);

@@ -50,7 +50,7 @@ impl ActionContext<'_> {
         if let Some(refusal) = self.refuse_reach(state, actor, object) {
             return Ok(refusal);
         }
-        if self.dynamics.holds[body] != BodyStatus::Free {
+        if self.dynamics.statuses[body] != BodyStatus::Free {
             let sentence = format!("The {name} is stuck where it stands. Choose something else.");
             return refuse(OutcomeCode::Stuck, sentence);
         }
@@ -133,7 +133,7 @@ impl ActionContext<'_> {
             );
         };
         let object = self.hands.grips[place].object;
-        self.hands.ungrip(self.dynamics, state, place);
+        self.hands.open_hand(self.dynamics, state, place);
         let sentence = format!("You let go of the {}.", self.dynamics.name_of(object));
         done(OutcomeCode::Done, sentence, Some(object))
     }

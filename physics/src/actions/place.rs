@@ -100,7 +100,7 @@ impl ActionContext<'_> {
             return;
         };
         let handle = self.dynamics.bodies[self.hands.grips[place].body as usize].handle;
-        self.hands.ungrip(self.dynamics, state, place);
+        self.hands.open_hand(self.dynamics, state, place);
         if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_position(*pose, true);
             rigid.set_linvel(Vec3::ZERO, true);

@@ -13,11 +13,11 @@ use rapier3d::pipeline::QueryFilter;
 const TRIAL_S: f32 = 1.0;
 const REST_S: f32 = 0.25;
 /// Largest displacement and rotation during that rest, m and rad.
-const RESTS_M: f32 = 5e-4;
-const RESTS_RAD: f32 = 5e-3;
+const REST_SHIFT_M: f32 = 5e-4;
+const REST_TURN_RAD: f32 = 5e-3;
 /// Largest displacement and rotation since the object was put down, m and rad.
-const SHIFTS_M: f32 = 0.01;
-const TURNS_RAD: f32 = 0.1;
+const MAX_SHIFT_M: f32 = 0.01;
+const MAX_TURN_RAD: f32 = 0.1;
 /// Distance within which other objects take part, m.
 const NEAR_M: f32 = 0.05;
 
@@ -86,7 +86,7 @@ impl ActionContext<'_> {
         for step in 0..steps {
             if step + last == steps {
                 resting = *trial.bodies.get(handle)?.position();
-                if moved(pose, &resting, SHIFTS_M, TURNS_RAD) {
+                if moved(pose, &resting, MAX_SHIFT_M, MAX_TURN_RAD) {
                     return None;
                 }
             }
@@ -94,8 +94,8 @@ impl ActionContext<'_> {
             trial.step(flying, &hooks, &());
         }
         let end = *trial.bodies.get(handle)?.position();
-        let rests = !moved(&resting, &end, RESTS_M, RESTS_RAD)
-            && !moved(pose, &end, SHIFTS_M, TURNS_RAD)
+        let rests = !moved(&resting, &end, REST_SHIFT_M, REST_TURN_RAD)
+            && !moved(pose, &end, MAX_SHIFT_M, MAX_TURN_RAD)
             && crate::convert::from_rapier(&end).is_valid();
         rests.then_some(end)
     }

@@ -156,11 +156,11 @@ impl ActionContext<'_> {
         };
         if let Some(body) = bodies
             .iter()
-            .find(|body| self.dynamics.holds[**body] == BodyStatus::Free)
+            .find(|body| self.dynamics.statuses[**body] == BodyStatus::Free)
         {
             return Ok(*body);
         }
-        match bodies.first().map(|body| self.dynamics.holds[*body]) {
+        match bodies.first().map(|body| self.dynamics.statuses[*body]) {
             None => refuse(
                 OutcomeCode::NotMovable,
                 format!("The {name} stands firm. Choose something loose."),
@@ -193,7 +193,7 @@ pub(crate) fn advance_pushes(
         let agent = &state.agents[shove.agent];
         let reach = agent.body.reach_m + SLACK_M;
         let free =
-            dynamics.holds[index] == BodyStatus::Free && state.held_by[shove.object].is_none();
+            dynamics.statuses[index] == BodyStatus::Free && state.held_by[shove.object].is_none();
         let point = dynamics
             .engine
             .bodies

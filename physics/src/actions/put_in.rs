@@ -23,12 +23,12 @@ const GRID: u32 = 7;
 /// Distance beyond the reach at which a hand still gets into a container, m.
 const STRETCH_M: f32 = 0.2;
 /// Largest share of an object's height that may stick out of an open container; a closed one must hold all of it.
-const STICKS_OUT: f32 = 0.6;
+const MAX_PROTRUSION: f32 = 0.6;
 /// Openness from which a container's doors count as open.
 const OPEN: f32 = 0.7;
 
 /// Steps along the path out of a container.
-const WAY_STEPS: u32 = 32;
+const PATH_STEPS: u32 = 32;
 
 /// The result of the search for a free spot inside.
 #[derive(Default)]
@@ -162,7 +162,7 @@ impl ActionContext<'_> {
         let sticks_out = if house.joints_of(space.object).next().is_some() {
             0.0
         } else {
-            STICKS_OUT
+            MAX_PROTRUSION
         };
         let root = house.objects[space.object].first_part;
         let loose_with_lid = !house.parts[root].fixed
@@ -230,7 +230,7 @@ impl ActionContext<'_> {
     ) -> bool {
         let house = &self.dynamics.model.house;
         let own = |_: ColliderHandle, collider: &Collider| {
-            let part = self.dynamics.entry_of(collider).toucher;
+            let part = self.dynamics.entry_of(collider).contact_entity;
             matches!(part, Some(ContactEntity::Part(part)) if house.parts[part].object == container)
         };
         let queries = self
@@ -249,7 +249,7 @@ impl ActionContext<'_> {
         sides.iter().any(|side| {
             let out = world_from_part.transform_vector(*side);
             let leaves =
-                (1..=WAY_STEPS).map(|k| inside + out * (beyond * k as f32 / WAY_STEPS as f32));
+                (1..=PATH_STEPS).map(|k| inside + out * (beyond * k as f32 / PATH_STEPS as f32));
             let outside = leaves
                 .into_iter()
                 .find(|point| !outer.grown(0.01).contains(*point));

@@ -131,7 +131,7 @@ impl ActionContext<'_> {
 
     /// Returns the name of a collider's owner for people.
     pub(super) fn name_of_entry(&self, entry: &ColliderEntry) -> String {
-        match entry.toucher {
+        match entry.contact_entity {
             Some(ContactEntity::Structure(id)) => {
                 self.surface_name(dwell_scene::SurfaceOwner::Structure(id))
             }
@@ -227,7 +227,7 @@ impl ActionContext<'_> {
         let down = Vec3::NEG_Y * (2.0 * SOLE_M);
         let (handle, _) = queries.cast_shape(&place, down, &Ball::new(radius), options)?;
         let collider = self.dynamics.engine.colliders.get(handle)?;
-        match self.dynamics.entries[entry_index(collider)].toucher {
+        match self.dynamics.entries[entry_index(collider)].contact_entity {
             Some(ContactEntity::Part(part)) => Some(self.dynamics.model.house.parts[part].object),
             _ => None,
         }

@@ -13,14 +13,14 @@ const DIRECTIONS: usize = 16;
 const TILT_RAD: f32 = 0.02;
 /// Least distance of the centre of mass inside the support polygon, m; for objects that stand on a line or a point, the
 /// largest distance outside it.
-const STEADY_M: f32 = 0.002;
+const SUPPORT_MARGIN_M: f32 = 0.002;
 const ROUND_M: f32 = -5e-4;
 /// Gap left under a placed object, m.
 const GAP_M: f32 = 5e-4;
 /// Largest unevenness of the ground under a sole, m.
-const UNEVEN_M: f32 = 0.002;
+const MAX_UNEVENNESS_M: f32 = 0.002;
 /// Range of the ground search above and below a point of the sole, m.
-const FEEL_M: f32 = 0.02;
+const GROUND_PROBE_M: f32 = 0.02;
 
 /// An object in a stable orientation. All points are relative to the body's origin, in world axes, m.
 #[derive(Clone, Debug)]
@@ -105,7 +105,11 @@ impl StablePose {
     /// Returns whether an object in this pose on level ground is stable, or at least stays when nothing touches it.
     fn stands(&self, carried: &[bool; DIRECTIONS]) -> bool {
         let whole = self.stability_margin_m(&[true; DIRECTIONS]);
-        let least = if whole >= STEADY_M { STEADY_M } else { ROUND_M };
+        let least = if whole >= SUPPORT_MARGIN_M {
+            SUPPORT_MARGIN_M
+        } else {
+            ROUND_M
+        };
         self.stability_margin_m(carried) >= least
     }
 }
@@ -161,8 +165,8 @@ impl ActionContext<'_> {
         stances
     }
 
-    /// Returns the resting pose of a body with its foot's middle on a point: free of overlaps, on supporting ground. `Err`:
-    /// the obstacle; `None` when it would not stay.
+    /// Returns the resting pose of a body with its foot's middle on a point: free of overlaps, on supporting ground. The error
+    /// is the obstacle's name, or `None` when the body would not stay.
     pub(super) fn stand_at(
         &self,
         body: usize,
@@ -177,12 +181,12 @@ impl ActionContext<'_> {
             return Err(Some(self.name_of_entry(blocker)));
         }
         let carried = stance.sole.map(|point| {
-            let above = pose.translation + point + Vec3::Y * FEEL_M;
+            let above = pose.translation + point + Vec3::Y * GROUND_PROBE_M;
             let bottom = foot.y + (point.y - stance.low.y);
             self.dynamics
-                .support_heights(body, SupportFilter::Any, above, 2.0 * FEEL_M)
+                .support_heights(body, SupportFilter::Any, above, 2.0 * GROUND_PROBE_M)
                 .iter()
-                .any(|height| (height - bottom).abs() <= UNEVEN_M)
+                .any(|height| (height - bottom).abs() <= MAX_UNEVENNESS_M)
         });
         if !stance.stands(&carried) {
             return Err(None);

@@ -8,9 +8,9 @@ use dwell_scene::{AgentId, Entity, EntityId, Id, ObjectId, PartId, State, Surfac
 use glam::Vec3;
 
 /// Longest ray, m.
-const FAR_M: f32 = 100.0;
+const MAX_RAY_M: f32 = 100.0;
 /// Largest distance of a ray's origin from the world's origin, m.
-const WORLD_M: f32 = 32_768.0;
+const MAX_COORDINATE_M: f32 = 32_768.0;
 
 /// A resolved target.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,7 +67,7 @@ impl ActionContext<'_> {
             }
             Target::Ray { origin, direction } => {
                 let good = origin.is_finite()
-                    && origin.abs().max_element() <= WORLD_M
+                    && origin.abs().max_element() <= MAX_COORDINATE_M
                     && direction.is_finite()
                     && direction.length_squared() > 1e-12;
                 if !good {
@@ -133,13 +133,13 @@ impl ActionContext<'_> {
     ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
         let house = &self.dynamics.model.house;
         let direction = direction.normalize_or_zero();
-        let ray = Ray::new(origin, direction).between(0.0, FAR_M);
+        let ray = Ray::new(origin, direction).between(0.0, MAX_RAY_M);
         let held = actor
             .body
             .holding
             .map_or(EntityId::VOID, |held| house.entity_of_object(held));
         let hit = actor.rays.closest_excluding(&ray, RayMask::EYE, held);
-        let until = hit.map_or(FAR_M, |hit| hit.distance_m);
+        let until = hit.map_or(MAX_RAY_M, |hit| hit.distance_m);
         if let Some((agent, distance)) = self.meet_agent(state, actor.id, origin, direction, until)
         {
             return Ok(ResolvedTarget {

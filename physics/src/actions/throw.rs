@@ -86,7 +86,7 @@ impl ActionContext<'_> {
             .iter()
             .position(|grip| grip.agent == actor.id)
         {
-            self.hands.ungrip(self.dynamics, state, place);
+            self.hands.open_hand(self.dynamics, state, place);
         }
         if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {
             rigid.set_linvel(along * speed, true);

@@ -9,7 +9,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Iterations of sliding in one piece of a movement.
-const SLIDES: usize = 4;
+const SLIDE_ITERATIONS: usize = 4;
 /// Height difference that counts as level ground, m.
 const LEVEL_M: f32 = 1e-3;
 /// Highest falling speed, m/s.
@@ -17,9 +17,9 @@ pub(crate) const FASTEST_FALL_M_S: f32 = 30.0;
 /// Most pieces of one movement.
 const MOST_PIECES: f32 = 256.0;
 /// Largest displacement of an agent out of an overlap in one step, m.
-const WAY_OUT_M: f32 = 0.02;
+const MAX_EXIT_M: f32 = 0.02;
 /// Gap left before an obstacle, besides the skin, m.
-const BACK_M: f32 = 1e-4;
+const OBSTACLE_GAP_M: f32 = 1e-4;
 
 /// The velocity of an agent that is not commanded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -62,7 +62,7 @@ impl CharacterController<'_> {
         let motion = motion + slid;
         if motion.length_squared() > 1e-14 {
             if self.probe.is_inside_something(feet) {
-                if let Some(out) = self.probe.exit_push(feet, WAY_OUT_M) {
+                if let Some(out) = self.probe.exit_push(feet, MAX_EXIT_M) {
                     feet += out;
                 }
             } else {
@@ -124,8 +124,8 @@ impl CharacterController<'_> {
     fn slide(&mut self, feet: Vec3, motion: Vec3) -> Vec3 {
         let mut at = feet;
         let mut left = motion;
-        let mut walls: [Vec3; SLIDES] = [Vec3::ZERO; SLIDES];
-        for turn in 0..SLIDES {
+        let mut walls: [Vec3; SLIDE_ITERATIONS] = [Vec3::ZERO; SLIDE_ITERATIONS];
+        for turn in 0..SLIDE_ITERATIONS {
             let length = left.length();
             if length < 1e-6 {
                 break;
@@ -133,7 +133,7 @@ impl CharacterController<'_> {
             let Some(hit) = self.probe.cast(at, left) else {
                 return at + left;
             };
-            let go = (hit.fraction * length - BACK_M).max(0.0);
+            let go = (hit.fraction * length - OBSTACLE_GAP_M).max(0.0);
             at += left * (go / length);
             left *= 1.0 - go / length;
             let wall = Vec3::new(hit.normal.x, 0.0, hit.normal.z);

@@ -105,7 +105,7 @@ pub(crate) fn insert(
         .insert(RigidBodyBuilder::kinematic_position_based().translation(state.position));
     let (shape, center) = capsule(state);
     let entry = ColliderEntry {
-        toucher: Some(ContactEntity::Agent(id)),
+        contact_entity: Some(ContactEntity::Agent(id)),
         body: None,
         surface: values.table.human(),
     };

@@ -216,7 +216,7 @@ pub(super) fn probe_with<'a>(
         model: &dynamics.model,
         entries: &dynamics.entries,
         bodies: &dynamics.bodies,
-        holds: &dynamics.holds,
+        statuses: &dynamics.statuses,
         excluded: &dynamics.excluded,
         others,
         agent: id,

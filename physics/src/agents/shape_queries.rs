@@ -71,7 +71,7 @@ pub(crate) struct AgentQueries<'a> {
     pub(crate) model: &'a PhysicsModel,
     pub(crate) entries: &'a [ColliderEntry],
     pub(crate) bodies: &'a [BodyHandle],
-    pub(crate) holds: &'a [BodyStatus],
+    pub(crate) statuses: &'a [BodyStatus],
     pub(crate) excluded: &'a CollisionExclusions,
     pub(crate) others: &'a [AgentCylinder],
     pub(crate) agent: AgentId,
@@ -94,7 +94,7 @@ impl AgentQueries<'_> {
         if carriers.binary_search(&(body, self.agent)).is_ok() {
             return ObstacleKind::Ignored;
         }
-        let light = self.holds[body as usize] == BodyStatus::Free
+        let light = self.statuses[body as usize] == BodyStatus::Free
             && (self.model.bodies[body as usize].joint.is_some()
                 || self.mass_kg(body) <= HEAVIEST_PUSHED_KG);
         if light {
@@ -317,7 +317,7 @@ impl AgentQueries<'_> {
     pub(crate) fn is_above_something(&self, feet: Vec3) -> bool {
         let predicate = |_: ColliderHandle, collider: &Collider| {
             let entry = self.entries.get(entry_index(collider));
-            entry.is_some_and(|entry| entry.toucher.is_some())
+            entry.is_some_and(|entry| entry.contact_entity.is_some())
                 && self.sees(collider) != ObstacleKind::Ignored
         };
         let queries = self

@@ -45,7 +45,7 @@ impl JointSystem {
                 }
                 if (goal - articulation.closed).abs() > joints::tolerance(joint.kind) {
                     let body = dynamics.bodies[child];
-                    joints::release(&mut dynamics.engine, &body, &mut dynamics.holds[child]);
+                    joints::release(&mut dynamics.engine, &body, &mut dynamics.statuses[child]);
                 }
             } else if articulation.servo.is_none() {
                 self.drives.remove(&joint.id);
@@ -95,7 +95,7 @@ impl JointSystem {
                 joint,
                 &articulation,
                 &body,
-                &mut dynamics.holds[child],
+                &mut dynamics.statuses[child],
             );
         }
         let share = (articulation.openness(position) * 100.0).round();
@@ -148,7 +148,7 @@ fn in_the_way(dynamics: &Dynamics, state: &State, joint: &PhysicsJoint) -> Optio
         if pair.total_impulse_magnitude() <= 0.0 {
             continue;
         }
-        match other.toucher {
+        match other.contact_entity {
             Some(ContactEntity::Part(part)) if !own(part) => {
                 return Some(dynamics.name_of(house.parts[part].object));
             }

@@ -54,7 +54,7 @@ impl JointSystem {
             let now = joints::stands(&dynamics.engine, joint, joint_from_state(state, joint.id));
             let (position, velocity) = (now.position as f32, now.velocity as f32);
             // A latched door is at its closed position, whatever the rounding.
-            let shut = dynamics.holds[joint.child as usize] == BodyStatus::Latched;
+            let shut = dynamics.statuses[joint.child as usize] == BodyStatus::Latched;
             let closed = dynamics.model.house.joints[joint.id].closed;
             state.joint_position[joint.id] = if shut { closed } else { position };
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };

@@ -87,7 +87,7 @@ impl<'a> ContactCollector<'a> {
         let (one, two) = (&colliders[pair.collider1], &colliders[pair.collider2]);
         let a = self.entries.get(entry_index(one))?;
         let b = self.entries.get(entry_index(two))?;
-        let (touch_a, touch_b) = (a.toucher?, b.toucher?);
+        let (touch_a, touch_b) = (a.contact_entity?, b.contact_entity?);
         let motions = (
             before(self.before, one.parent()),
             before(self.before, two.parent()),

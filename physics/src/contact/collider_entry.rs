@@ -51,7 +51,7 @@ impl ContactClasses {
 #[derive(Clone, Debug)]
 pub(crate) struct ColliderEntry {
     /// Its owner; `None` for the fallback box.
-    pub(crate) toucher: Option<ContactEntity>,
+    pub(crate) contact_entity: Option<ContactEntity>,
     /// The rigid body it moves with, unless it is static or an agent's.
     pub(crate) body: Option<u32>,
     pub(crate) surface: ContactClasses,
@@ -59,20 +59,20 @@ pub(crate) struct ColliderEntry {
 
 impl ColliderEntry {
     pub(crate) fn new(owner: PieceOwner, body: Option<u32>, surface: ContactClasses) -> Self {
-        let toucher = match owner {
+        let contact_entity = match owner {
             PieceOwner::Structure(id) => Some(ContactEntity::Structure(id)),
             PieceOwner::Part(id) => Some(ContactEntity::Part(id)),
             PieceOwner::LastBox => None,
         };
         Self {
-            toucher,
+            contact_entity,
             body,
             surface,
         }
     }
 
     pub(crate) fn agent(&self) -> Option<AgentId> {
-        match self.toucher {
+        match self.contact_entity {
             Some(ContactEntity::Agent(agent)) => Some(agent),
             _ => None,
         }

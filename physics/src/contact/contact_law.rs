@@ -18,7 +18,7 @@ pub(crate) trait ContactLaw: Debug + Send + Sync {
 /// One of the two things that touch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ContactSide<'a> {
-    pub(crate) toucher: Option<ContactEntity>,
+    pub(crate) contact_entity: Option<ContactEntity>,
     /// Its substance at the contact, by its name in the materials library.
     pub(crate) substance: &'a str,
     /// Orientation of its own frame in the world; the identity for structure and fixed things.

@@ -6,7 +6,7 @@ use rapier3d::dynamics::RigidBodyHandle;
 use rapier3d::geometry::{ColliderSet, NarrowPhase};
 
 /// Least upward component of a normal that supports: the cosine of 60 degrees.
-const CARRIES: f32 = 0.5;
+const MIN_SUPPORT_NORMAL_Y: f32 = 0.5;
 
 /// Returns all pairs of parts, and of parts with the structure, that are at most `distance_m` apart, with their bodies; for
 /// each pair of pieces that touch.
@@ -27,7 +27,7 @@ pub(crate) fn touching(
             near |= touches;
             // The normal points from the first collider to the second.
             let up = manifold.data.normal.y;
-            if touches && up.abs() >= CARRIES {
+            if touches && up.abs() >= MIN_SUPPORT_NORMAL_Y {
                 rest = if up > 0.0 {
                     SupportRelation::BOnA
                 } else {
@@ -40,7 +40,7 @@ pub(crate) fn touching(
         }
         let entry = |handle| {
             let entry = entries.get(entry_index(&colliders[handle]))?;
-            entry.toucher
+            entry.contact_entity
         };
         let (Some(a), Some(b)) = (entry(pair.collider1), entry(pair.collider2)) else {
             continue;

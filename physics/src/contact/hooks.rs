@@ -133,7 +133,7 @@ impl PhysicsHooks for ContactHooks<'_> {
             return;
         }
         let side = |entry: &ColliderEntry, class: u16, body: Option<RigidBodyHandle>| ContactSide {
-            toucher: entry.toucher,
+            contact_entity: entry.contact_entity,
             substance: table.substance(class),
             rotation: body
                 .and_then(|body| bodies.get(body))

@@ -156,13 +156,16 @@ impl RestitutionContext<'_> {
         (struck, joint_coordinates): (&mut Vec<ImpulseDynamics>, &[JointCoordinate]),
         hits: &mut Vec<ImpactPoint>,
     ) {
-        let toucher = |collider: ColliderHandle| {
+        let contact_entity = |collider: ColliderHandle| {
             let entry = self
                 .entries
                 .get(entry_index(engine.colliders.get(collider)?))?;
-            entry.toucher
+            entry.contact_entity
         };
-        let (Some(a), Some(b)) = (toucher(pair.collider1), toucher(pair.collider2)) else {
+        let (Some(a), Some(b)) = (
+            contact_entity(pair.collider1),
+            contact_entity(pair.collider2),
+        ) else {
             return;
         };
         let bodies = [pair.collider1, pair.collider2].map(|collider| parent(engine, collider));

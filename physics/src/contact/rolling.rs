@@ -14,12 +14,12 @@ use rapier3d::geometry::{Collider, ColliderHandle, Cylinder, TypedShape};
 use rapier3d::pipeline::{ActiveHooks, ModifiableManifold};
 
 /// Sine of the largest tilt at which a cylinder lies on its side.
-const LYING: f32 = 0.2;
+const MAX_TILT_SIN: f32 = 0.2;
 /// Cosine of the largest angle between the normal found and a face's own.
-const SAME_WAY: f32 = 0.99;
+const MIN_NORMAL_COS: f32 = 0.99;
 /// Contact points move with the side up from the face, by `r (1 - cos w t)` in a step; rapier knows a drift at a steady
 /// rate only. This share of the displacement at the end of a step keeps the error smallest over all substeps.
-const LIFTED: f32 = 0.75;
+const LIFT_SHARE: f32 = 0.75;
 
 /// Makes rapier ask the hook about a cylinder while it `rolls`. `asked`: whether it asks about an entry at other times.
 /// Returns whether that changed.
@@ -92,7 +92,7 @@ pub(super) fn correct_line_contact(
     let place = own.position();
     let axis = place.rotation * Vec3::Y;
     let found = if first { *plane.normal } else { -*plane.normal };
-    if axis.dot(found).abs() > LYING {
+    if axis.dot(found).abs() > MAX_TILT_SIN {
         return;
     }
     let subshape = if first {
@@ -108,7 +108,7 @@ pub(super) fn correct_line_contact(
         return;
     };
     let spin = (if first { turns.0 } else { turns.1 }).dot(axis);
-    let drift = way * (LIFTED * 0.5 * radius * spin * spin * dt_s);
+    let drift = way * (LIFT_SHARE * 0.5 * radius * spin * spin * dt_s);
     for contact in plane.solver_contacts.iter_mut() {
         let middle = (contact.anchor1 + contact.anchor2) * 0.5;
         let along = (middle - place.translation).dot(axis);
@@ -150,7 +150,7 @@ fn face(collider: &Collider, wanted: Vec3, subshape: u32) -> Option<(Vec3, Vec3)
         }
         _ => return None,
     };
-    (normal.dot(looks) > SAME_WAY).then(|| {
+    (normal.dot(looks) > MIN_NORMAL_COS).then(|| {
         let normal = place.rotation * normal;
         (normal, place.rotation * point + place.translation)
     })

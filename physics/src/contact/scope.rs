@@ -36,8 +36,8 @@ impl NamedContactTarget {
         (!nothing).then_some(named)
     }
 
-    fn is_thing(&self, house: &House, toucher: Option<ContactEntity>) -> bool {
-        match toucher {
+    fn is_thing(&self, house: &House, contact_entity: Option<ContactEntity>) -> bool {
+        match contact_entity {
             Some(ContactEntity::Part(part)) => self.objects.contains(&house.parts[part].object),
             Some(ContactEntity::Structure(id)) => self.structure.contains(&id),
             _ => false,
@@ -45,7 +45,7 @@ impl NamedContactTarget {
     }
 
     fn is(&self, house: &House, side: &ContactSide<'_>) -> bool {
-        self.substance == Some(side.substance) || self.is_thing(house, side.toucher)
+        self.substance == Some(side.substance) || self.is_thing(house, side.contact_entity)
     }
 }
 
@@ -104,7 +104,7 @@ impl ContactScope {
             return entry.body.is_some();
         };
         let made_of = |class: u16| one.substance == Some(table.substance(class));
-        entry.surface.any_class(made_of) || one.is_thing(house, entry.toucher)
+        entry.surface.any_class(made_of) || one.is_thing(house, entry.contact_entity)
     }
 
     /// Returns whether a contact is within the scope, and if so, whether `b` is the surface and not `a`.
@@ -126,7 +126,7 @@ impl ContactScope {
             (true, false) => Some(false),
             (false, true) => Some(true),
             // Structure sorts before parts, parts before agents.
-            (true, true) => Some(a.toucher > b.toucher),
+            (true, true) => Some(a.contact_entity > b.contact_entity),
         }
     }
 }

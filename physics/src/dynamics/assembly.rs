@@ -41,7 +41,7 @@ pub(crate) struct AssembledWorld {
 }
 
 /// Number of fixed bodies: the house, and the anchor of joints.
-const STANDING: usize = 2;
+const FIXED_BODIES: usize = 2;
 
 /// Inserts the pieces of a house: statics, then bodies in order, at the given poses. `sizes`: gravity, m/s², the number of
 /// agents to come, and the number of pairs of the pieces.
@@ -59,7 +59,7 @@ pub(crate) fn assemble(
     let pieces = model.bodies.iter().map(|plan| plan.pieces.len());
     let pieces: usize = pieces.sum::<usize>() + model.statics.len();
     engine.colliders = ColliderSet::with_capacity(pieces + agents);
-    engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + STANDING + agents);
+    engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + FIXED_BODIES + agents);
     engine.soften(settings, compliance);
     let mut entries = insert_statics(&mut engine, model, values);
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());

@@ -47,7 +47,8 @@ impl Dynamics {
             entry.agent().is_none()
                 && entry.body.is_none_or(|body| {
                     let body = body as usize;
-                    self.holds[body] != BodyStatus::Free || self.model.bodies[body].joint.is_some()
+                    self.statuses[body] != BodyStatus::Free
+                        || self.model.bodies[body].joint.is_some()
                 })
         };
         let way = point - eye;
@@ -131,7 +132,7 @@ impl Dynamics {
                 .engine
                 .colliders
                 .get(handle)
-                .and_then(|collider| self.entry_of(collider).toucher);
+                .and_then(|collider| self.entry_of(collider).contact_entity);
             let owner = match owner {
                 Some(ContactEntity::Part(part)) => {
                     SupportFilter::Object(self.model.house.parts[part].object)

@@ -32,7 +32,7 @@ pub(crate) struct Dynamics {
     /// Shape (body,).
     pub(crate) bodies: Vec<BodyHandle>,
     /// The current status of each body. Shape (body,).
-    pub(crate) holds: Vec<BodyStatus>,
+    pub(crate) statuses: Vec<BodyStatus>,
     pub(crate) weights: BodyMasses,
     pub(crate) excluded: CollisionExclusions,
     pub(crate) laws: Box<LawSet>,
@@ -149,7 +149,7 @@ impl Dynamics {
     pub(crate) fn kinetic_energy_j(&self) -> f64 {
         self.bodies
             .iter()
-            .zip(&self.holds)
+            .zip(&self.statuses)
             .filter(|(_, hold)| **hold == BodyStatus::Free)
             .filter_map(|(body, _)| self.engine.bodies.get(body.handle))
             .map(|rigid| f64::from(rigid.kinetic_energy()))
@@ -160,7 +160,7 @@ impl Dynamics {
     pub(crate) fn fastest_m_s(&self) -> f32 {
         self.bodies
             .iter()
-            .zip(&self.holds)
+            .zip(&self.statuses)
             .filter(|(_, hold)| **hold == BodyStatus::Free)
             .filter_map(|(body, _)| self.engine.bodies.get(body.handle))
             .map(|rigid| {

@@ -7,12 +7,12 @@ use dwell_scene::{Contact, State, SupportRelation};
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// Physics steps between transfers to the cache: a quarter of a second at the default rate.
-const TICKS_BETWEEN_LOOKS: u64 = 32;
+const CACHING_PERIOD_TICKS: u64 = 32;
 impl Dynamics {
     /// Periodically caches bodies that have fallen asleep. `tick_before`: the tick at which the control step began;
     /// `is_handled`: whether a hand holds or has just released a body.
     pub(crate) fn cache_sleeping(&mut self, tick_before: u64, is_handled: impl Fn(usize) -> bool) {
-        if tick_before / TICKS_BETWEEN_LOOKS == self.tick / TICKS_BETWEEN_LOOKS {
+        if tick_before / CACHING_PERIOD_TICKS == self.tick / CACHING_PERIOD_TICKS {
             return;
         }
         let mut asleep: Vec<RigidBodyHandle> = (0..self.bodies.len())
@@ -49,7 +49,7 @@ impl Dynamics {
     /// Drops the pairs that bodies made before they were latched or frozen, with other fixed ones.
     pub(crate) fn forget_fixed_pairs(&mut self) {
         let stands = |(_, hold): &(&BodyHandle, &BodyStatus)| **hold != BodyStatus::Free;
-        let bodies = self.bodies.iter().zip(&self.holds).filter(stands);
+        let bodies = self.bodies.iter().zip(&self.statuses).filter(stands);
         let bodies: Vec<RigidBodyHandle> = bodies.map(|(body, _)| body.handle).collect();
         if !bodies.is_empty() {
             self.forget_pairs(&bodies);
@@ -90,7 +90,7 @@ impl Dynamics {
     /// Returns whether a body is free and asleep.
     fn is_cacheable(&self, index: usize) -> bool {
         let rigid = self.engine.bodies.get(self.bodies[index].handle);
-        self.holds[index] == BodyStatus::Free
+        self.statuses[index] == BodyStatus::Free
             && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
     }
 }

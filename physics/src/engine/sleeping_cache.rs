@@ -24,7 +24,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Distance below which bodies count as touching, m: more than contacts leave between bodies at rest.
 const TOUCH_M: f32 = 2e-3;
 /// Look-ahead factor on the displacement in a step at the present velocity: gravity and pushes add to that.
-const AHEAD: f32 = 1.5;
+const LOOK_AHEAD: f32 = 1.5;
 /// Displacement of a box that rapier notices, m; its margin in units of its length unit.
 const BOX_STEP_M: f32 = 1e-3;
 const RAPIER_SKIN: f32 = 0.04;
@@ -119,13 +119,13 @@ impl RapierWorld {
     fn wake_each(&mut self, bodies: impl IntoIterator<Item = RigidBodyHandle>) {
         let mut woken = BodyIndexSet::new();
         for body in bodies {
-            self.thaw_and_wake(body, &mut woken);
+            self.free_and_wake(body, &mut woken);
         }
         self.sleeping_cache.forget_contacts(&woken);
     }
 
     /// Wakes a body, and those jointed to it; adds those that were cached to `woken`, whose contacts are to be dropped.
-    fn thaw_and_wake(&mut self, body: RigidBodyHandle, woken: &mut BodyIndexSet) {
+    fn free_and_wake(&mut self, body: RigidBodyHandle, woken: &mut BodyIndexSet) {
         let mut left = vec![WakeRequest::Wake(body), WakeRequest::Free(body)];
         while let Some(next) = left.pop() {
             let now = match next {
@@ -155,7 +155,7 @@ impl RapierWorld {
     pub(crate) fn wake_cached(&mut self) {
         let mut woken = BodyIndexSet::new();
         while let Some(body) = self.sleeping_cache.bodies.last() {
-            self.thaw_and_wake(*body, &mut woken);
+            self.free_and_wake(*body, &mut woken);
         }
         self.sleeping_cache.forget_contacts(&woken);
     }
@@ -175,10 +175,10 @@ impl RapierWorld {
     }
 
     /// Wakes bodies within reach of anything that moves in the next step, and those in contact with them, and so on.
-    /// `root_velocity_along`: agents, which are kinematic.
+    /// `kinematic_bodies`: agents, which are kinematic.
     pub(crate) fn wake_in_reach(
         &mut self,
-        root_velocity_along: impl Iterator<Item = RigidBodyHandle>,
+        kinematic_bodies: impl Iterator<Item = RigidBodyHandle>,
     ) {
         if self.sleeping_cache.bodies.is_empty() {
             return;
@@ -187,14 +187,14 @@ impl RapierWorld {
         let mut movers: Vec<RigidBodyHandle> = awake
             .filter(|body| !self.sleeping_cache.has(*body))
             .collect();
-        movers.extend(root_velocity_along);
+        movers.extend(kinematic_bodies);
         let mut woken = BodyIndexSet::new();
         while let Some(mover) = movers.pop() {
             let Some(reach_m) = self.reach_m(mover) else {
                 continue;
             };
             for near in self.cached_within(mover, reach_m) {
-                self.thaw_and_wake(near, &mut woken);
+                self.free_and_wake(near, &mut woken);
                 movers.push(near);
             }
         }
@@ -208,7 +208,7 @@ impl RapierWorld {
         if rigid.is_dynamic() {
             let spin = rigid.angvel().length() * rigid.mass_properties().max_extent();
             let fastest = rigid.linvel().length() + spin + self.gravity.length() * dt_s;
-            return Some(TOUCH_M + AHEAD * fastest * dt_s);
+            return Some(TOUCH_M + LOOK_AHEAD * fastest * dt_s);
         }
         if rigid.body_type() != RigidBodyType::KinematicPositionBased {
             return None;
@@ -216,7 +216,7 @@ impl RapierWorld {
         // An agent at rest disturbs what it overlaps, as after being placed or standing up.
         let goes_m = (rigid.next_position().translation - rigid.position().translation).length();
         Some(if goes_m > 0.0 {
-            TOUCH_M + AHEAD * goes_m
+            TOUCH_M + LOOK_AHEAD * goes_m
         } else {
             0.0
         })

@@ -22,13 +22,13 @@ const FASTEST_TURN_RAD_S: f32 = 12.0;
 /// Distance beyond which a held object counts as stuck, m.
 const FAR_M: f32 = 0.35;
 /// Time for which it may be stuck before it slips, s.
-const GRIP_S: f32 = 0.5;
+const SLIP_TIMEOUT_S: f32 = 0.5;
 /// Force of the hand besides the object's weight, N.
 const HAND_FORCE_N: f32 = 150.0;
 /// Highest acceleration of the hand, m/s².
 const HAND_M_S2: f32 = 150.0;
 /// Share of the speed from which the hand could still stop in time.
-const CAREFUL: f32 = 0.8;
+const BRAKING_SHARE: f32 = 0.8;
 /// Motion of a loaded object to the hand: highest speed, m/s, acceleration, m/s², and longest duration, s.
 const GENTLE_M_S: f32 = 0.6;
 const GENTLE_M_S2: f32 = 3.0;
@@ -134,7 +134,7 @@ pub(crate) fn carry(
                 (rigid.linvel() + change, angular.clamp_length_max(1.0))
             } else {
                 let strongest = (HAND_FORCE_N / mass + gravity).min(HAND_M_S2);
-                let in_time = CAREFUL * (2.0 * strongest * away.length()).sqrt();
+                let in_time = BRAKING_SHARE * (2.0 * strongest * away.length()).sqrt();
                 let fastest = in_time.min(FASTEST_HAND_M_S);
                 let wanted = (away / dt_s).clamp_length_max(fastest) + spin;
                 let change = (wanted - rigid.linvel()).clamp_length_max(strongest * dt_s);
@@ -168,7 +168,12 @@ pub(crate) fn carry(
     } else {
         grip.stuck_s = 0.0;
     }
-    grip.stuck_s > if grip.loaded { GENTLE_S } else { GRIP_S }
+    grip.stuck_s
+        > if grip.loaded {
+            GENTLE_S
+        } else {
+            SLIP_TIMEOUT_S
+        }
 }
 
 /// A damped spring that is integrated implicitly, so that it is stable for any stiffness.

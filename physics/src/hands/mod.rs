@@ -58,7 +58,7 @@ impl Hands {
                 place += 1;
                 continue;
             }
-            self.ungrip(dynamics, state, place);
+            self.open_hand(dynamics, state, place);
             let name = dynamics.name_of(object);
             notices.push(DelayedOutcome {
                 agent: Some(agent),
@@ -74,7 +74,7 @@ impl Hands {
     }
 
     /// Opens the hand of the grip at index `place`.
-    pub(crate) fn ungrip(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
+    pub(crate) fn open_hand(&mut self, dynamics: &mut Dynamics, state: &mut State, place: usize) {
         let grip = self.grips.remove(place);
         let velocity = state.agents[grip.agent].velocity;
         let body = grip.body as usize;
@@ -119,7 +119,7 @@ impl Hands {
                 continue;
             }
             let (holder, object) = (grip.agent, grip.object);
-            self.ungrip(dynamics, state, place);
+            self.open_hand(dynamics, state, place);
             let name = dynamics.name_of(object);
             notices.push(DelayedOutcome {
                 agent: Some(holder),

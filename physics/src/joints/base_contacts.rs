@@ -11,7 +11,7 @@ use super::tree_dynamics::{TreeDynamics, TreeLoads, Wrench};
 use glam::DVec3;
 
 /// Virtual mass of a sticking support point, in masses of the tree.
-const FIRM: f64 = 1e4;
+const STICKING_MASS_RATIO: f64 = 1e4;
 
 /// The contact state of a support point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,7 +124,7 @@ impl ReducedProblem {
         for (momentum, column) in momentum.iter_mut().zip(&floating.columns) {
             *momentum += dot(column, &before);
         }
-        let brake = FIRM * floating.whole.mass / dt_s;
+        let brake = STICKING_MASS_RATIO * floating.whole.mass / dt_s;
         let mut shared = floating.columns.clone();
         for (momentum, effort) in root_momentum.iter_mut().zip(root_efforts) {
             *momentum += dt_s * effort;

@@ -93,7 +93,7 @@ impl Chain {
             gravity: engine.gravity.as_dvec3(),
         };
         chain.follow_root(engine, tree);
-        chain.feel(engine, tree, free, joints);
+        chain.find_contacts(engine, tree, free, joints);
         chain
     }
 
@@ -118,7 +118,7 @@ impl Chain {
     }
 
     /// Finds the support and contact forces on the tree.
-    fn feel(
+    fn find_contacts(
         &mut self,
         engine: &RapierWorld,
         tree: &KinematicTree,

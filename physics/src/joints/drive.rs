@@ -15,11 +15,11 @@ const HAND_PULL_M_S: f32 = 0.5;
 /// Largest lead of the hand over a joint that does not follow, rad or m.
 const HAND_LEAD: [f32; 2] = [0.3, 0.1];
 /// Speed under which a joint makes no progress, rad/s or m/s.
-const CREEP: f32 = 0.02;
+const STALL_SPEED: f32 = 0.02;
 /// Speed under which a joint that reaches its stop has arrived, rad/s or m/s.
-const STOPPED: f32 = 0.2;
+const ARRIVAL_SPEED: f32 = 0.2;
 /// Time without progress after which the hand gives up while it pulls at full lead, s.
-const PATIENCE_S: f32 = 0.4;
+const STALL_TIMEOUT_S: f32 = 0.4;
 
 /// A hand that moves a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -74,15 +74,15 @@ impl HandDrive {
         let left = (position - self.goal).abs();
         // A joint that stays half open must be at rest before the hand lets go, or it would coast on.
         let slow = if limits.is_some_and(|limits| limits.contains(&self.goal)) {
-            STOPPED
+            ARRIVAL_SPEED
         } else {
-            CREEP
+            STALL_SPEED
         };
         if left <= tolerance(kind) && velocity.abs() < slow {
             return DriveProgress::Arrived;
         }
         let stride = rate * step_s;
-        let stands = velocity.abs() < CREEP;
+        let stands = velocity.abs() < STALL_SPEED;
         let onward = (self.goal - position).signum();
         let short = (self.goal - self.ramp) * onward > stride;
         if short || stands {
@@ -100,7 +100,7 @@ impl HandDrive {
         } else {
             self.stalled_s = 0.0;
         }
-        if self.stalled_s >= PATIENCE_S {
+        if self.stalled_s >= STALL_TIMEOUT_S {
             DriveProgress::Blocked
         } else {
             DriveProgress::Moving

@@ -39,9 +39,9 @@ pub(crate) enum ActuationGain {
 }
 
 /// Share of a mimic joint's error that is corrected in a step: all of it at once would excite oscillations.
-const LINKED: f64 = 0.1;
+const MIMIC_CORRECTION: f64 = 0.1;
 /// Highest speed of that correction, rad/s or m/s: a mimic joint that is set elsewhere moves back, and is not shot back.
-const LINKED_SPEED: f64 = 4.0;
+const MIMIC_CORRECTION_SPEED: f64 = 4.0;
 
 /// One degree of freedom before a step.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +126,8 @@ impl JointDof {
         let slope = RIGID * self.inertia / self.dt_s;
         let wanted = multiplier * leader.position + offset;
         let off = self.position - wanted.max(stops[0]).min(stops[1]);
-        let mended = (LINKED * off / self.dt_s).clamp(-LINKED_SPEED, LINKED_SPEED);
+        let mended = (MIMIC_CORRECTION * off / self.dt_s)
+            .clamp(-MIMIC_CORRECTION_SPEED, MIMIC_CORRECTION_SPEED);
         EffortTerm {
             follows: Some((leader.index, multiplier)),
             ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])

@@ -19,7 +19,7 @@ use glam::Vec3;
 
 /// Largest deviation of a joint from its predicted motion up to which it is moved back: rad or m, and as a share of the
 /// displacement.
-const OFF_COURSE: (f64, f64) = (2e-3, 0.1);
+const MAX_DEVIATION: (f64, f64) = (2e-3, 0.1);
 
 /// The actuation of joints in a step, besides the bodies.
 pub(crate) struct JointDrivers<'a> {
@@ -132,7 +132,7 @@ impl PredictedJoint {
         let [from, to] = self.positions;
         let way = before.way(engine, self.velocity);
         let misses = |expected: f64, way: f64| {
-            (now.position - expected).abs() > OFF_COURSE.0 + OFF_COURSE.1 * way.abs()
+            (now.position - expected).abs() > MAX_DEVIATION.0 + MAX_DEVIATION.1 * way.abs()
         };
         !misses(to, to - from) || !misses(from + way, way)
     }
@@ -153,7 +153,7 @@ pub(crate) fn settle(
         moves,
         loose,
     } = outlook;
-    let before = standing.again(engine, tree, joints);
+    let before = standing.reread(engine, tree, joints);
     for (going, now) in course.iter().zip(&standing.readings) {
         joint_coordinates[going.joint] = now.coordinate();
     }
@@ -187,7 +187,7 @@ pub(crate) fn settle(
     let ends: Vec<Option<f64>> = ends
         .map(|(going, came)| {
             let [from, to] = going.positions;
-            (*came && (to - from).abs() > OFF_COURSE.0).then_some(to)
+            (*came && (to - from).abs() > MAX_DEVIATION.0).then_some(to)
         })
         .collect();
     standing.project(engine, tree, joints, &ends, joint_coordinates);

@@ -22,7 +22,7 @@ pub(crate) struct JointPlacement {
 /// Tolerance for rounding between a joint's value and that of its bodies: rad or m, and rad/s or m/s.
 const ROUNDING: f32 = 5e-7;
 /// The least component of an axis along which the remainder of a rounded velocity goes.
-const ALONG: f64 = 0.2;
+const MIN_AXIS_COMPONENT: f64 = 0.2;
 
 /// Places a tree's bodies, parents first; bodies that already have the commanded pose and velocity are left alone, so that
 /// they may sleep on. `stands`: for each of the world's joints.
@@ -39,7 +39,7 @@ pub(crate) fn place(
             continue;
         }
         let found = super::read(engine, joint, stand.position.into());
-        let there = stand.says(found, [ROUNDING, ROUNDING]);
+        let there = stand.agrees_with(found, [ROUNDING, ROUNDING]);
         let follows = tree.parents[k].is_some_and(|parent| moved[parent]);
         if there && !follows && !stand.anew {
             continue;
@@ -103,7 +103,7 @@ fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
     let mut order = [0, 1, 2];
     order.sort_by(|a, b| grain(*b).total_cmp(&grain(*a)));
     for k in order {
-        if axis[k].abs() >= ALONG {
+        if axis[k].abs() >= MIN_AXIS_COMPONENT {
             let left = (velocity - rounded.as_dvec3()).dot(axis);
             rounded[k] = (f64::from(rounded[k]) + left / axis[k]) as f32;
         }
@@ -113,7 +113,7 @@ fn rounded_along(velocity: DVec3, axis: DVec3) -> Vec3 {
 
 impl JointPlacement {
     /// Returns whether a position and velocity agree with these, within these shares, or these values below 1.
-    fn says(&self, (position, velocity): (f64, f64), within: [f32; 2]) -> bool {
+    fn agrees_with(&self, (position, velocity): (f64, f64), within: [f32; 2]) -> bool {
         let same = |told: f32, found: f64, within: f32| {
             (found - f64::from(told)).abs() <= f64::from(within * told.abs().max(1.0))
         };
@@ -139,7 +139,7 @@ pub(crate) fn matches_bodies(
             }
         }
     }
-    stand.says(found, [4.0 * ROUNDING * place, 32.0 * ROUNDING * speed])
+    stand.agrees_with(found, [4.0 * ROUNDING * place, 32.0 * ROUNDING * speed])
 }
 
 #[cfg(test)]

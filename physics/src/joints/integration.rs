@@ -20,19 +20,19 @@ use super::{JointLoad, JointResistance};
 /// Displacement in a step, rad or m, below which a tree counts as at rest.
 pub(super) const AT_REST: f64 = 1e-5;
 /// Longest displacement of a joint in one part of a step, rad or m.
-const STRIDE: f64 = 0.05;
+const MAX_PART_DISPLACEMENT: f64 = 0.05;
 /// Most parts of a step: those of the highest speed that may be set, 1000 rad/s, at 120 Hz.
 const MOST_PARTS: f64 = 168.0;
 /// Iterations for the middle of a part.
-const SWEEPS: usize = 3;
+const MIDPOINT_ITERATIONS: usize = 3;
 /// Most iterations of friction and the load that depends on it.
-const FRICTION_SWEEPS: usize = 8;
+const FRICTION_ITERATIONS: usize = 8;
 /// Convergence tolerance of loads: N·m or N, and as a share.
-const FOUND: f64 = 1e-6;
+const LOAD_TOLERANCE: f64 = 1e-6;
 /// Bounds on the slope of a load over the load assumed for it.
-const FALLS: [f64; 2] = [-20.0, 0.5];
+const LOAD_SLOPE_BOUNDS: [f64; 2] = [-20.0, 0.5];
 /// Most iterations of the support contacts.
-const GROUND_ROUNDS: usize = 6;
+const SUPPORT_ITERATIONS: usize = 6;
 
 /// The free joints of a tree in a step.
 pub(super) struct TreeSolver<'a> {
@@ -97,7 +97,8 @@ fn relaxed_load(taken: &[f64], seen: &[f64], before: Option<&[Vec<f64>; 2]>) -> 
         if way.abs() < 1e-9 {
             return seen[k];
         }
-        let fall = ((seen[k] - seen_before[k]) / way).clamp(FALLS[0], FALLS[1]);
+        let fall =
+            ((seen[k] - seen_before[k]) / way).clamp(LOAD_SLOPE_BOUNDS[0], LOAD_SLOPE_BOUNDS[1]);
         taken[k] + (seen[k] - taken[k]) / (1.0 - fall)
     };
     (0..taken.len()).map(next).collect()
@@ -117,7 +118,9 @@ impl TreeSolver<'_> {
             .fold(0.0, |most: f64, v| most.max(v.abs()));
         let moves = fastest * dt_s > AT_REST && chain.stands();
         let parts = if moves {
-            (fastest * dt_s / STRIDE).ceil().clamp(1.0, MOST_PARTS)
+            (fastest * dt_s / MAX_PART_DISPLACEMENT)
+                .ceil()
+                .clamp(1.0, MOST_PARTS)
         } else {
             1.0
         };
@@ -138,7 +141,7 @@ impl TreeSolver<'_> {
                 answer: of_root,
             } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
-            for _ in 0..if moves { SWEEPS } else { 0 } {
+            for _ in 0..if moves { MIDPOINT_ITERATIONS } else { 0 } {
                 let between = plus(&v, &gained, 0.5 * part_s);
                 let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
                 gained = self.part(&middle, &q, &v, part_s).gained;
@@ -214,7 +217,7 @@ impl TreeSolver<'_> {
             round += 1;
             match answer {
                 Some(answer)
-                    if round < GROUND_ROUNDS
+                    if round < SUPPORT_ITERATIONS
                         && base_contacts::update_support_states(
                             motion, &loads, &answer, &mut holds,
                         ) => {}
@@ -286,7 +289,7 @@ impl TreeSolver<'_> {
             }
             .solve();
             sweep += 1;
-            if self.drivers.resist.is_none() || sweep == FRICTION_SWEEPS {
+            if self.drivers.resist.is_none() || sweep == FRICTION_ITERATIONS {
                 return velocity;
             }
             let seen: Vec<f64> = freedoms
@@ -299,7 +302,7 @@ impl TreeSolver<'_> {
                     freedom.inertia * (velocity - freedom.velocity) / part_s - own
                 })
                 .collect();
-            let same = |a: f64, b: f64| (a - b).abs() <= FOUND * b.abs().max(1.0);
+            let same = |a: f64, b: f64| (a - b).abs() <= LOAD_TOLERANCE * b.abs().max(1.0);
             let pairs = external.iter().zip(&seen);
             let speeds = ends.iter().zip(&velocity);
             if pairs.chain(speeds).all(|(a, b)| same(*a, *b)) {

@@ -10,13 +10,13 @@ use rapier3d::geometry::{
 };
 
 /// Distance from a surface within which a point is in contact, m.
-const STANDS_M: f32 = 1e-3;
+const CONTACT_GAP_M: f32 = 1e-3;
 /// Least vertical component of the normal of a supporting surface.
-const UPRIGHT: f32 = 0.5;
+const MIN_NORMAL_Y: f32 = 0.5;
 /// Sine of the largest tilt at which a cylinder lies on its side.
-const LYING: f32 = 0.2;
+const MAX_TILT_SIN: f32 = 0.2;
 /// Relative regularization of the three equations where fewer than three points support.
-const RIDGE: f64 = 1e-9;
+const REGULARIZATION: f64 = 1e-9;
 
 /// A contact point on which a tree stands.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ pub(super) fn of_body(
                     continue;
                 }
                 for contact in &plane.data.solver_contacts {
-                    if contact.dist > STANDS_M {
+                    if contact.dist > CONTACT_GAP_M {
                         continue;
                     }
                     let at = place(engine, pair, plane, contact);
@@ -86,9 +86,9 @@ pub(super) fn carries(
     };
     let on_its_side = |own: &Collider| {
         let axis = own.position().rotation * Vec3::Y;
-        own.shape().as_cylinder().is_some() && axis.dot(normal).abs() < LYING
+        own.shape().as_cylinder().is_some() && axis.dot(normal).abs() < MAX_TILT_SIN
     };
-    normal.y >= UPRIGHT && !engine.colliders.get(own).is_some_and(on_its_side)
+    normal.y >= MIN_NORMAL_Y && !engine.colliders.get(own).is_some_and(on_its_side)
 }
 
 /// Returns the present position of a contact point's surfaces, m. Flat bodies carry their points along; on rolling ones
@@ -151,7 +151,7 @@ pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) 
                 }
             }
         }
-        let ridge = RIDGE * squares.get(0, 0).max(1e-9);
+        let ridge = REGULARIZATION * squares.get(0, 0).max(1e-9);
         for k in 0..3 {
             squares.add(k, k, ridge);
         }

@@ -8,9 +8,9 @@ use crate::engine::RapierWorld;
 
 /// Speed below which a body counts as still, m/s and rad/s: a tenth of a millimetre in the half second after which rapier
 /// lets it sleep.
-const STILL: f32 = 2e-4;
+const REST_SPEED: f32 = 2e-4;
 /// Largest distance of a body in place from where its joint puts it, m and rad.
-const IN_PLACE: f32 = 2e-5;
+const PLACE_TOLERANCE: f32 = 2e-5;
 
 /// A tree in a step: made before it, and reused after it.
 #[derive(Clone, Debug)]
@@ -51,7 +51,7 @@ impl TreeStep {
     }
 
     /// Reads the joints again, after the step. Returns their state before.
-    pub(super) fn again(
+    pub(super) fn reread(
         &mut self,
         engine: &RapierWorld,
         tree: &KinematicTree,
@@ -73,7 +73,9 @@ impl TreeStep {
     ) -> bool {
         let still = |handle| {
             let body = engine.bodies.get(handle);
-            body.is_none_or(|body| body.linvel().length() < STILL && body.angvel().length() < STILL)
+            body.is_none_or(|body| {
+                body.linvel().length() < REST_SPEED && body.angvel().length() < REST_SPEED
+            })
         };
         let stands = |(joint, now): (&&PhysicsJoint, &JointReading)| {
             let Some(body) = engine.bodies.get(joint.child_handle) else {
@@ -85,7 +87,7 @@ impl TreeStep {
             );
             let off = (place.translation - says.translation).length();
             let turn = (place.rotation.inverse() * says.rotation).xyz().length();
-            still(joint.child_handle) && off < IN_PLACE && turn < IN_PLACE
+            still(joint.child_handle) && off < PLACE_TOLERANCE && turn < PLACE_TOLERANCE
         };
         still(tree.root())
             && self

@@ -6,7 +6,7 @@ use rapier3d::dynamics::RigidBody;
 use rapier3d::geometry::ColliderHandle;
 
 /// Surface speed of a cylinder's side above which it counts as rolling, m/s.
-const ROLLS_M_S: f32 = 0.01;
+const MIN_ROLLING_M_S: f32 = 0.01;
 
 /// A cylinder of a body that may move.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ impl RollingCylinder {
     /// Returns whether it turns about its axis.
     pub(crate) fn rolls(&self, body: &RigidBody) -> bool {
         let axis = body.position().rotation * self.axis_in_body;
-        (body.angvel().dot(axis) * self.radius_m).abs() > ROLLS_M_S
+        (body.angvel().dot(axis) * self.radius_m).abs() > MIN_ROLLING_M_S
     }
 
     /// Returns the index of its body.

@@ -12,7 +12,7 @@ use glam::Vec3;
 const MOST_FACES: usize = 512;
 const FEW_FACES: usize = 128;
 /// Difference of distances to two pieces up to which a face belongs to both, m.
-const ALIKE_M: f32 = 1e-4;
+const TIE_M: f32 = 1e-4;
 
 /// A sample of a face, with the area that it represents.
 struct SurfaceSample {
@@ -40,7 +40,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
         for (k, piece) in pieces.iter().enumerate() {
             let apart = (bounds[k].min - spot.point).max(spot.point - bounds[k].max);
             let at_least = apart.max(Vec3::ZERO).length();
-            if is_convex(piece) && at_least <= least + ALIKE_M {
+            if is_convex(piece) && at_least <= least + TIE_M {
                 distances[k] = piece
                     .shape
                     .distance_to_point(&piece.place, spot.point, true);
@@ -48,7 +48,7 @@ pub(super) fn cover_pieces(house: &House, part: PartId, pieces: &mut [CollisionP
             }
         }
         for (area, distance) in areas.iter_mut().zip(distances) {
-            if distance <= least + ALIKE_M
+            if distance <= least + TIE_M
                 && let Some(area) = area.get_mut(spot.slot)
             {
                 *area += spot.area_m2;

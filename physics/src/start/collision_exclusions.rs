@@ -80,8 +80,8 @@ impl StartResolver<'_> {
                     };
                     if touches {
                         pairs.insert((index as u32, entry as u32));
-                        if let Some(owner) = other.toucher.filter(|_| !same) {
-                            through.insert(self.toucher_name(owner));
+                        if let Some(owner) = other.contact_entity.filter(|_| !same) {
+                            through.insert(self.entity_name(owner));
                         }
                     }
                 }
@@ -121,14 +121,14 @@ impl StartResolver<'_> {
     }
 
     fn same_object(&self, entry: &ColliderEntry, plan: &BodyPlan) -> bool {
-        match entry.toucher {
+        match entry.contact_entity {
             Some(ContactEntity::Part(part)) => self.model.house.parts[part].object == plan.object,
             _ => false,
         }
     }
 
-    fn toucher_name(&self, toucher: ContactEntity) -> String {
-        let owner = match toucher {
+    fn entity_name(&self, contact_entity: ContactEntity) -> String {
+        let owner = match contact_entity {
             ContactEntity::Structure(id) => PieceOwner::Structure(id),
             ContactEntity::Part(id) => PieceOwner::Part(id),
             ContactEntity::Agent(id) => return format!("agent {}", id.0),
@@ -149,7 +149,7 @@ impl ObjectPieces {
         let jointed: BTreeSet<ObjectId> = joints.map(|joint| joint.object).collect();
         let mut pieces: BTreeMap<_, Vec<u32>> = BTreeMap::new();
         for (number, entry) in entries.iter().enumerate() {
-            if let Some(ContactEntity::Part(part)) = entry.toucher {
+            if let Some(ContactEntity::Part(part)) = entry.contact_entity {
                 let object = model.house.parts[part].object;
                 if jointed.contains(&object) {
                     let own = pieces.entry((object, entry.body)).or_default();

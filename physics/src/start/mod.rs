@@ -102,7 +102,7 @@ impl StartResolver<'_> {
             }
             placed.put(self.model, index, resolved[index].place);
         }
-        self.tell(&deepest, &resolved, report);
+        self.report_overlaps(&deepest, &resolved, report);
         resolved
     }
 
@@ -119,7 +119,7 @@ impl StartResolver<'_> {
     }
 
     /// Reports the bodies that overlapped something.
-    fn tell(
+    fn report_overlaps(
         &self,
         deepest: &BTreeMap<usize, Penetration>,
         resolved: &[ResolvedBody],

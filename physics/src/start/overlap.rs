@@ -89,7 +89,7 @@ impl StartResolver<'_> {
     }
 
     pub(super) fn owner(&self, entry: usize) -> PieceOwner {
-        match self.entries[entry].toucher {
+        match self.entries[entry].contact_entity {
             Some(ContactEntity::Structure(id)) => PieceOwner::Structure(id),
             Some(ContactEntity::Part(id)) => PieceOwner::Part(id),
             _ => PieceOwner::LastBox,

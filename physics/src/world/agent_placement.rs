@@ -297,7 +297,7 @@ impl PhysicsWorld {
         eye.translation += here.eye_position() - middle;
         let clear = self.dynamics.clear_between(body, here, &eye, &hand);
         if clear.is_none() {
-            self.hands.ungrip(&mut self.dynamics, state, place);
+            self.hands.open_hand(&mut self.dynamics, state, place);
         }
         let handle = self.dynamics.bodies[body].handle;
         if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle) {

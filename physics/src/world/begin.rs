@@ -52,7 +52,7 @@ impl PhysicsWorld {
         let resolved = start.resolve(&mut report);
         self.dynamics.excluded = excluded;
         for (index, resolved) in resolved.iter().enumerate() {
-            self.dynamics.holds[index] = resolved.hold;
+            self.dynamics.statuses[index] = resolved.hold;
             if let Some(rigid) = self
                 .dynamics
                 .engine
@@ -73,7 +73,7 @@ impl PhysicsWorld {
                 if joints::stands_shut(joint, articulation, state.joint_position[joint.id]) {
                     let child = joint.child as usize;
                     let body = self.dynamics.bodies[child];
-                    let hold = &mut self.dynamics.holds[child];
+                    let hold = &mut self.dynamics.statuses[child];
                     joints::shut(&mut self.dynamics.engine, joint, articulation, &body, hold);
                 }
             }

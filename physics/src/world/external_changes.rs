@@ -95,7 +95,7 @@ impl PhysicsWorld {
             };
             let mut disturbed = moved;
             if moved {
-                self.dynamics.holds[index] = BodyStatus::Free;
+                self.dynamics.statuses[index] = BodyStatus::Free;
                 rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 rigid.set_position(pose, true);
             }
@@ -106,9 +106,9 @@ impl PhysicsWorld {
                 angular: rigid.angvel(),
             };
             if !same_velocity(&there, &velocity, arm) {
-                if self.dynamics.holds[index] != BodyStatus::Free {
+                if self.dynamics.statuses[index] != BodyStatus::Free {
                     // A fixed body with a velocity would pass through everything.
-                    self.dynamics.holds[index] = BodyStatus::Free;
+                    self.dynamics.statuses[index] = BodyStatus::Free;
                     rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 }
                 rigid.set_linvel(velocity.linear + velocity.angular.cross(arm), true);
@@ -127,18 +127,18 @@ impl PhysicsWorld {
             let child = joint.child as usize;
             let shut = joints::stands_shut(joint, articulation, position);
             let body = self.dynamics.bodies[child];
-            if self.dynamics.holds[child] == BodyStatus::Latched && !shut {
+            if self.dynamics.statuses[child] == BodyStatus::Latched && !shut {
                 joints::release(
                     &mut self.dynamics.engine,
                     &body,
-                    &mut self.dynamics.holds[child],
+                    &mut self.dynamics.statuses[child],
                 );
             }
             let stand = JointPlacement {
                 position,
                 velocity: state.joint_velocity[joint.id],
                 anew: false,
-                shut: self.dynamics.holds[child] == BodyStatus::Latched,
+                shut: self.dynamics.statuses[child] == BodyStatus::Latched,
             };
             let there = joints::read(&self.dynamics.engine, joint, position.into());
             let put =
@@ -147,8 +147,8 @@ impl PhysicsWorld {
                 self.dynamics.engine.wake_around(body.handle);
                 self.dynamics.laws.placed(joint.id, position);
             }
-            if self.dynamics.holds[child] == BodyStatus::Frozen && put {
-                self.dynamics.holds[child] = BodyStatus::Free;
+            if self.dynamics.statuses[child] == BodyStatus::Frozen && put {
+                self.dynamics.statuses[child] = BodyStatus::Free;
                 if let Some(rigid) = self.dynamics.engine.bodies.get_mut(body.handle) {
                     rigid.set_body_type(body::body_type(BodyStatus::Free), true);
                 }

@@ -111,7 +111,7 @@ impl PhysicsWorld {
             &weights,
         );
         let dynamics = Dynamics {
-            holds: vec![BodyStatus::Free; model.bodies.len()],
+            statuses: vec![BodyStatus::Free; model.bodies.len()],
             model,
             settings,
             engine: assembly.engine,
@@ -203,9 +203,9 @@ impl PhysicsWorld {
     /// several materials has others too); `None` for a thing without contacts. Laws may change the values that act; each
     /// contact event has those of its own surfaces.
     pub fn pair(&self, a: ContactEntity, b: ContactEntity) -> Option<PairContact> {
-        let class = |toucher: ContactEntity| {
+        let class = |contact_entity: ContactEntity| {
             let entry = self.dynamics.entries.iter();
-            let mut found = entry.filter(|entry| entry.toucher == Some(toucher));
+            let mut found = entry.filter(|entry| entry.contact_entity == Some(contact_entity));
             found.next().map(|entry| entry.surface.class(0))
         };
         Some(self.dynamics.table.pair(class(a)?, class(b)?))

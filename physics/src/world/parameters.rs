@@ -48,7 +48,7 @@ impl PhysicsWorld {
                 let factor = model.bodies[body].factor_of(piece, &weights.factors[body]);
                 dynamics::density(piece, factor, weights.altered[body].as_ref())
             });
-            changed |= self.redress(index, values, density);
+            changed |= self.update_collider(index, values, density);
         }
         for (index, inertia) in weights.altered.iter().enumerate() {
             if *inertia == self.dynamics.weights.altered[index] {
@@ -77,7 +77,7 @@ impl PhysicsWorld {
         for agent in 0..self.agents.list.len() {
             let entry = self.agents.list[agent].entry as usize;
             self.dynamics.entries[entry].surface = table.human();
-            changed |= self.redress(entry, values, None);
+            changed |= self.update_collider(entry, values, None);
             changed |= self.agents.take_body(
                 &mut self.dynamics,
                 agent,
@@ -97,7 +97,7 @@ impl PhysicsWorld {
                 joints::release(
                     &mut self.dynamics.engine,
                     &self.dynamics.bodies[child],
-                    &mut self.dynamics.holds[child],
+                    &mut self.dynamics.statuses[child],
                 );
                 longer = true;
             }
@@ -157,7 +157,7 @@ impl PhysicsWorld {
             }
             if let Some(rigid) = self.dynamics.engine.bodies.get_mut(handle)
                 && plan.joint.is_none()
-                && self.dynamics.holds[*index] == BodyStatus::Free
+                && self.dynamics.statuses[*index] == BodyStatus::Free
             {
                 let velocity = state.part_velocity[plan.root()];
                 let arm = rigid.center_of_mass() - rigid.position().translation;
@@ -177,7 +177,7 @@ impl PhysicsWorld {
                 position: state.joint_position[joint.id],
                 velocity: state.joint_velocity[joint.id],
                 anew: true,
-                shut: self.dynamics.holds[joint.child as usize] == BodyStatus::Latched,
+                shut: self.dynamics.statuses[joint.child as usize] == BodyStatus::Latched,
             })
             .collect();
         self.place_joints(state, &stands);
@@ -207,7 +207,7 @@ impl PhysicsWorld {
     }
 
     /// Gives a collider its contact values and density. Returns whether they changed.
-    fn redress(
+    fn update_collider(
         &mut self,
         entry: usize,
         values: ContactProperties<'_>,

@@ -177,7 +177,7 @@ impl PhysicsWorld {
                 "the joint {joint:?} moves it; set that one"
             )));
         }
-        if self.dynamics.holds[index as usize] == BodyStatus::Frozen {
+        if self.dynamics.statuses[index as usize] == BodyStatus::Frozen {
             return Err(unmovable(
                 "it overlapped something at the start and stands for good".to_owned(),
             ));

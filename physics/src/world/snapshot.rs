@@ -43,7 +43,7 @@ const HEADER: usize = 4 + 4 + 8 + 8 + 8;
 #[derive(Clone, Serialize, Deserialize)]
 struct WorldMemory {
     tick: u64,
-    holds: Vec<BodyStatus>,
+    statuses: Vec<BodyStatus>,
     passive_velocities: Vec<PassiveVelocity>,
     excluded: CollisionExclusions,
     grips: Vec<HeldObject>,
@@ -123,7 +123,7 @@ impl PhysicsWorld {
         SnapshotData {
             memory: WorldMemory {
                 tick: self.dynamics.tick,
-                holds: self.dynamics.holds.clone(),
+                statuses: self.dynamics.statuses.clone(),
                 passive_velocities: self.agents.passive_velocities.clone(),
                 excluded: self.dynamics.excluded.clone(),
                 grips: self.hands.grips.clone(),
@@ -182,13 +182,13 @@ impl PhysicsWorld {
             .map_err(|error| PhysicsError::Snapshot(error.to_string()))?;
         let memory = shot.memory;
         let bodies = shot.bodies.0.into_owned();
-        let foreign = memory.holds.len() != self.dynamics.bodies.len()
+        let foreign = memory.statuses.len() != self.dynamics.bodies.len()
             || memory.pulls.len() != self.articulation.joints.len()
             || memory.passive_velocities.len() != state.agents.len();
         if foreign {
             return refuse(format!(
                 "it has {} bodies and {} agents; the world has {} and the state {}",
-                memory.holds.len(),
+                memory.statuses.len(),
                 memory.passive_velocities.len(),
                 self.dynamics.bodies.len(),
                 state.agents.len()
@@ -286,7 +286,7 @@ impl PhysicsWorld {
         self.agents.list = agents;
         *self.dynamics.laws = laws;
         self.dynamics.tick = memory.tick;
-        self.dynamics.holds = memory.holds;
+        self.dynamics.statuses = memory.statuses;
         self.agents.passive_velocities = memory.passive_velocities;
         self.dynamics.excluded = memory.excluded;
         self.hands.grips = memory.grips;

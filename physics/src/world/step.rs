@@ -42,8 +42,9 @@ impl PhysicsWorld {
             placed = self.physics_step(state, events);
             self.hands.keep_inside(&mut self.dynamics);
         }
-        self.lay_sleepers_aside(tick_before, placed);
-        self.contacts.tell(&self.dynamics, events, first_event);
+        self.cache_sleepers(tick_before, placed);
+        self.contacts
+            .emit_remaining(&self.dynamics, events, first_event);
         finish_movement(&self.dynamics, state, &ways);
         self.hands.end_separations(&mut self.dynamics, state);
         // A body that slept all the time is as it was written.
@@ -101,7 +102,7 @@ impl PhysicsWorld {
 
     /// Caches bodies that fell asleep since `tick_before`. Where the last physics step placed something, its colliders
     /// follow, so that a snapshot continues with the same bits.
-    fn lay_sleepers_aside(&mut self, tick_before: u64, placed: bool) {
+    fn cache_sleepers(&mut self, tick_before: u64, placed: bool) {
         let hands = &self.hands;
         self.dynamics
             .cache_sleeping(tick_before, |body| hands.involve(body));

@@ -7,7 +7,7 @@ use glam::Vec3;
 /// Boxes in a leaf.
 const LEAF: usize = 4;
 /// Most calls of `counts` for each box to be found.
-const ASKED_FOR_ONE: usize = 32;
+const TESTS_PER_BOX: usize = 32;
 
 /// A tree over fixed boxes, to find those that touch another box without testing all of them.
 ///
@@ -62,7 +62,7 @@ impl BoxTree {
         }
         let middle = reach.center();
         let mut asked = 0;
-        let most_asked = most.saturating_mul(ASKED_FOR_ONE);
+        let most_asked = most.saturating_mul(TESTS_PER_BOX);
         let mut open = vec![0_usize];
         while let Some(k) = open.pop() {
             let node = &self.tree.nodes[k];

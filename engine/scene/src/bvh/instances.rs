@@ -101,7 +101,7 @@ pub struct InstanceSet {
 }
 
 /// The parent of a node without one.
-const NOBODY: (u32, u32) = (u32::MAX, 0);
+const NO_PARENT: (u32, u32) = (u32::MAX, 0);
 
 impl InstanceSet {
     /// A set of the instances in the order in which hits number them.
@@ -121,7 +121,7 @@ impl InstanceSet {
                 mask,
                 mesh_from_world,
                 bounds: Aabb::EMPTY,
-                home: NOBODY,
+                home: NO_PARENT,
             });
             let last = set.placed.len() - 1;
             set.placed[last].stand(&world_from_mesh);
@@ -167,7 +167,7 @@ impl InstanceSet {
         };
         placed.stand(world_from_mesh);
         let (mut place, mut bounds) = (placed.home, placed.bounds);
-        while place != NOBODY {
+        while place != NO_PARENT {
             let node = &mut self.tree.nodes[place.0 as usize];
             node.set_bounds(place.1 as usize, &bounds);
             bounds = node.bounds();
@@ -195,7 +195,7 @@ impl InstanceSet {
             NodeLink::leaf(order[leaf.start] as usize)
         });
         self.parents.clear();
-        self.parents.resize(self.tree.nodes.len(), NOBODY);
+        self.parents.resize(self.tree.nodes.len(), NO_PARENT);
         for (index, node) in self.tree.nodes.iter().enumerate() {
             for child in (0..WIDTH).filter(|child| node.present & (1 << child) != 0) {
                 let home = (index as u32, child as u32);

@@ -4,21 +4,21 @@ use super::{ColumnsError, FLOAT, FloatLayout, push_varint, read_varint, take};
 use std::collections::HashMap;
 
 /// Columns with fewer floats than this are not searched for repeated rows.
-const FEW: usize = 64;
+const MIN_FLOATS: usize = 64;
 /// Repetitions below this mean number are not worth back references.
-const SELDOM: usize = 2;
+const MIN_REPEATS: usize = 2;
 /// Largest deviation of the square of a unit row's length from 1.
-const UNIT: f32 = 1e-5;
+const UNIT_TOLERANCE: f32 = 1e-5;
 /// Largest deviation of the last component of a unit row from the one computed from the others, in steps of a float.
-const STEPS: i32 = 15;
+const MAX_UNIT_STEPS: i32 = 15;
 
 /// Writes floats in the layout that usually packs best.
 pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     for width in FloatLayout::WIDTHS {
-        if floats.len() >= FEW && floats.len().is_multiple_of(width) {
+        if floats.len() >= MIN_FLOATS && floats.len().is_multiple_of(width) {
             let rows = RowDictionary::of(floats, width);
             let unit = rows.units.is_some();
-            if unit || rows.count_new(width) * SELDOM < rows.back.len() {
+            if unit || rows.count_new(width) * MIN_REPEATS < rows.back.len() {
                 rows.write(bytes);
                 return FloatLayout::Rows { width, unit };
             }
@@ -27,7 +27,7 @@ pub(super) fn write(floats: &[u32], bytes: &mut Vec<u8>) -> FloatLayout {
     let mut sorted = floats.to_vec();
     sorted.sort_unstable();
     sorted.dedup();
-    if sorted.len() * SELDOM < floats.len() {
+    if sorted.len() * MIN_REPEATS < floats.len() {
         bytes.extend(floats.iter().flat_map(|bits| bits.to_le_bytes()));
         return FloatLayout::Plain;
     }
@@ -198,12 +198,13 @@ fn unit_code(row: &[u32]) -> u8 {
     };
     let found = size(largest);
     let steps = (found.to_bits().cast_signed()).wrapping_sub(expected.to_bits().cast_signed());
-    let near = (found * found - expected * expected).abs() < UNIT && steps.abs() <= STEPS;
+    let near = (found * found - expected * expected).abs() < UNIT_TOLERANCE
+        && steps.abs() <= MAX_UNIT_STEPS;
     if !near {
         return 0;
     }
     let negative = row[largest] >> 31;
-    let code = ((steps + STEPS + 1).cast_unsigned() * 2 + negative) * 4 + largest as u32;
+    let code = ((steps + MAX_UNIT_STEPS + 1).cast_unsigned() * 2 + negative) * 4 + largest as u32;
     code as u8
 }
 
@@ -215,7 +216,7 @@ fn unit_row(code: u8, others: &[u32]) -> Result<impl Iterator<Item = u32>, Colum
         place,
     };
     let (largest, negative) = (usize::from(code & 3), u32::from(code >> 2 & 1));
-    let steps = i32::from(code >> 3) - STEPS - 1;
+    let steps = i32::from(code >> 3) - MAX_UNIT_STEPS - 1;
     let expected = last_part(others.iter().copied());
     let (Some(expected), true) = (expected, largest <= others.len()) else {
         return Err(refused);

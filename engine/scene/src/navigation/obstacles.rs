@@ -11,7 +11,7 @@ use glam::{Affine3A, Vec3};
 use std::collections::BTreeMap;
 
 /// Openness from which a door counts as open.
-const STANDS_OPEN: f32 = 0.8;
+const MIN_OPENNESS: f32 = 0.8;
 
 /// Triangles between checks for cancellation.
 const TRIANGLES_PER_CHECK: usize = 64;
@@ -120,7 +120,7 @@ pub(super) fn openness(house: &House, state: &State, ground: &StaticGrid, passag
 
 /// Returns whether a door of this openness lets an agent pass.
 pub(super) fn stands_open(openness: f32) -> bool {
-    openness >= STANDS_OPEN
+    openness >= MIN_OPENNESS
 }
 
 /// Returns the pose of a part for navigation; `None` while it is held.

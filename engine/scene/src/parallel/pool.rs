@@ -36,7 +36,7 @@ pub(super) fn pool(count: usize) -> Option<Arc<rayon::ThreadPool>> {
 
 /// Runs `work` on the pool. A thread whose call can be cancelled polls while it waits.
 pub(super) fn install<R: Send>(pool: &rayon::ThreadPool, work: impl FnOnce() -> R + Send) -> R {
-    if !interrupt::asks() {
+    if !interrupt::polls() {
         return pool.install(work);
     }
     let (mut outcome, done) = (None, OneShotEvent::default());

@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 /// The share of an object's box that must lie in the container's.
 const INSIDE_SHARE: f32 = 0.8;
 /// Largest height by which an object may stick out of a container's box, m.
-const BRIM_M: f32 = 0.02;
+const MAX_PROTRUSION_M: f32 = 0.02;
 /// Largest distance of an object's middle from a marked space, m.
 const SPACE_MARGIN_M: f32 = 0.01;
 /// Number of the rays from an object's middle to the four sides and down that must hit its container.
-const WALLS: usize = 4;
+const MIN_ENCLOSING_RAYS: usize = 4;
 
 /// The support relation of two things in contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -104,7 +104,7 @@ impl State {
             .filter(|container| {
                 let outer = boxes[container.index()];
                 // An object of which four fifths lie inside has its middle inside.
-                outer.grown(2.0 * BRIM_M).contains(middle)
+                outer.grown(2.0 * MAX_PROTRUSION_M).contains(middle)
                     && house.encloses(self, *container, &outer, &inner)
             })
             .collect()
@@ -128,7 +128,8 @@ impl House {
     /// one, grown by 2 cm.
     pub fn fits_in(outer: &Aabb, inner: &Aabb) -> bool {
         // The smaller volume is the content; this makes the relation asymmetric.
-        inner.volume() < outer.volume() && share_inside(inner, &outer.grown(BRIM_M)) >= INSIDE_SHARE
+        inner.volume() < outer.volume()
+            && share_inside(inner, &outer.grown(MAX_PROTRUSION_M)) >= INSIDE_SHARE
     }
 }
 
@@ -186,7 +187,7 @@ fn surrounds(
             for (met, ray) in met.iter_mut().zip(rays) {
                 *met = *met || ray_meets(corners, point, ray);
             }
-            if met.iter().filter(|met| **met).count() >= WALLS {
+            if met.iter().filter(|met| **met).count() >= MIN_ENCLOSING_RAYS {
                 return true;
             }
         }

@@ -12,7 +12,7 @@ use rapier3d::math::Pose as RapierPose;
 use std::sync::Arc;
 
 /// Largest offset of a body's centre of mass, as a share of its box's edges.
-const FARTHEST: f32 = 0.75;
+const MAX_OFFSET: f32 = 0.75;
 
 const fn offset(name: &'static str) -> ParamInfo {
     ParamInfo {
@@ -61,7 +61,7 @@ fn install(
     for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
         // A thin object whose centre of mass is a metre away rotates about that: contacts lose it, and it falls through floors.
         let size = plan.bounds(&RapierPose::IDENTITY).size();
-        if !offset.abs().cmple(size * FARTHEST).all() {
+        if !offset.abs().cmple(size * MAX_OFFSET).all() {
             let name = &model.house.objects[plan.object].name;
             return Err(PhysicsError::Range {
                 at: format!("law {}, object {name:?} of {size} m", info.id),

@@ -68,7 +68,7 @@ pub(super) fn loads(stage: &LawContext<'_>, scope: &ContactScope) -> Vec<Contact
                 b.surface.class(plane.subshape2),
             );
             let side = |entry: &ColliderEntry, class: u16| ContactSide {
-                toucher: entry.toucher,
+                contact_entity: entry.contact_entity,
                 substance: stage.table.substance(class),
                 rotation: Quat::IDENTITY,
             };

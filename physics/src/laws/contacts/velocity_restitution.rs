@@ -9,7 +9,7 @@ use dwell_scene::{LawInfo, LawSpec, State};
 use std::sync::Arc;
 
 /// From 1 on, resting bodies would bounce.
-const LIVELIEST: f32 = 0.99;
+const MAX_RESTITUTION: f32 = 0.99;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -75,6 +75,6 @@ impl ContactLaw for VelocityRestitution {
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let speed = touch.approach_speed_m_s().max(0.0);
         let e = values.restitution - self.slope * (speed - self.reference);
-        values.restitution = e.clamp(0.0, LIVELIEST);
+        values.restitution = e.clamp(0.0, MAX_RESTITUTION);
     }
 }
