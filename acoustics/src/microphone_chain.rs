@@ -5,8 +5,9 @@ use crate::laws::{
     self,
     microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory, fade, rise},
 };
-use dwell_scene::LawSpec;
+use dwell_scene::{LawInfo, LawSpec};
 use serde::{Deserialize, Serialize};
+use std::borrow::Borrow;
 
 /// The installed microphone laws, one after the other.
 ///
@@ -29,7 +30,13 @@ struct ChainStage {
     stage: Box<dyn MicrophoneStage>,
 }
 
-/// The state of microphone laws that a snapshot holds.
+impl Borrow<LawSpec> for ChainStage {
+    fn borrow(&self) -> &LawSpec {
+        &self.spec
+    }
+}
+
+/// What must be remembered of microphones so that they go on bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ChainMemory {
     channels: u64,
@@ -106,20 +113,16 @@ impl MicrophoneChain {
         }
         let size = samples.len() / channels.max(1);
         let mut old = samples.to_vec();
-        let mut known: Vec<(&LawSpec, StageMemory)> = Vec::with_capacity(before.len());
+        let mut memories: Vec<StageMemory> = Vec::with_capacity(before.len());
         for link in &mut before {
-            let memory = link.stage.memory();
+            memories.push(link.stage.memory());
             link.hear(listener, false, &mut old);
-            known.push((&link.spec, memory));
         }
-        for link in &mut self.chain {
-            // Two laws of one kind on one target are distinguished by their order.
-            let same = |(spec, _): &(&LawSpec, StageMemory)| {
-                spec.id == link.spec.id && spec.target == link.spec.target
-            };
-            if let Some(place) = known.iter().position(same) {
-                link.stage.recall(&known.remove(place).1);
-            } else if link.stage.needs_fade_in() {
+        let predecessors = LawSpec::predecessors(&before, &self.chain);
+        for (link, predecessor) in self.chain.iter_mut().zip(predecessors) {
+            if let Some(predecessor) = predecessor {
+                link.stage.recall(&memories[predecessor]);
+            } else if link.stage.starts_softly() {
                 samples.chunks_exact_mut(size.max(1)).for_each(rise);
             }
             link.hear(listener, false, samples);
@@ -179,8 +182,8 @@ impl MicrophoneChain {
     pub(crate) fn restore(rate_hz: f64, memory: ChainMemory) -> Result<Self, AcousticsError> {
         let mut chain = Vec::with_capacity(memory.chain.len());
         for (place, spec, stage) in memory.chain {
-            let info = laws::all().iter().find(|info| info.id == spec.id);
-            let sound = info.is_some_and(|info| spec.check(info).is_ok());
+            let info = LawInfo::find(laws::all(), &spec.id);
+            let sound = info.is_ok_and(|info| spec.check(info).is_ok());
             let link = sound
                 .then(|| ChainStage::new(place, &spec, rate_hz))
                 .flatten();

@@ -43,7 +43,6 @@ fn each() -> Vec<LawSpec> {
     ];
     assert!(
         laws::all()
-            .iter()
             .map(|law| law.id)
             .eq(every.iter().map(|law| law.id.as_str()))
     );
@@ -195,7 +194,7 @@ fn an_impulse_in_a_stream_is_the_response() {
 fn a_law_at_its_default_changes_no_bit() {
     let hall = room();
     let signal = noise(4 * BLOCK);
-    let defaults: Vec<LawSpec> = laws::all().iter().map(|info| law(info.id, &[])).collect();
+    let defaults: Vec<LawSpec> = laws::all().map(|info| info.spec(&[])).collect();
     let plain = play(&hall, &mut stream(&hall), &signal, |_| Vec::new());
     let with = play(&hall, &mut stream(&hall), &signal, |_| defaults.clone());
     assert_eq!(plain, with);

@@ -13,7 +13,6 @@ use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{House, HouseData, LawSpec, Pose, State};
 use glam::Vec3;
-use std::collections::BTreeMap;
 
 const BLOCK: usize = 800;
 const SOURCE: Vec3 = Vec3::new(1.2, 1.5, 1.4);
@@ -419,12 +418,10 @@ fn responses_come_back_to_the_bit() {
         let mut through = stream(&hall, StreamConfig::rl());
         for (k, block) in signal.chunks_exact(BLOCK).enumerate() {
             if k == 9 {
-                state.laws.push(LawSpec {
-                    id: "temperature_error".into(),
-                    version: 1,
-                    target: None,
-                    params: BTreeMap::from([("offset_k".to_owned(), 10.0)]),
-                });
+                let warmer = [("offset_k", 10.0)];
+                state
+                    .laws
+                    .push(LawSpec::new("temperature_error", 1, &warmer));
             }
             let one = |id| ActiveSource {
                 id,
@@ -464,12 +461,8 @@ fn microphones_are_silent_unless_a_law_says_otherwise() {
         )
         .unwrap();
     assert!(out.iter().all(|x| *x == 0.0));
-    state.laws.push(LawSpec {
-        id: "microphone_noise".into(),
-        version: 1,
-        target: None,
-        params: BTreeMap::from([("sigma_pa".to_owned(), 0.01)]),
-    });
+    let noise = LawSpec::new("microphone_noise", 1, &[("sigma_pa", 0.01)]);
+    state.laws.push(noise);
     let mut blocks = Vec::new();
     for k in 0..3 {
         stream

@@ -9,6 +9,7 @@ pub mod validity;
 
 use dwell::{Engines, Env, EnvConfig, SensorConfig};
 use dwell_houses::{Robot, open_robot};
+use dwell_scene::{LawInfo, LawSpec};
 use serde_json::json;
 use std::sync::{Arc, OnceLock};
 
@@ -39,6 +40,15 @@ pub fn arm() -> Robot {
     let text = text.replace(palm, r#"<box size="0.02 0.08 0.04"/>"#);
     std::fs::write(&path, text).expect("a folder of our own can be written to");
     open_robot(&path).expect("the arm opens").0
+}
+
+/// A law of some engine with these values.
+///
+/// # Panics
+/// When no engine has the law.
+pub fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
+    let law = LawInfo::find(dwell::laws::all(), id).expect("an engine has the law");
+    law.spec(values)
 }
 
 /// An environment of the first task in the apartment with these sensors, all small.

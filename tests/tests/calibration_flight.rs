@@ -9,6 +9,7 @@ mod calibration_support;
 
 use calibration_support::{Files, Random, runge_kutta, table};
 use dwell_calibration::{CalibrationReport, CalibrationVerdict, Options, calibrate};
+use dwell_scene::LawInfo;
 use std::f64::consts::TAU;
 
 /// The forces on the ball besides gravity.
@@ -158,14 +159,8 @@ fn quadratic_drag_is_named_with_its_coefficient() {
         println!("seed {seed}: {}", table(&report));
         let laws = report.found_laws();
         assert_eq!((laws.len(), laws[0].id.as_str()), (1, "drag"));
-        laws[0]
-            .check(
-                dwell_physics::laws::all()
-                    .iter()
-                    .find(|law| law.id == "drag")
-                    .unwrap(),
-            )
-            .unwrap();
+        let drag = LawInfo::find(dwell_physics::laws::all(), "drag").unwrap();
+        laws[0].check(drag).unwrap();
     }
 }
 

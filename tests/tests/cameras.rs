@@ -12,6 +12,7 @@ use dwell_render::{Camera, ImageChannels, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, House, LawSpec, Pose, ShoeboxMaterials};
+use dwell_tests::law;
 use glam::{Quat, Vec2, Vec3};
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -27,18 +28,6 @@ fn room() -> Arc<Engines> {
         material.texture = None;
     }
     Engines::new(Arc::new(House::new(data).unwrap()))
-}
-
-fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-    }
 }
 
 /// An agent in the room that turns and walks, after a few steps; a step is 0.05 s.

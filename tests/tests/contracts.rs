@@ -128,15 +128,9 @@ fn laws_at_their_default_change_nothing() {
     };
     let bare = run(Vec::new());
     let specs: Vec<LawSpec> = dwell::laws::all()
-        .map(|info| LawSpec {
-            id: info.id.to_owned(),
-            version: info.version,
-            target: None,
-            params: info
-                .params
-                .iter()
-                .map(|param| (param.name.to_owned(), param.default))
-                .collect(),
+        .map(|info| {
+            let params = info.params.iter().map(|param| (param.name, param.default));
+            info.spec(&params.collect::<Vec<_>>())
         })
         .collect();
     // All at once; one by one only to say which.

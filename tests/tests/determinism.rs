@@ -8,7 +8,8 @@
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, WorldConfig};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, LawSpec, Locomotion};
+use dwell_scene::{AgentBody, Locomotion};
+use dwell_tests::law;
 use dwell_tests::observations::observe;
 use std::path::PathBuf;
 use std::process::Command;
@@ -23,18 +24,6 @@ const SEED: u64 = 2024;
 const AGAIN: &str = "DWELL_DETERMINISM_OUT";
 /// Writes golden files anew. The golden digest asks that its value says why.
 const UPDATE: &str = "UPDATE_GOLDEN";
-
-fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-    }
-}
 
 /// An environment with every sensor, noise in what it sees and hears, and wind.
 fn noisy_env() -> Env {

@@ -62,7 +62,6 @@ fn heading(engine: EngineKind) -> &'static str {
         EngineKind::Physics => "Physics",
         EngineKind::Acoustics => "Sound",
         EngineKind::Render => "Cameras and depth sensors",
-        EngineKind::Measurement => "Clocks and trackers",
     }
 }
 
@@ -126,7 +125,6 @@ fn the_page_lists_every_law() {
         EngineKind::Physics,
         EngineKind::Acoustics,
         EngineKind::Render,
-        EngineKind::Measurement,
     ] {
         let laws: Vec<&LawInfo> = dwell::laws::all()
             .filter(|law| law.engine == engine)

@@ -4,8 +4,8 @@
 
 use dwell::{Batch, DiscreteAction, Env, EnvConfig, SensorConfig, WorldConfig};
 use dwell_render::BackEnd;
-use dwell_scene::LawSpec;
 use dwell_scene::parallel::Threads;
+use dwell_tests::law;
 use dwell_tests::pixel_counts::{adapter_paths, try_observe};
 use serde_json::json;
 
@@ -17,12 +17,7 @@ fn env(renderer: &BackEnd, edge: u32, blurs: bool) -> Env {
         kind: kind.to_owned(),
         settings: json!({"width": edge, "height": edge, "preset": "flat"}),
     };
-    let blur = LawSpec {
-        id: "motion_blur".to_owned(),
-        version: 1,
-        target: None,
-        params: [("exposure_s".to_owned(), 0.02)].into_iter().collect(),
-    };
+    let blur = law("motion_blur", &[("exposure_s", 0.02)]);
     let config = EnvConfig {
         sensors: Some(sensors.map(sensor).to_vec()),
         world: WorldConfig {

@@ -7,9 +7,8 @@ use dwell::{Batch, Env, EnvConfig, SensorConfig, World, WorldConfig};
 use dwell_physics::BodyState;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{
-    AgentBody, AgentId, House, LawSpec, Mobility, PartId, Pose, ShoeboxMaterials, Velocity,
-};
+use dwell_scene::{AgentBody, AgentId, House, Mobility, PartId, Pose, ShoeboxMaterials, Velocity};
+use dwell_tests::law;
 use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -95,12 +94,7 @@ fn laws_by_address_live_in_the_state() {
 /// Settings install a law by its address as by its specification, and a law's defaults need no words.
 #[test]
 fn parameters_of_laws_are_settings_too() {
-    let spec = LawSpec {
-        id: "drag".to_owned(),
-        version: 1,
-        target: None,
-        params: BTreeMap::from([("c_d".to_owned(), 1.5), ("area_m2".to_owned(), 0.0)]),
-    };
+    let spec = law("drag", &[("c_d", 1.5), ("area_m2", 0.0)]);
     let mut by_spec = world_with(&WorldConfig {
         laws: vec![spec],
         ..WorldConfig::default()

@@ -10,6 +10,7 @@ use dwell_physics::BodyState;
 use dwell_render::{BackEnd, Camera, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::{AgentId, LawSpec, Pose, Velocity};
+use dwell_tests::law;
 use dwell_tests::pixel_counts::{adapter_paths, observe};
 use glam::Vec3;
 use serde_json::json;
@@ -18,21 +19,12 @@ const WIDTH: usize = 24;
 const HEIGHT: usize = 8;
 const PIXELS: usize = WIDTH * HEIGHT;
 
-fn law(id: &str, name: &str, value: f64) -> LawSpec {
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: [(name.to_owned(), value)].into_iter().collect(),
-    }
-}
-
 fn rolls() -> LawSpec {
-    law("rolling_shutter", "line_s", 2e-3)
+    law("rolling_shutter", &[("line_s", 2e-3)])
 }
 
 fn blurs() -> LawSpec {
-    law("motion_blur", "exposure_s", 0.02)
+    law("motion_blur", &[("exposure_s", 0.02)])
 }
 
 /// Flat and lit pictures, so that a world has two cameras.

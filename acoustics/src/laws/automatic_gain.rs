@@ -1,9 +1,9 @@
 //! Automatic gain control of recorders.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory};
-use super::{AcousticLaw, LawNumbers, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -82,7 +82,7 @@ struct AutomaticGain {
     square: f64,
 }
 
-fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let target = values.get("target_pa") * values.get("target_pa");
     let pace = |name| -libm::expm1(-1.0 / (values.get(name) * rate_hz));
     Box::new(AutomaticGain {

@@ -1,14 +1,14 @@
 //! Background noise of a place: ventilation, traffic, mains hum.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageContext, StageMemory};
-use super::{AcousticLaw, LawNumbers, SignalStage};
+use super::{AcousticLaw, SignalStage};
 use crate::bands::{self, BAND_COUNT};
 use crate::fft::RealFft;
 
 use crate::receiver_channel::ReceiverChannel;
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 use glam::DVec3;
 use realfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
@@ -97,7 +97,7 @@ struct NoiseField {
     made: Vec<Vec<f32>>,
 }
 
-fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let hop = ((HOP_S * rate_hz) as usize).next_power_of_two();
     let fft = RealFft::new(2 * hop);
     let step_hz = rate_hz / fft.len() as f64;

@@ -1,9 +1,9 @@
 //! Recorders whose clock is fast or slow.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StageMemory, fade, rise};
-use super::{AcousticLaw, LawNumbers, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 use std::sync::LazyLock;
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
@@ -98,7 +98,7 @@ struct DriftingClock {
     history: Vec<Vec<f32>>,
 }
 
-fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let drift = 1e-6 * values.get("drift_ppm");
     let offset = values.get("offset_s") * rate_hz / (1.0 + drift);
     Box::new(DriftingClock {

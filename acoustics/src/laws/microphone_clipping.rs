@@ -1,9 +1,9 @@
 //! Clipping of microphones.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
-use super::{AcousticLaw, LawNumbers, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -43,7 +43,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Microphones(install),
 };
 
-fn install(values: LawNumbers<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let limit = values.get("limit_pa") as f32;
     let knee = limit * (1.0 - values.get("softness") as f32);
     let room = limit - knee;

@@ -1,9 +1,9 @@
 //! Self-noise of microphones.
 
 use super::microphone_stage::{MicrophoneStage, SampleBlock, StatelessStage};
-use super::{AcousticLaw, LawNumbers, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -31,7 +31,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Microphones(install),
 };
 
-fn install(values: LawNumbers<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let sigma = values.get("sigma_pa");
     Box::new(StatelessStage(move |block: &mut SampleBlock<'_>| {
         let mut stream = block.key.stream();

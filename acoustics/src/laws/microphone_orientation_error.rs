@@ -1,8 +1,8 @@
 //! Orientation error of microphones and heads.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage, angle};
 use dwell_scene::law::EngineKind;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -30,7 +30,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(turn),
 };
 
-fn turn(values: LawNumbers<'_>, effects: &mut PathEffects) {
+fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
     let names = ["yaw_deg", "pitch_deg", "roll_deg"];
     for (sum, name) in effects.receiver_turn_deg.iter_mut().zip(names) {
         *sum += values.get(name) as f32;

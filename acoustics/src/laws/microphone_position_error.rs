@@ -1,8 +1,8 @@
 //! Position error of microphones.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 /// The parameter of the offset along one axis.
 const fn offset(name: &'static str) -> ParamInfo {
@@ -35,7 +35,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(apply_offset),
 };
 
-fn apply_offset(values: LawNumbers<'_>, effects: &mut PathEffects) {
+fn apply_offset(values: LawValues<'_>, effects: &mut PathEffects) {
     let names = ["right_m", "up_m", "back_m"];
     for (sum, name) in effects.receiver_offset_m.iter_mut().zip(names) {
         *sum += values.get(name) as f32;

@@ -2,10 +2,10 @@
 
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
-use super::{AcousticLaw, BAND_DB, LawNumbers, SignalStage};
+use super::{AcousticLaw, BAND_DB, SignalStage, bands_db};
 use crate::minimum_phase::PathFilters;
-use dwell_scene::LawInfo;
 use dwell_scene::law::EngineKind;
+use dwell_scene::{LawInfo, LawValues};
 
 /// Duration of the transform, s: the lowest band is as wide as its inverse.
 const SPAN_S: f64 = 0.064;
@@ -30,9 +30,9 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Microphones(install),
 };
 
-fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let filters = PathFilters::spanning(rate_hz, SPAN_S);
-    let energy = values.bands().map(|db| libm::powf(10.0, db / 10.0));
+    let energy = bands_db(values).map(|db| libm::powf(10.0, db / 10.0));
     let (mut spectrum, amplitude) = filters.spectrum(&energy, None);
     let taps = filters.impulse_response(&mut filters.fft(), &mut spectrum);
     let taps = taps.into_iter().map(|x| amplitude * x).collect();

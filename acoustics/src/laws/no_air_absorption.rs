@@ -1,8 +1,8 @@
 //! Reduced absorption by air.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -30,6 +30,6 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(omit_air_absorption),
 };
 
-fn omit_air_absorption(values: LawNumbers<'_>, effects: &mut PathEffects) {
+fn omit_air_absorption(values: LawValues<'_>, effects: &mut PathEffects) {
     effects.air_absorption *= 1.0 - values.get("missing");
 }

@@ -2,9 +2,9 @@
 
 use super::fir::FirFilter;
 use super::microphone_stage::MicrophoneStage;
-use super::{AcousticLaw, LawNumbers, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 /// Most taps on either side of a delay between samples.
 const HALF: usize = 32;
@@ -38,7 +38,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Microphones(install),
 };
 
-fn install(values: LawNumbers<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
+fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {
     let delay = values.get("delay_s") * rate_hz;
     let whole = delay.floor();
     let fraction = delay - whole;

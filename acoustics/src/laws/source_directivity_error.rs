@@ -1,8 +1,8 @@
 //! Orientation and directivity errors of sources.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage, angle};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage, angle};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -44,7 +44,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(turn),
 };
 
-fn turn(values: LawNumbers<'_>, effects: &mut PathEffects) {
+fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
     effects.source_turn_deg[0] += values.get("yaw_deg") as f32;
     effects.source_turn_deg[1] += values.get("pitch_deg") as f32;
     effects.source_sharpness += values.get("sharpness") as f32;

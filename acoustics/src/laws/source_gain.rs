@@ -1,8 +1,8 @@
 //! Level error of sources.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -29,7 +29,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(apply_gain),
 };
 
-fn apply_gain(values: LawNumbers<'_>, effects: &mut PathEffects) {
+fn apply_gain(values: LawValues<'_>, effects: &mut PathEffects) {
     for db in &mut effects.source_db {
         *db += values.get("gain_db") as f32;
     }

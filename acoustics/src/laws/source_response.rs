@@ -1,8 +1,8 @@
 //! Spectrum error of sources.
 
-use super::{AcousticLaw, BAND_DB, LawNumbers, PathEffects, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, BAND_DB, PathEffects, SignalStage, bands_db};
 use dwell_scene::law::EngineKind;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -24,8 +24,8 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(apply_response),
 };
 
-fn apply_response(values: LawNumbers<'_>, effects: &mut PathEffects) {
-    for (sum, db) in effects.source_db.iter_mut().zip(values.bands()) {
+fn apply_response(values: LawValues<'_>, effects: &mut PathEffects) {
+    for (sum, db) in effects.source_db.iter_mut().zip(bands_db(values)) {
         *sum += db;
     }
 }

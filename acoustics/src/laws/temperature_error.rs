@@ -1,8 +1,8 @@
 //! Error of the air temperature.
 
-use super::{AcousticLaw, LawNumbers, PathEffects, SignalStage};
-use dwell_scene::LawInfo;
+use super::{AcousticLaw, PathEffects, SignalStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: AcousticLaw = AcousticLaw {
     info: LawInfo {
@@ -31,6 +31,6 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
     acts: SignalStage::Propagation(apply_temperature_error),
 };
 
-fn apply_temperature_error(values: LawNumbers<'_>, effects: &mut PathEffects) {
-    effects.temperature_error_k += values.get("offset_k");
+fn apply_temperature_error(values: LawValues<'_>, effects: &mut PathEffects) {
+    effects.warmer_k += values.get("offset_k");
 }

@@ -10,15 +10,7 @@ use dwell_scene::random::RandomKey;
 pub(super) const RATE_HZ: f64 = 16_000.0;
 
 pub(super) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: values
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-    }
+    LawSpec::new(id, 1, values)
 }
 
 /// Calls a test with the context of `receiver` in the place `room`, in the block `own`.

@@ -33,15 +33,7 @@ pub(crate) fn material(absorption: f32, scattering: f32) -> Material {
 
 /// A law with some of its values given.
 pub(crate) fn law(id: &str, values: &[(&str, f64)]) -> LawSpec {
-    let params = values
-        .iter()
-        .map(|(name, value)| ((*name).to_owned(), *value));
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params.collect(),
-    }
+    LawSpec::new(id, 1, values)
 }
 
 /// Settings without air, transmission or diffraction, with walls that mirror all waves and reflect at all angles alike, at

@@ -153,11 +153,6 @@ fn read(
 fn inertia(body: &TrackedBody) -> LawSpec {
     let moments = body.inertia_kg_m2.iter().zip(body.solid_inertia_kg_m2());
     let errors = moments.map(|(moment, solid)| moment / solid - 1.0);
-    let names = ["x", "y", "z"].map(str::to_owned);
-    LawSpec {
-        id: "inertia_error".to_owned(),
-        version: 1,
-        target: Some(body.name.clone()),
-        params: names.into_iter().zip(errors).collect(),
-    }
+    let params: Vec<(&str, f64)> = ["x", "y", "z"].into_iter().zip(errors).collect();
+    LawSpec::new("inertia_error", 1, &params).on(&body.name)
 }

@@ -167,15 +167,10 @@ impl BallDrops {
     }
 
     fn law(&self, c_d: f64, target: Option<&str>) -> LawSpec {
-        let params = [
-            ("c_d".to_owned(), c_d),
-            ("air_density_kg_m3".to_owned(), self.air_density_kg_m3),
-        ];
+        let density = ("air_density_kg_m3", self.air_density_kg_m3);
         LawSpec {
-            id: "drag".to_owned(),
-            version: 1,
             target: target.map(str::to_owned),
-            params: params.into_iter().collect(),
+            ..LawSpec::new("drag", 1, &[("c_d", c_d), density])
         }
     }
 

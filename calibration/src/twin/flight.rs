@@ -12,7 +12,6 @@ use crate::options::Options;
 use dwell_physics::PhysicsConfig;
 use dwell_scene::{LawInfo, LawSpec};
 use glam::Vec3;
-use std::collections::BTreeMap;
 
 /// Number of samples from which an episode's start is estimated.
 const START_SAMPLES: usize = 8;
@@ -88,12 +87,8 @@ impl FlightTwin {
         }
         let air_density_kg_m3 = air_density_kg_m3(manifest);
         let gravity_m_s2 = gravity_m_s2(manifest);
-        let drag = dwell_physics::laws::all()
-            .iter()
-            .find(|law| law.id == "drag");
-        let drag = drag.ok_or_else(|| {
-            CalibrationError::simulation(&bundle.name, "this build has no law of drag")
-        })?;
+        let drag = LawInfo::find(dwell_physics::laws::all(), "drag")
+            .map_err(|error| CalibrationError::simulation(&bundle.name, error))?;
         Ok(Self {
             episodes: bundle
                 .episodes
@@ -119,17 +114,9 @@ impl FlightTwin {
     }
 
     fn laws(&self, causes: &[f64]) -> Vec<LawSpec> {
-        let drag = LawSpec {
-            id: self.drag.id.to_owned(),
-            version: self.drag.version,
-            target: None,
-            params: BTreeMap::from([
-                ("c_d".to_owned(), causes[0]),
-                ("air_density_kg_m3".to_owned(), self.air_density_kg_m3),
-            ]),
-        };
         if causes[0] > 0.0 {
-            vec![drag]
+            let density = ("air_density_kg_m3", self.air_density_kg_m3);
+            vec![self.drag.spec(&[("c_d", causes[0]), density])]
         } else {
             Vec::new()
         }

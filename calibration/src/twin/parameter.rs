@@ -40,7 +40,7 @@ impl FitParameter {
 
     /// A parameter of an engine's law.
     pub(crate) fn of_law(info: &LawInfo, name: &str, step: f64) -> Option<Self> {
-        let param = info.params.iter().find(|param| param.name == name)?;
+        let param = info.param(name)?;
         Some(Self {
             name: param.name.to_owned(),
             unit: param.unit.to_owned(),

@@ -10,8 +10,7 @@ use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use crate::options::Options;
 use dwell_physics::PhysicsConfig;
-use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, Servo};
-use std::collections::BTreeMap;
+use dwell_scene::{JointCommand, JointId, LawInfo, Servo};
 
 /// Edge of the box around the servo, m.
 const ROOM_M: f32 = 4.0;
@@ -51,12 +50,8 @@ impl ServoTwin {
             sleeping: false,
             ..PhysicsConfig::default()
         };
-        let backlash = dwell_physics::laws::all()
-            .iter()
-            .find(|law| law.id == "backlash");
-        let backlash = backlash.ok_or_else(|| {
-            CalibrationError::simulation(&bundle.name, "this build has no law of backlash")
-        })?;
+        let backlash = LawInfo::find(dwell_physics::laws::all(), "backlash")
+            .map_err(|error| CalibrationError::simulation(&bundle.name, error))?;
         let commands = bundle
             .episodes
             .iter()
@@ -241,12 +236,7 @@ impl Twin for ServoTwin {
         start.adopt()?;
         let mut laws = Vec::new();
         if *half_width > 0.0 {
-            laws.push(LawSpec {
-                id: self.backlash.id.to_owned(),
-                version: self.backlash.version,
-                target: None,
-                params: BTreeMap::from([("half_width".to_owned(), *half_width)]),
-            });
+            laws.push(self.backlash.spec(&[("half_width", *half_width)]));
         }
         let mut overrides = Vec::new();
         if (*friction - self.friction_n_m).abs() > 0.0 {

@@ -82,6 +82,14 @@ pub enum SceneError {
         /// The names that exist, the nearest or first of them.
         known: Vec<String>,
     },
+    /// A law that no engine has.
+    #[error("no law {id:?}; there are {known:?}")]
+    UnknownLaw {
+        /// The id that was asked for.
+        id: String,
+        /// The ids that exist.
+        known: Vec<&'static str>,
+    },
     /// A snapshot that cannot be used here.
     #[error("snapshot refused: {0}")]
     Snapshot(String),

@@ -1,5 +1,5 @@
-//! The basic types of dwell: [`House`], [`State`], ids, spaces, units, materials, laws as data, random streams, meshes,
-//! BVH, navigation.
+//! The nouns of dwell: [`House`], [`State`], ids, spaces, units, materials, laws, random streams, meshes, BVH,
+//! navigation.
 //!
 //! A [`House`] is checked once and never changes; a [`State`] is plain data, one per running world. Engines read both and
 //! do not depend on each other.
@@ -45,7 +45,7 @@ pub use ids::{
     AgentId, Entity, EntityId, Id, IdVec, JointId, LevelId, MaterialId, MeshId, ObjectId, PartId,
     RoomId, SoundFileId, StructureId, TextureId,
 };
-pub use law::{LawInfo, LawSpec};
+pub use law::{LawInfo, LawSpec, LawValues};
 pub use material::{Bands, Material};
 pub use mesh::Mesh;
 pub use sky::{Daytime, Sky, SkyDome, Weather};

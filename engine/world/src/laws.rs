@@ -1,18 +1,23 @@
 //! The laws of all engines, and their installation.
 
 use crate::error::WorldError;
-use dwell_scene::law::ParamInfo;
 use dwell_scene::{Address, House, LawInfo, LawSpec, Parameter, SceneError, State};
+use std::sync::LazyLock;
 
-/// All laws of all engines.
-pub fn all() -> impl Iterator<Item = &'static LawInfo> {
+/// All laws that some engine knows.
+pub fn all() -> impl Iterator<Item = &'static LawInfo> + Clone {
     dwell_physics::laws::all()
-        .iter()
         .chain(dwell_acoustics::laws::all())
         .chain(dwell_render::laws::all())
 }
 
-/// The usual parameters of a law that is installed by its name alone: numbers that need no choice.
+/// As [`all`], as a slice.
+pub(crate) fn known() -> &'static [&'static LawInfo] {
+    static KNOWN: LazyLock<Vec<&LawInfo>> = LazyLock::new(|| all().collect());
+    &KNOWN
+}
+
+/// What a law does that is asked for by its name alone: numbers that need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultAction {
     /// The law's id.
@@ -57,39 +62,21 @@ pub const USUAL: &[DefaultAction] = &[
     },
 ];
 
-/// Checks laws and leaves out those at their default: such a law changes nothing, bit for bit. Their targets are kept in one
-/// spelling ([`LawSpec::canonical_target`]).
+/// Checks laws of all engines and leaves out those at their default, as [`dwell_scene::law::install`] says.
 ///
 /// # Errors
 /// [`WorldError::Unknown`] lists the laws there are; [`WorldError::Scene`] names a parameter out of bounds, or a target that
 /// is there in two spellings.
 pub fn install(house: &House, specs: &[LawSpec]) -> Result<Vec<LawSpec>, WorldError> {
-    LawSpec::check_targets(house, &all().collect::<Vec<_>>(), specs)?;
-    let mut installed = Vec::new();
-    for spec in specs {
-        let Some(info) = all().find(|info| info.id == spec.id) else {
-            let known = all().map(|info| info.id.to_owned()).collect();
-            return Err(WorldError::Unknown {
-                kind: "law",
-                name: spec.id.clone(),
-                known,
-            });
-        };
-        spec.check(info)?;
-        if !spec.is_default(info) {
-            let mut spec = spec.clone();
-            let target = spec.target.as_deref();
-            spec.target = target.map(|target| LawSpec::canonical_target(house, info, target));
-            // One spelling for each law: defaults are not written, as when it is set by its address.
-            spec.params.retain(|name, value| {
-                let of = |param: &&ParamInfo| param.name == name;
-                let param = info.params.iter().find(of);
-                param.is_none_or(|param| *value != param.default)
-            });
-            installed.push(spec);
-        }
-    }
-    Ok(installed)
+    let installed = dwell_scene::law::install(house, known(), specs);
+    installed.map_err(|error| match error {
+        SceneError::UnknownLaw { id, known } => WorldError::Unknown {
+            kind: "law",
+            name: id,
+            known: known.into_iter().map(str::to_owned).collect(),
+        },
+        other => other.into(),
+    })
 }
 
 /// The initial state of a house under laws and parameters (values by address), for engines that work without a world. Nobody is in it.
@@ -121,7 +108,7 @@ pub(crate) fn parameter(
     address: &Address,
 ) -> Result<Parameter, SceneError> {
     if address.is_law() {
-        state.law_parameter(house, &all().collect::<Vec<_>>(), address)
+        state.law_parameter(house, known(), address)
     } else {
         state.parameter(house, address)
     }
@@ -142,7 +129,7 @@ pub(crate) fn set_parameters(
         .cloned()
         .partition(|(address, _)| address.is_law());
     state.set_parameters(house, &scene)?;
-    let set = state.set_law_parameters(house, &all().collect::<Vec<_>>(), &laws);
+    let set = state.set_law_parameters(house, known(), &laws);
     if set.is_err() {
         (state.overrides, state.agents) = before;
     }
@@ -153,28 +140,78 @@ pub(crate) fn set_parameters(
 mod tests {
     use super::*;
 
+    /// Causes that look like a law and are none: numbers of the scene, of clocks, trackers, sensors and controllers.
+    const NUISANCES: &[&str] = &[
+        "absorption",
+        "camera_pitch",
+        "camera_roll",
+        "camera_yaw",
+        "collision_shape",
+        "defocus",
+        "depth_color_offset",
+        "distance",
+        "frame_tilt",
+        "friction",
+        "gravity",
+        "length_scale",
+        "light_power",
+        "marker_offset",
+        "mass",
+        "mount_offset",
+        "object_size",
+        "restitution",
+        "room_scale",
+        "samples_per_pixel",
+        "second_slope",
+        "time_offset",
+        "timestamp_offset",
+    ];
+
+    #[test]
+    fn every_law_says_all_there_is_to_say() {
+        for info in all() {
+            let id = info.id;
+            assert!(info.version > 0 && !info.params.is_empty(), "{id}");
+            for text in [
+                info.name,
+                info.equation,
+                info.source,
+                info.acts_on,
+                info.separating_experiment,
+            ] {
+                assert!(text.len() > 4 && !text.ends_with('.'), "{id}: {text:?}");
+            }
+            assert!(!info.rivals.is_empty(), "{id}");
+            for rival in info.rivals {
+                let other = *rival != id && LawInfo::find(all(), rival).is_ok();
+                assert!(
+                    other || NUISANCES.contains(rival),
+                    "{id}: {rival} is neither another law nor a nuisance"
+                );
+            }
+            for param in info.params {
+                let [low, high] = param.plausible;
+                let bounds = param.low..=param.high;
+                let values = [param.default, low, high];
+                assert!(
+                    values.iter().all(|value| bounds.contains(value)),
+                    "{id} {}",
+                    param.name
+                );
+                assert!(low <= high && !param.unit.is_empty(), "{id} {}", param.name);
+            }
+        }
+    }
+
     #[test]
     fn usual_numbers_are_plausible_and_do_something() {
         for usual in USUAL {
-            let info = all().find(|info| info.id == usual.id).unwrap();
+            let info = LawInfo::find(all(), usual.id).unwrap();
             for (name, value) in usual.params {
-                let param = info
-                    .params
-                    .iter()
-                    .find(|param| param.name == *name)
-                    .unwrap();
-                let [low, high] = param.plausible;
+                let [low, high] = info.param(name).unwrap().plausible;
                 assert!((low..=high).contains(value), "{} {name}", usual.id);
             }
-            let params = usual.params.iter();
-            let spec = LawSpec {
-                id: usual.id.to_owned(),
-                version: info.version,
-                target: None,
-                params: params
-                    .map(|(name, value)| ((*name).to_owned(), *value))
-                    .collect(),
-            };
+            let spec = info.spec(usual.params);
             spec.check(info).unwrap();
             assert!(!spec.is_default(info), "{}", usual.id);
         }

@@ -15,7 +15,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, Entity, House, Id, JointCommand, JointId, LawInfo, ObjectId, Parameter, State,
+    Address, AgentId, Entity, House, Id, JointCommand, JointId, ObjectId, Parameter, State,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -264,9 +264,8 @@ impl World {
 
     /// Every parameter with its address and value now: those of the scene, then those of laws, installed or not.
     pub fn parameters(&self) -> Vec<(Address, Parameter)> {
-        let known: Vec<&LawInfo> = crate::laws::all().collect();
         let mut addresses = self.state.addresses(self.house());
-        addresses.extend(self.state.law_addresses(&known));
+        addresses.extend(self.state.law_addresses(crate::laws::known()));
         let read = |address: Address| Some((address.clone(), self.parameter(&address).ok()?));
         addresses.into_iter().filter_map(read).collect()
     }

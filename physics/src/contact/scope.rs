@@ -6,7 +6,7 @@ use super::substances::ContactTable;
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
 use dwell_scene::material::library;
-use dwell_scene::{House, LawInfo, LawSpec, ObjectId, StructureId};
+use dwell_scene::{House, LawValues, ObjectId, StructureId};
 
 /// All objects, pieces of structure and the substance that one name of a contact's target stands for.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,13 +59,9 @@ pub(crate) struct ContactScope {
 }
 
 impl ContactScope {
-    pub(crate) fn of(
-        spec: &LawSpec,
-        info: &LawInfo,
-        model: &PhysicsModel,
-    ) -> Result<Self, PhysicsError> {
+    pub(crate) fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         let house = &model.house;
-        let Some(target) = &spec.target else {
+        let Some(target) = &values.spec.target else {
             return Ok(Self {
                 one: None,
                 other: None,
@@ -76,7 +72,7 @@ impl ContactScope {
                 let objects = house.objects.iter().map(|object| object.name.as_str());
                 let structure = house.structure.iter().map(|piece| piece.name.as_str());
                 let kind = "object, structure or substance";
-                PhysicsError::no_target(info.id, kind, name, objects.chain(structure))
+                PhysicsError::no_target(values.info.id, kind, name, objects.chain(structure))
             })
         };
         // An object's own name may contain the separator.

@@ -20,21 +20,17 @@ pub(crate) use law_set::LawSet;
 
 use crate::error::PhysicsError;
 use crate::model::PhysicsModel;
-use dwell_scene::{LawInfo, LawSpec, State};
-use std::sync::LazyLock;
+use dwell_scene::law::{Law, LawRegistry};
+use dwell_scene::{LawInfo, LawSpec, LawValues, State};
 
-/// A law of this engine: its description, and its installation.
-struct PhysicsLaw {
-    info: LawInfo,
-    install: InstallFn,
-}
+/// A law of this engine.
+type PhysicsLaw = Law<InstallFn>;
 
-/// Installs a law on its spec's target.
-type InstallFn =
-    fn(&LawSpec, &LawInfo, &PhysicsModel, &State) -> Result<Vec<LawEffect>, PhysicsError>;
+/// Puts a law to work on what its target names.
+type InstallFn = fn(LawValues<'_>, &PhysicsModel, &State) -> Result<Vec<LawEffect>, PhysicsError>;
 
 /// The laws of this engine.
-static LAWS: &[PhysicsLaw] = &[
+static LAWS: LawRegistry<InstallFn> = LawRegistry::new(&[
     bodies::drag::LAW,
     bodies::viscous_damping::LAW,
     bodies::magnus::LAW,
@@ -61,18 +57,16 @@ static LAWS: &[PhysicsLaw] = &[
     bases::unequal_wheels::LAW,
     bases::wheel_slip::LAW,
     bases::gyro_bias_scale::LAW,
-];
+]);
 
 /// Returns the descriptions of all laws of this engine.
 ///
 /// ```
-/// let drag = dwell_physics::laws::all().iter().find(|law| law.id == "drag").unwrap();
+/// let drag = dwell_scene::LawInfo::find(dwell_physics::laws::all(), "drag").unwrap();
 /// assert_eq!(drag.params[0].name, "c_d");
 /// ```
-pub fn all() -> &'static [LawInfo] {
-    static INFOS: LazyLock<Vec<LawInfo>> =
-        LazyLock::new(|| LAWS.iter().map(|law| law.info.clone()).collect());
-    &INFOS
+pub fn all() -> impl Iterator<Item = &'static LawInfo> + Clone {
+    LAWS.infos()
 }
 
 /// Installs the state's laws that belong to this engine and differ from their default. A law that was installed before, on
@@ -82,32 +76,18 @@ pub(crate) fn install(
     state: &State,
     before: &LawSet,
 ) -> Result<LawSet, PhysicsError> {
-    LawSpec::check_targets(&model.house, &all().iter().collect::<Vec<_>>(), &state.laws)?;
+    LAWS.check(&model.house, &state.laws)?;
     let mut installed = LawSet::default();
-    let mut remembered = before.memory();
-    for spec in &state.laws {
-        let Some(law) = LAWS.iter().find(|law| law.info.id == spec.id) else {
-            continue;
-        };
-        spec.check(&law.info)?;
-        if spec.is_default(&law.info) {
-            continue;
-        }
-        let effects = (law.install)(spec, &law.info, model, state)?;
-        // Two laws of one kind on one target are distinguished by their order.
-        let same = |old: &LawSpec| old.id == spec.id && old.target == spec.target;
-        let number = installed.specs().len();
-        let earlier = installed.specs().iter().filter(|old| same(old)).count();
-        installed.add(spec.clone(), effects);
-        let old = before.specs().iter().enumerate();
-        if let Some((old, _)) = old.filter(|(_, old)| same(old)).nth(earlier) {
-            installed.restore_memory(number, &std::mem::take(&mut remembered[old]));
+    for law in LAWS.acting(&state.laws) {
+        let effects = (law.acts)(law.values, model, state)?;
+        installed.add(law.values.spec.clone(), effects);
+    }
+    let remembered = before.memory();
+    let predecessors = LawSpec::predecessors(before.specs(), installed.specs());
+    for (law, old) in predecessors.into_iter().enumerate() {
+        if let Some(old) = old {
+            installed.restore_memory(law, &remembered[old]);
         }
     }
     Ok(installed)
-}
-
-/// Returns the value of a law's parameter.
-fn value(spec: &LawSpec, info: &LawInfo, name: &str) -> f32 {
-    spec.value(info, name).unwrap_or(0.0) as f32
 }

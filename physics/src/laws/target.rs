@@ -2,26 +2,22 @@
 
 use crate::error::PhysicsError;
 use crate::model::{BodyPlan, PhysicsModel};
-use dwell_scene::{LawInfo, LawSpec, PartId};
+use dwell_scene::LawValues;
+use dwell_scene::law::is_part_named;
 
 /// Returns the bodies that a spec acts on, free or jointed: those of the object that it names, the one of the part that it
 /// names as `OBJECT/PART`, or all; in order.
 pub(super) fn moving_bodies<'a>(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &'a PhysicsModel,
 ) -> Result<Vec<(u32, &'a BodyPlan)>, PhysicsError> {
     let house = &model.house;
     let object = |plan: &BodyPlan| house.objects[plan.object].name.as_str();
     let named = |plan: &BodyPlan, name: &str| {
-        let own = |part: PartId| {
-            name.strip_prefix(object(plan))?
-                .strip_prefix('/')
-                .map(|rest| rest == house.parts[part].name)
-        };
-        object(plan) == name || plan.parts.iter().any(|(part, _)| own(*part) == Some(true))
+        let mut parts = plan.parts.iter();
+        object(plan) == name || parts.any(|(part, _)| is_part_named(house, *part, name))
     };
-    let target = spec.target.as_deref();
+    let target = values.spec.target.as_deref();
     let bodies = model.bodies.iter().enumerate();
     let found: Vec<(u32, &BodyPlan)> = bodies
         .filter(|(_, plan)| target.is_none_or(|name| named(plan, name)))
@@ -31,14 +27,14 @@ pub(super) fn moving_bodies<'a>(
         Some(name) if found.is_empty() => {
             if let Some(id) = house.object_named(name) {
                 return Err(PhysicsError::LawUnfit {
-                    law: info.id,
+                    law: values.info.id,
                     what: format!("{:?}", house.objects[id].name),
                     why: "no part of it moves".to_owned(),
                 });
             }
             let kind = "object that moves (or OBJECT/PART of one)";
             Err(PhysicsError::no_target(
-                info.id,
+                values.info.id,
                 kind,
                 name,
                 model.bodies.iter().map(object),

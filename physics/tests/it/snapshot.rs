@@ -31,12 +31,8 @@ fn busy() -> (Run, ObjectId, AgentId) {
         Piece::cuboid(Vec3::splat(0.04), Vec3::new(2.6, 0.04, 3.9)),
     );
     let mut run = build.run();
-    run.state.laws.push(LawSpec {
-        id: "drag".into(),
-        version: 1,
-        target: Some("ball_2".into()),
-        params: [("c_d".to_owned(), 0.5)].into(),
-    });
+    let drag = LawSpec::new("drag", 1, &[("c_d", 0.5)]);
+    run.state.laws.push(drag.on("ball_2"));
     run.world.apply_parameters(&mut run.state).unwrap();
     let agent = run.agent(Vec3::new(2.6, 0.0, 4.4), 0.0);
     run.agent(Vec3::new(1.0, 0.0, 4.0), 1.0);

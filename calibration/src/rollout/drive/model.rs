@@ -79,14 +79,9 @@ pub(super) fn laws(model: &SimulationModel, values: &[f64]) -> Vec<LawSpec> {
     let law = |id: &str, names: &[&str]| {
         let found = names.iter().filter_map(|name| {
             let place = model.parameters.iter().position(|p| p.name == *name)?;
-            Some(((*name).to_owned(), values[place]))
+            Some((*name, values[place]))
         });
-        let spec = LawSpec {
-            id: id.to_owned(),
-            version: 1,
-            target: None,
-            params: found.collect(),
-        };
+        let spec = LawSpec::new(id, 1, &found.collect::<Vec<_>>());
         (!spec.params.is_empty()).then_some(spec)
     };
     let wheels = law(

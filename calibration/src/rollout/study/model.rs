@@ -138,12 +138,7 @@ impl ContactModel {
             let mut pairs = self.parameters.iter().zip(values);
             pairs.find(|(p, _)| p.name == name).map(|(_, v)| *v)
         };
-        let law = |id: &str, params: &[(&str, f64)]| LawSpec {
-            id: id.to_owned(),
-            version: 1,
-            target: None,
-            params: params.iter().map(|(k, v)| ((*k).to_owned(), *v)).collect(),
-        };
+        let law = |id: &str, params: &[(&str, f64)]| LawSpec::new(id, 1, params);
         let mut laws = Vec::new();
         if let Some(frequency) = value("natural_frequency_hz") {
             let damping = value("damping_ratio").unwrap_or(1.0);

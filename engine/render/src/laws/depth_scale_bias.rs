@@ -1,9 +1,9 @@
 //! Depths with a scale and an offset error.
 
-use super::{DepthContext, LawValues, RenderLaw, RenderStage};
-use dwell_scene::LawInfo;
+use super::{DepthContext, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -40,7 +40,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
-    let (scale, bias) = (values.get("scale"), values.get("bias_m"));
+    let (scale, bias) = (values.get_f32("scale"), values.get_f32("bias_m"));
     let far = scan.camera.far_m();
     for depth in image
         .iter_mut()

@@ -1,9 +1,9 @@
 //! Depth from quantized disparities.
 
-use super::{DepthContext, LawValues, RenderLaw, RenderStage};
-use dwell_scene::LawInfo;
+use super::{DepthContext, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -50,11 +50,11 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, _: RandomKey, image: &mut [f32]) {
-    let step = f64::from(values.get("step_px"));
+    let step = f64::from(values.get_f32("step_px"));
     if step == 0.0 {
         return;
     }
-    let base = f64::from(values.get("focal_px")) * f64::from(values.get("baseline_m"));
+    let base = f64::from(values.get_f32("focal_px")) * f64::from(values.get_f32("baseline_m"));
     let far = scan.camera.far_m();
     for depth in image
         .iter_mut()

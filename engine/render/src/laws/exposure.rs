@@ -1,10 +1,10 @@
 //! Exposure of cameras.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{LawInfo, math};
+use dwell_scene::{LawInfo, LawValues, math};
 use glam::Vec3;
 
 const fn factor(name: &'static str, low: f64, high: f64, plausible: [f64; 2]) -> ParamInfo {
@@ -49,9 +49,9 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, _: &Camera, _: RandomKey, light: &mut [Vec3]) {
-    let gain = math::pow(2.0, values.get("stops"));
-    let gain = Vec3::new(values.get("red"), 1.0, values.get("blue")) * gain;
-    let gamma = values.get("gamma");
+    let gain = math::pow(2.0, values.get_f32("stops"));
+    let gain = Vec3::new(values.get_f32("red"), 1.0, values.get_f32("blue")) * gain;
+    let gamma = values.get_f32("gamma");
     for light in light {
         *light *= gain;
         if gamma != 1.0 {

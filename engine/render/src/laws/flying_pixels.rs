@@ -1,9 +1,9 @@
 //! Flying pixels: readings between a thing and what lies behind it.
 
-use super::{DepthContext, LawValues, RenderLaw, RenderStage};
-use dwell_scene::LawInfo;
+use super::{DepthContext, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -51,12 +51,12 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
-    let probability = values.get("probability");
+    let probability = values.get_f32("probability");
     if probability == 0.0 {
         return;
     }
-    let radius = values.get("radius_px").round() as usize;
-    let jump = values.get("jump_m");
+    let radius = values.get_f32("radius_px").round() as usize;
+    let jump = values.get_f32("jump_m");
     let (width, height) = scan.size();
     let seen = image.to_vec();
     for (row, line) in image.chunks_mut(width).enumerate() {

@@ -1,9 +1,9 @@
 //! An error of the focal length.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -32,7 +32,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {
-    let factor = 1.0 + values.get("relative_error");
+    let factor = 1.0 + values.get_f32("relative_error");
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx * factor, fy * factor, cx, cy))
 }
 

@@ -1,9 +1,9 @@
 //! The noise of the first Kinect, along the ray and across it.
 
-use super::{DepthContext, LawValues, RenderLaw, RenderStage};
+use super::{DepthContext, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{LawInfo, math};
+use dwell_scene::{LawInfo, LawValues, math};
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, FRAC_PI_3};
 
@@ -58,7 +58,7 @@ fn lateral_px(angle: f32) -> f32 {
 }
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
-    let (axial, lateral) = (values.get("axial"), values.get("lateral"));
+    let (axial, lateral) = (values.get_f32("axial"), values.get_f32("lateral"));
     let (width, height) = scan.size();
     let far = scan.camera.far_m();
     let seen = image.to_vec();

@@ -1,9 +1,9 @@
 //! Lens distortion.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::{Camera, Projection};
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 const fn coefficient(name: &'static str, plausible: f64) -> ParamInfo {
     ParamInfo {
@@ -43,7 +43,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {
-    let own = ["k1", "k2", "k3", "p1", "p2"].map(|name| values.get(name));
+    let own = ["k1", "k2", "k3", "p1", "p2"].map(|name| values.get_f32(name));
     let (there, (fx, fy, cx, cy)) = match camera.projection() {
         Projection::Pinhole { fx, fy, cx, cy } => ([0.0; 5], (fx, fy, cx, cy)),
         Projection::BrownConrady {

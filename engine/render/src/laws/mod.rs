@@ -22,16 +22,13 @@ mod vignetting;
 use crate::camera::Camera;
 use crate::color::SrgbTables;
 use crate::error::RenderError;
+use dwell_scene::law::{ActingLaw, Law, LawRegistry};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Id, LawInfo, LawSpec};
+use dwell_scene::{AgentId, LawInfo, LawSpec, LawValues};
 use glam::Vec3;
-use std::sync::LazyLock;
 
-/// A law of this engine with its stage.
-struct RenderLaw {
-    info: LawInfo,
-    acts: RenderStage,
-}
+/// A law of this engine.
+type RenderLaw = Law<RenderStage>;
 
 /// The stage of rendering in which a law acts.
 enum RenderStage {
@@ -48,7 +45,7 @@ enum RenderStage {
 }
 
 /// The laws of this engine.
-static LAWS: &[RenderLaw] = &[
+static LAWS: LawRegistry<RenderStage> = LawRegistry::new(&[
     focal_length::LAW,
     principal_point::LAW,
     lens_distortion::LAW,
@@ -62,31 +59,16 @@ static LAWS: &[RenderLaw] = &[
     flying_pixels::LAW,
     disparity_quantization::LAW,
     depth_scale_bias::LAW,
-];
+]);
 
 /// Returns the descriptions of all laws of cameras.
 ///
 /// ```
-/// let law = dwell_render::laws::all().iter().find(|law| law.id == "redwood_depth").unwrap();
+/// let law = dwell_scene::LawInfo::find(dwell_render::laws::all(), "redwood_depth").unwrap();
 /// assert_eq!(law.params[0].name, "strength");
 /// ```
-pub fn all() -> &'static [LawInfo] {
-    static INFOS: LazyLock<Vec<LawInfo>> =
-        LazyLock::new(|| LAWS.iter().map(|law| law.info.clone()).collect());
-    &INFOS
-}
-
-/// The numbers of an installed law.
-#[derive(Clone, Copy)]
-struct LawValues<'a> {
-    spec: &'a LawSpec,
-    info: &'a LawInfo,
-}
-
-impl LawValues<'_> {
-    fn get(&self, name: &str) -> f32 {
-        self.spec.value(self.info, name).unwrap_or(0.0) as f32
-    }
+pub fn all() -> impl Iterator<Item = &'static LawInfo> + Clone {
+    LAWS.infos()
 }
 
 /// The inputs of a law of depth beside the depths.
@@ -125,16 +107,13 @@ impl Shutter {
 /// [`RenderError::LawTarget`].
 pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
     for spec in laws {
-        let ours = LAWS.iter().any(|law| law.info.id == spec.id);
-        if let Some(target) = spec.target.as_ref().filter(|_| ours) {
-            let number = target.parse::<usize>().ok();
-            if number.is_none_or(|number| number >= agents) {
-                return Err(RenderError::LawTarget {
-                    law: spec.id.clone(),
-                    found: target.clone(),
-                    agents,
-                });
-            }
+        let ours = all().any(|info| info.id == spec.id);
+        if let (true, Err(target)) = (ours, spec.agent(agents)) {
+            return Err(RenderError::LawTarget {
+                law: spec.id.clone(),
+                found: target.to_owned(),
+                agents,
+            });
         }
     }
     Ok(())
@@ -142,12 +121,12 @@ pub fn check(laws: &[LawSpec], agents: usize) -> Result<(), RenderError> {
 
 /// The laws that act on one agent's cameras.
 pub struct Optics<'a> {
-    laws: Vec<(LawValues<'a>, &'static RenderStage, u64)>,
+    laws: Vec<ActingLaw<'a, RenderStage>>,
 }
 
 impl std::fmt::Debug for Optics<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let specs = self.laws.iter().map(|(values, ..)| values.spec);
+        let specs = self.laws.iter().map(|law| law.values.spec);
         f.debug_list().entries(specs).finish()
     }
 }
@@ -155,18 +134,11 @@ impl std::fmt::Debug for Optics<'_> {
 impl<'a> Optics<'a> {
     /// Those of `laws` that act on the cameras of `agent`.
     pub fn of(laws: &'a [LawSpec], agent: AgentId) -> Self {
-        let own = |spec: &LawSpec| {
-            let number = spec.target.as_ref().map(|target| target.parse::<usize>());
-            number.is_none_or(|number| number == Ok(agent.index()))
-        };
-        let find = |(place, spec): (usize, &'a LawSpec)| {
-            let law = LAWS.iter().find(|law| law.info.id == spec.id)?;
-            let acts = !spec.is_default(&law.info) && own(spec);
-            let info = &law.info;
-            acts.then_some((LawValues { spec, info }, &law.acts, place as u64))
-        };
+        let acting = LAWS.acting(laws);
         Self {
-            laws: laws.iter().enumerate().filter_map(find).collect(),
+            laws: acting
+                .filter(|law| law.values.spec.is_on_agent(agent))
+                .collect(),
         }
     }
 
@@ -178,9 +150,9 @@ impl<'a> Optics<'a> {
     /// The real camera, from the ideal one.
     #[must_use]
     pub fn camera(&self, mut camera: Camera) -> Camera {
-        for (values, acts, _) in &self.laws {
-            if let RenderStage::Lens(change) = acts {
-                camera = change(*values, camera);
+        for law in &self.laws {
+            if let RenderStage::Lens(change) = law.acts {
+                camera = change(law.values, camera);
             }
         }
         camera
@@ -189,9 +161,9 @@ impl<'a> Optics<'a> {
     /// Returns the shutter.
     pub fn shutter(&self) -> Shutter {
         let mut shutter = Shutter::default();
-        for (values, acts, _) in &self.laws {
-            if let RenderStage::Shutter(change) = acts {
-                change(*values, &mut shutter);
+        for law in &self.laws {
+            if let RenderStage::Shutter(change) = law.acts {
+                change(law.values, &mut shutter);
             }
         }
         shutter
@@ -199,8 +171,8 @@ impl<'a> Optics<'a> {
 
     /// Returns whether [`Self::depth`] needs normals.
     pub fn needs_normals(&self) -> bool {
-        let by_normals = |acts: &RenderStage| matches!(acts, RenderStage::DepthByNormals(_));
-        self.laws.iter().any(|(_, acts, _)| by_normals(acts))
+        let mut laws = self.laws.iter();
+        laws.any(|law| matches!(law.acts, RenderStage::DepthByNormals(_)))
     }
 
     /// Applies the sensor's laws to the depths `image`, m; 0 to the camera's far end.
@@ -215,13 +187,13 @@ impl<'a> Optics<'a> {
             return;
         }
         let mut changed = false;
-        for (values, acts, place) in &self.laws {
-            let change = match acts {
+        for law in &self.laws {
+            let change = match law.acts {
                 RenderStage::Depth(change) => change,
                 RenderStage::DepthByNormals(change) if normals.len() == 3 * image.len() => change,
                 _ => continue,
             };
-            change(*values, &scan, key.child(*place), image);
+            change(law.values, &scan, key.child(law.place as u64), image);
             changed = true;
         }
         if changed {
@@ -241,10 +213,8 @@ impl<'a> Optics<'a> {
     /// # Determinism
     /// Equal keys, equal bits.
     pub fn color(&self, camera: &Camera, key: RandomKey, image: &mut [u8]) {
-        let is_color = |acts: &RenderStage| matches!(acts, RenderStage::Color(_));
-        if !self.laws.iter().any(|(_, acts, _)| is_color(acts))
-            || image.len() != 3 * camera.pixels()
-        {
+        let is_color = |law: &ActingLaw<'_, RenderStage>| matches!(law.acts, RenderStage::Color(_));
+        if !self.laws.iter().any(is_color) || image.len() != 3 * camera.pixels() {
             return;
         }
         let srgb = SrgbTables::tables();
@@ -258,9 +228,9 @@ impl<'a> Optics<'a> {
                 )
             })
             .collect();
-        for (values, acts, place) in &self.laws {
-            if let RenderStage::Color(change) = acts {
-                change(*values, camera, key.child(*place), &mut light);
+        for law in &self.laws {
+            if let RenderStage::Color(change) = law.acts {
+                change(law.values, camera, key.child(law.place as u64), &mut light);
             }
         }
         for (rgb, light) in image.chunks_exact_mut(3).zip(&light) {
@@ -291,7 +261,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_law_is_consistent_and_does_nothing_by_default() {
+    fn a_law_at_its_default_does_nothing() {
         let camera = camera();
         let depth: Vec<f32> = (0..camera.pixels())
             .map(|k| 0.5 + k as f32 * 0.01)
@@ -299,24 +269,7 @@ mod tests {
         let normals: Vec<f32> = depth.iter().flat_map(|_| [0.0, 0.0, 1.0]).collect();
         let color: Vec<u8> = (0..3 * camera.pixels()).map(|k| (k % 256) as u8).collect();
         for info in all() {
-            let texts = [
-                info.equation,
-                info.source,
-                info.separating_experiment,
-                info.name,
-            ];
-            assert!(texts.iter().all(|text| !text.is_empty()) && !info.rivals.is_empty());
-            for param in info.params {
-                let bounds = param.low..=param.high;
-                assert!(
-                    bounds.contains(&param.default),
-                    "{} {}",
-                    info.id,
-                    param.name
-                );
-                assert!(param.plausible.iter().all(|end| bounds.contains(end)));
-            }
-            let none = [law(info.id, &[])];
+            let none = [info.spec(&[])];
             none[0].check(info).unwrap();
             for laws in [&none[..], &[]] {
                 let optics = Optics::of(laws, AgentId(0));

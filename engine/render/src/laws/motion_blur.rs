@@ -1,8 +1,8 @@
 //! Motion blur: light that is gathered while things move.
 
-use super::{LawValues, RenderLaw, RenderStage, Shutter};
-use dwell_scene::LawInfo;
+use super::{RenderLaw, RenderStage, Shutter};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -33,5 +33,5 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, shutter: &mut Shutter) {
-    shutter.exposure_s = shutter.exposure_s.max(values.get("exposure_s"));
+    shutter.exposure_s = shutter.exposure_s.max(values.get_f32("exposure_s"));
 }

@@ -1,9 +1,9 @@
 //! An error of the principal point.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 const fn shift(name: &'static str) -> ParamInfo {
     ParamInfo {
@@ -34,7 +34,7 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, camera: Camera) -> Camera {
-    let (right, down) = (values.get("right_px"), values.get("down_px"));
+    let (right, down) = (values.get_f32("right_px"), values.get_f32("down_px"));
     camera.with_changed_intrinsics(|(fx, fy, cx, cy)| (fx, fy, cx + right, cy + down))
 }
 

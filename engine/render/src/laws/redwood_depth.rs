@@ -1,9 +1,9 @@
 //! The depth noise of the Redwood benchmark.
 
-use super::{DepthContext, LawValues, RenderLaw, RenderStage};
-use dwell_scene::LawInfo;
+use super::{DepthContext, RenderLaw, RenderStage};
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -43,7 +43,7 @@ const SHUFFLE_PX: f64 = 0.25;
 const FURTHEST_M: f32 = 10.0;
 
 fn change(values: LawValues<'_>, scan: &DepthContext<'_>, key: RandomKey, image: &mut [f32]) {
-    let strength = f64::from(values.get("strength"));
+    let strength = f64::from(values.get_f32("strength"));
     let (width, height) = scan.size();
     let seen = image.to_vec();
     for (row, line) in image.chunks_mut(width).enumerate() {

@@ -1,8 +1,8 @@
 //! Rolling shutter: rows that are exposed one after another.
 
-use super::{LawValues, RenderLaw, RenderStage, Shutter};
-use dwell_scene::LawInfo;
+use super::{RenderLaw, RenderStage, Shutter};
 use dwell_scene::law::{EngineKind, ParamInfo};
+use dwell_scene::{LawInfo, LawValues};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
     info: LawInfo {
@@ -32,5 +32,5 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 };
 
 fn change(values: LawValues<'_>, shutter: &mut Shutter) {
-    shutter.line_s += values.get("line_s");
+    shutter.line_s += values.get_f32("line_s");
 }

@@ -1,10 +1,10 @@
 //! Shot noise of electrons, and read noise.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::{RandomKey, RandomStream};
+use dwell_scene::{LawInfo, LawValues};
 use glam::Vec3;
 
 pub(super) const LAW: RenderLaw = RenderLaw {
@@ -48,7 +48,10 @@ pub(super) const LAW: RenderLaw = RenderLaw {
 const COUNTED: f64 = 12.0;
 
 fn change(values: LawValues<'_>, camera: &Camera, key: RandomKey, light: &mut [Vec3]) {
-    let (gain, read) = (f64::from(values.get("gain")), f64::from(values.get("read")));
+    let (gain, read) = (
+        f64::from(values.get_f32("gain")),
+        f64::from(values.get_f32("read")),
+    );
     for (row, light) in (0_u64..).zip(light.chunks_mut(camera.width() as usize)) {
         let mut stream = key.child(row).stream();
         for light in light {
@@ -110,7 +113,6 @@ fn poisson(mean: f64, stream: &mut RandomStream) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{camera, law, moments};
-    use super::super::{LawValues, RenderStage};
     use super::*;
 
     /// Mean and variance are the mean within 5 standard errors, for five seeds, on both ways to draw; for few the share of

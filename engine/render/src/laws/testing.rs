@@ -10,15 +10,7 @@ pub(super) fn camera() -> Camera {
 }
 
 pub(super) fn law(id: &str, params: &[(&str, f64)]) -> LawSpec {
-    LawSpec {
-        id: id.to_owned(),
-        version: 1,
-        target: None,
-        params: params
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect(),
-    }
+    LawSpec::new(id, 1, params)
 }
 
 /// Depths under a law that needs no normals.

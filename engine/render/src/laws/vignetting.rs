@@ -1,10 +1,10 @@
 //! Vignetting: corners that are darker than the middle.
 
-use super::{LawValues, RenderLaw, RenderStage};
+use super::{RenderLaw, RenderStage};
 use crate::camera::Camera;
-use dwell_scene::LawInfo;
 use dwell_scene::law::{EngineKind, ParamInfo};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{LawInfo, LawValues};
 use glam::{Vec2, Vec3};
 
 pub(super) const LAW: RenderLaw = RenderLaw {
@@ -37,7 +37,7 @@ fn change(values: LawValues<'_>, camera: &Camera, _: RandomKey, light: &mut [Vec
     if camera.projection().intrinsics().is_none() {
         return;
     }
-    let strength = values.get("strength");
+    let strength = values.get_f32("strength");
     let width = camera.width() as usize;
     for (pixel, light) in light.iter_mut().enumerate() {
         let image = Vec2::new((pixel % width) as f32 + 0.5, (pixel / width) as f32 + 0.5);

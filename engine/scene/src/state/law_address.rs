@@ -10,7 +10,7 @@ use super::{Address, Parameter, State};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::law::{LawInfo, LawSpec, ParamInfo};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// The law and parameter that an address names.
 struct LawParameterRef<'a> {
@@ -47,14 +47,8 @@ impl State {
     ) -> Result<LawParameterRef<'a>, SceneError> {
         let (name, param) = address.law_words()?;
         let info_of = |id: &str| {
-            known
-                .iter()
-                .find(|info| info.id == id)
-                .copied()
-                .ok_or_else(|| {
-                    let ids: Vec<_> = known.iter().map(|info| info.id).collect();
-                    address.fault(format!("no law {id:?}; there are {ids:?}"))
-                })
+            LawInfo::find(known.iter().copied(), id)
+                .map_err(|unknown| address.fault(unknown.to_string()))
         };
         let (info, target, place) = if let Ok(place) = name.parse::<usize>() {
             let spec = self.laws.get(place).ok_or_else(|| {
@@ -97,8 +91,7 @@ impl State {
             }
             (info, target, place)
         };
-        let found = info.params.iter().find(|known| known.name == param);
-        let param = found.ok_or_else(|| {
+        let param = info.param(param).ok_or_else(|| {
             let names: Vec<_> = info.params.iter().map(|known| known.name).collect();
             address.fault(format!(
                 "no parameter {param:?}; law {} has {names:?}",
@@ -191,8 +184,8 @@ impl State {
         }
         // Only now: numbers of laws refer to the list before the call.
         let idle = |spec: &LawSpec| {
-            let info = known.iter().find(|info| info.id == spec.id);
-            info.is_some_and(|info| spec.is_default(info))
+            let info = LawInfo::find(known.iter().copied(), &spec.id);
+            info.is_ok_and(|info| spec.is_default(info))
         };
         while self.laws.last().is_some_and(idle) {
             self.laws.pop();
@@ -213,10 +206,8 @@ impl State {
         let place = named.place.unwrap_or(self.laws.len());
         if named.place.is_none() {
             self.laws.push(LawSpec {
-                id: named.info.id.to_owned(),
-                version: named.info.version,
                 target: named.target,
-                params: BTreeMap::new(),
+                ..named.info.spec(&[])
             });
         }
         let params = &mut self.laws[place].params;
@@ -240,12 +231,12 @@ impl State {
         };
         let certain = "laws' ids, their numbers and their parameters' names are words";
         let mut addresses = Vec::new();
-        let same = |a: &LawSpec, b: &LawSpec| a.id == b.id && a.target == b.target;
         for (place, spec) in self.laws.iter().enumerate() {
-            let Some(info) = known.iter().find(|info| info.id == spec.id) else {
+            let Ok(info) = LawInfo::find(known.iter().copied(), &spec.id) else {
                 continue;
             };
-            let twice = self.laws.iter().filter(|other| same(other, spec)).count() > 1;
+            let same = self.laws.iter().filter(|other| spec.is_same_law(other));
+            let twice = same.count() > 1;
             let by_name = match &spec.target {
                 _ if twice => None,
                 Some(target) => named(&format!("{}@{target}", spec.id), info),
@@ -426,12 +417,7 @@ mod tests {
             "a//b",
             "tab\t",
         ] {
-            state.laws = vec![LawSpec {
-                id: "drag".to_owned(),
-                version: 3,
-                target: Some(target.to_owned()),
-                params: BTreeMap::from([("c_d".to_owned(), 0.5)]),
-            }];
+            state.laws = vec![DRAG.spec(&[("c_d", 0.5)]).on(target)];
             let listed = state.law_addresses(known);
             assert_eq!(listed.len(), 2 + 2 + 1, "{target}: {listed:?}");
             let read = |address: &Address| {

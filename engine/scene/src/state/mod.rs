@@ -8,7 +8,6 @@ mod bounds;
 mod canonical;
 mod joint;
 mod law_address;
-mod law_target;
 mod listing;
 mod locomotion;
 mod mass;

@@ -3,10 +3,10 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{LawMemory, MotorLaw, MotorStep};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawValues, State};
 use std::collections::BTreeMap;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 between the two branches whatever the speed, latency a gap that grows with it, and \
                                 friction one that shrinks with the servo's stiffness",
     },
-    install,
+    acts: install,
 };
 
 /// The backlash state of a motor.
@@ -70,15 +70,14 @@ struct Backlash {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let motors = TargetMotors::of(spec, info, model)?.0.into_iter();
+    let motors = TargetMotors::of(values, model)?.0.into_iter();
     Ok(vec![LawEffect::Motor(Box::new(Backlash {
-        half_width: value(spec, info, "half_width"),
-        motor_inertia: value(spec, info, "motor_inertia"),
+        half_width: values.get_f32("half_width"),
+        motor_inertia: values.get_f32("motor_inertia"),
         motors: motors
             .map(|id| (id, BacklashState::at(state.joint_position[id])))
             .collect(),
@@ -116,6 +115,7 @@ impl BacklashState {
             self.velocity = motor.velocity;
             return true;
         }
+        // J dw/dt = u, alone between the flanks.
         let before = self.velocity;
         self.velocity += effort / inertia * motor.dt_s;
         if self.cross(motor, 0.5 * (before + self.velocity), half_width) {

@@ -3,10 +3,10 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{ActuationGain, JointActuation, LawMemory, MotorLaw};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -36,7 +36,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 load; a wrong torque constant or mass shows in efforts and not at a motor that carries its \
                                 weight ahead",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -47,14 +47,13 @@ struct JointCompliance {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(JointCompliance {
-        motors: TargetMotors::of(spec, info, model)?,
-        compliance: value(spec, info, "compliance"),
+        motors: TargetMotors::of(values, model)?,
+        compliance: values.get_f32("compliance"),
     }))])
 }
 
@@ -64,6 +63,7 @@ impl MotorLaw for JointCompliance {
             return;
         }
         if let ActuationGain::Servo { stiffness, damping } = &mut pull.gain {
+            // k / (1 + k c), d / (1 + k c)^2: the servo's spring in series with the joint's.
             let part = 1.0 / (1.0 + *stiffness * self.compliance);
             *stiffness *= part;
             *damping *= part * part;

@@ -3,10 +3,10 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{LawMemory, MotorLaw, MotorStep};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
+use dwell_scene::{JointCommand, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 width whatever came before, backlash depends on the last turn, and static friction can be \
                                 seen when the joint is pushed with the motor off",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -52,15 +52,14 @@ struct Deadband {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(Deadband {
-        motors: TargetMotors::of(spec, info, model)?,
-        half_width: value(spec, info, "half_width"),
-        min_effort: value(spec, info, "min_effort"),
+        motors: TargetMotors::of(values, model)?,
+        half_width: values.get_f32("half_width"),
+        min_effort: values.get_f32("min_effort"),
     }))])
 }
 

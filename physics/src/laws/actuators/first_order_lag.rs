@@ -3,10 +3,10 @@
 use super::FilteredCommands;
 use crate::error::PhysicsError;
 use crate::joints::{LawMemory, MotorLaw, MotorStep};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, LawInfo, LawSpec, State, math};
+use dwell_scene::{JointCommand, LawInfo, LawValues, State, math};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \
                                 it from a rate limit",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -42,19 +42,19 @@ struct FirstOrderLag {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(FirstOrderLag {
-        tau_s: value(spec, info, "tau_s"),
-        outputs: FilteredCommands::of(spec, info, model)?,
+        tau_s: values.get_f32("tau_s"),
+        outputs: FilteredCommands::of(values, model)?,
     }))])
 }
 
 /// Returns the output at the end of a step and its mean over it, with the input `u` held.
 fn relax(y: f32, u: f32, steps: f32) -> (f32, f32) {
+    // y(t) = u + (y0 - u) exp(-t / tau), and its mean over the step.
     let left = math::exp(-steps);
     let end = u + (y - u) * left;
     (end, u + (y - u) * (1.0 - left) / steps)

@@ -3,10 +3,10 @@
 use super::TargetJoints;
 use crate::error::PhysicsError;
 use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw, SlipSpring};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointId, LawInfo, LawValues, State};
 use std::collections::BTreeMap;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -45,7 +45,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 lie anywhere within its gap without an effort; what a motor's drive gives is seen under its load \
                                 only",
     },
-    install,
+    acts: install,
 };
 
 /// The state of a joint's hysteresis spring.
@@ -65,8 +65,7 @@ struct Hysteresis {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
@@ -74,10 +73,10 @@ fn install(
         effort: 0.0,
         position: state.joint_position[joint],
     };
-    let hinges = TargetJoints::of(spec, info, model)?.0.into_iter();
+    let hinges = TargetJoints::of(values, model)?.0.into_iter();
     Ok(vec![LawEffect::Resistance(Box::new(Hysteresis {
-        max_effort: value(spec, info, "max_effort"),
-        stiffness: value(spec, info, "stiffness"),
+        max_effort: values.get_f32("max_effort"),
+        stiffness: values.get_f32("stiffness"),
         springs: hinges.map(|joint| (joint, spring(joint))).collect(),
     }))])
 }
@@ -85,6 +84,7 @@ fn install(
 impl Hysteresis {
     /// Returns the effort once the joint has come to `position`.
     fn effort(&self, spring: &HysteresisSpring, position: f32) -> f32 {
+        // Prandtl's element: F + k dq within its bounds.
         let sprung = spring.effort - self.stiffness * (position - spring.position);
         sprung.clamp(-self.max_effort, self.max_effort)
     }

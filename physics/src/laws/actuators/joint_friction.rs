@@ -3,10 +3,10 @@
 use super::TargetJoints;
 use crate::error::PhysicsError;
 use crate::joints::{JointLoad, JointResistance, LawMemory, ResistanceLaw};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State, math};
+use dwell_scene::{JointId, LawInfo, LawValues, State, math};
 
 const fn term(name: &'static str, unit: &'static str, high: f64, plausible: [f64; 2]) -> ParamInfo {
     ParamInfo {
@@ -69,7 +69,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 not; hold it still from above and from below for Coulomb and load; creep for Stribeck; \
                                 drive it and be driven by it with the same load for direction",
     },
-    install,
+    acts: install,
 };
 
 /// The numbers of the law, in its equation's order.
@@ -123,14 +123,13 @@ struct JointFriction {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let number = |name: &str| value(spec, info, name);
+    let number = |name: &str| values.get_f32(name);
     Ok(vec![LawEffect::Resistance(Box::new(JointFriction {
-        hinges: TargetJoints::of(spec, info, model)?,
+        hinges: TargetJoints::of(values, model)?,
         friction: Friction {
             coulomb: number("coulomb"),
             viscous: number("viscous"),

@@ -3,10 +3,10 @@
 use super::{TargetMotors, number, same_kind, with};
 use crate::error::PhysicsError;
 use crate::joints::{LawMemory, MotorLaw, MotorStep, commanded};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointCommand, JointId, LawInfo, LawValues, State};
 use std::collections::{BTreeMap, VecDeque};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 its phase grows with frequency without end; a lag rounds the step and its phase ends at \
                                 90 degrees; an offset between clocks also shifts what no motor causes",
     },
-    install,
+    acts: install,
 };
 
 /// The commands of a joint in past physics steps, newest first: as many as the delay reaches back, initially the command at
@@ -48,18 +48,17 @@ struct Latency {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let mut motors = TargetMotors::of(spec, info, model)?.each(CommandDelayLine::default);
-    // The present commands of motors fill the past: no motor is switched off because a delay grew.
+    let mut motors = TargetMotors::of(values, model)?.each(CommandDelayLine::default);
+    // What motors are told at that moment they have been told for long: no motor lets go because a cable grew.
     for (joint, past) in &mut motors {
         past.0.push_back(commanded(state, *joint));
     }
     Ok(vec![LawEffect::Motor(Box::new(Latency {
-        delay_s: value(spec, info, "delay_s"),
+        delay_s: values.get_f32("delay_s"),
         past: motors,
     }))])
 }

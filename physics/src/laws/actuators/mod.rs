@@ -18,36 +18,28 @@ pub(super) mod saturation;
 use crate::error::PhysicsError;
 use crate::joints::MotorStep;
 use crate::model::PhysicsModel;
-use dwell_scene::{Articulation, Id, JointCommand, JointId, LawInfo, LawSpec};
+use dwell_scene::law::is_joint_named;
+use dwell_scene::{Articulation, JointCommand, JointId, LawValues};
 use std::collections::BTreeMap;
 
 /// Returns the joints that a spec acts on, of those for which `may` holds.
 fn joints(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     kind: &'static str,
     may: impl Fn(&Articulation) -> bool,
 ) -> Result<Vec<JointId>, PhysicsError> {
     let house = &model.house;
-    let named = |id: JointId, joint: &Articulation, name: &str| {
-        let object = &house.objects[joint.object].name;
-        name == joint.name
-            || name == format!("{object}/{}", joint.name)
-            || name == id.index().to_string()
-    };
     let able = || house.joints.iter_ids().filter(|(_, joint)| may(joint));
+    let target = values.spec.target.as_deref();
     let found: Vec<JointId> = able()
-        .filter(|(id, joint)| {
-            let target = spec.target.as_ref();
-            target.is_none_or(|name| named(*id, joint, name))
-        })
         .map(|(id, _)| id)
+        .filter(|id| target.is_none_or(|name| is_joint_named(house, *id, name)))
         .collect();
-    match &spec.target {
+    match target {
         Some(target) if found.is_empty() => {
             let names = able().map(|(_, joint)| joint.name.as_str());
-            Err(PhysicsError::no_target(info.id, kind, target, names))
+            Err(PhysicsError::no_target(values.info.id, kind, target, names))
         }
         _ => Ok(found),
     }
@@ -58,9 +50,9 @@ fn joints(
 struct TargetMotors(Vec<JointId>);
 
 impl TargetMotors {
-    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+    fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         let kind = "joint with a servo";
-        joints(spec, info, model, kind, |joint| joint.servo.is_some()).map(Self)
+        joints(values, model, kind, |joint| joint.servo.is_some()).map(Self)
     }
 
     fn hold(&self, joint: JointId) -> bool {
@@ -78,8 +70,8 @@ impl TargetMotors {
 struct TargetJoints(Vec<JointId>);
 
 impl TargetJoints {
-    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
-        joints(spec, info, model, "joint", |_| true).map(Self)
+    fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+        joints(values, model, "joint", |_| true).map(Self)
     }
 
     fn hold(&self, joint: JointId) -> bool {
@@ -92,9 +84,9 @@ impl TargetJoints {
 struct FilteredCommands(BTreeMap<JointId, JointCommand>);
 
 impl FilteredCommands {
-    fn of(spec: &LawSpec, info: &LawInfo, model: &PhysicsModel) -> Result<Self, PhysicsError> {
+    fn of(values: LawValues<'_>, model: &PhysicsModel) -> Result<Self, PhysicsError> {
         Ok(Self(
-            TargetMotors::of(spec, info, model)?.each(JointCommand::default),
+            TargetMotors::of(values, model)?.each(JointCommand::default),
         ))
     }
 

@@ -5,10 +5,10 @@ use crate::error::PhysicsError;
 use crate::joints::{
     ActuationGain, JointActuation, JointLoad, JointResistance, LawMemory, MotorLaw, ResistanceLaw,
 };
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -78,7 +78,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 second, viscous friction both; repeat a motion with a known load added: a torque constant \
                                 scales with it, a wrong mass or rotor does not",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -94,17 +94,16 @@ struct MotorConstants {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let number = |name: &str| value(spec, info, name);
+    let number = |name: &str| values.get_f32(name);
     let geared = number("gear") * number("k_t");
     let resistance = number("resistance_ohm");
     let supply = number("supply_v");
     let law = MotorConstants {
-        motors: TargetMotors::of(spec, info, model)?,
+        motors: TargetMotors::of(values, model)?,
         torque_scale: number("torque_scale"),
         stall_effort: if supply > 0.0 {
             geared * supply / resistance

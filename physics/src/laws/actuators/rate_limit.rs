@@ -3,10 +3,10 @@
 use super::FilteredCommands;
 use crate::error::PhysicsError;
 use crate::joints::{LawMemory, MotorLaw, MotorStep};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointCommand, LawInfo, LawSpec, State};
+use dwell_scene::{JointCommand, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -31,7 +31,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
                                 grows with the size, with a lag the time is the same",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -41,14 +41,13 @@ struct RateLimit {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(RateLimit {
-        max_rate: value(spec, info, "max_rate"),
-        outputs: FilteredCommands::of(spec, info, model)?,
+        max_rate: values.get_f32("max_rate"),
+        outputs: FilteredCommands::of(values, model)?,
     }))])
 }
 

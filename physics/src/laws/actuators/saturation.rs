@@ -3,10 +3,10 @@
 use super::TargetMotors;
 use crate::error::PhysicsError;
 use crate::joints::{JointActuation, LawMemory, MotorLaw};
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{JointId, LawInfo, LawSpec, State};
+use dwell_scene::{JointId, LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -30,7 +30,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
                                 exact, friction errs from the smallest effort on, a wrong constant in proportion",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -40,14 +40,13 @@ struct Saturation {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Motor(Box::new(Saturation {
-        motors: TargetMotors::of(spec, info, model)?,
-        max_effort: value(spec, info, "max_effort"),
+        motors: TargetMotors::of(values, model)?,
+        max_effort: values.get_f32("max_effort"),
     }))])
 }
 

@@ -3,10 +3,10 @@
 use super::{RequiredBase, TargetAgents};
 use crate::bases::BaseLaw;
 use crate::error::PhysicsError;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 time also at rest, a scale errs with the angle and with its sign, and a wrong wheel base \
                                 shows in the wheels' odometry and not in the gyro",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -52,15 +52,14 @@ struct GyroBiasScale {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     _model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Base(Arc::new(GyroBiasScale {
-        riders: TargetAgents::of(spec, info, state, RequiredBase::Wheels)?,
-        bias_rad_s: value(spec, info, "bias_rad_s"),
-        scale: value(spec, info, "scale"),
+        riders: TargetAgents::of(values, state, RequiredBase::Wheels)?,
+        bias_rad_s: values.get_f32("bias_rad_s"),
+        scale: values.get_f32("scale"),
     }))])
 }
 

@@ -6,7 +6,7 @@ pub(super) mod unequal_wheels;
 pub(super) mod wheel_slip;
 
 use crate::error::PhysicsError;
-use dwell_scene::{AgentId, Id, LawInfo, LawSpec, Locomotion, State};
+use dwell_scene::{AgentId, Id, LawValues, Locomotion, State};
 
 /// The locomotion that an agent must have for a law to act on it.
 #[derive(Clone, Copy, Debug)]
@@ -39,14 +39,9 @@ impl RequiredBase {
 struct TargetAgents(Option<AgentId>);
 
 impl TargetAgents {
-    fn of(
-        spec: &LawSpec,
-        info: &LawInfo,
-        state: &State,
-        needs: RequiredBase,
-    ) -> Result<Self, PhysicsError> {
+    fn of(values: LawValues<'_>, state: &State, needs: RequiredBase) -> Result<Self, PhysicsError> {
         let unfit = |what: String, agent: AgentId| PhysicsError::LawUnfit {
-            law: info.id,
+            law: values.info.id,
             what,
             why: format!(
                 "its body is of the kind {:?}; {}",
@@ -55,29 +50,30 @@ impl TargetAgents {
             ),
         };
         let fits = |agent: &AgentId| needs.are_met_by(&state.agents[*agent].body.locomotion);
-        let Some(target) = &spec.target else {
-            let first = state.agents.ids().next();
-            return match first {
+        match values.spec.agent(state.agents.len()) {
+            Ok(Some(agent)) if fits(&agent) => Ok(Self(Some(agent))),
+            Ok(Some(agent)) => Err(unfit(format!("agent {}", agent.index()), agent)),
+            Ok(None) => match state.agents.ids().next() {
                 Some(first) if !state.agents.ids().any(|agent| fits(&agent)) => {
                     Err(unfit("any agent".to_owned(), first))
                 }
                 _ => Ok(Self(None)),
-            };
-        };
-        let found = target
-            .parse()
-            .ok()
-            .filter(|index| *index < state.agents.len());
-        let Some(index) = found else {
-            let numbers: Vec<String> = (0..state.agents.len()).map(|k| k.to_string()).collect();
-            let names = numbers.iter().map(String::as_str);
-            return Err(PhysicsError::no_target(info.id, "agent", target, names));
-        };
-        let agent = AgentId::from_index(index);
-        if !fits(&agent) {
-            return Err(unfit(format!("agent {index}"), agent));
+            },
+            Err(target) => {
+                let numbers: Vec<String> = state
+                    .agents
+                    .ids()
+                    .map(|id| id.index().to_string())
+                    .collect();
+                let names = numbers.iter().map(String::as_str);
+                Err(PhysicsError::no_target(
+                    values.info.id,
+                    "agent",
+                    target,
+                    names,
+                ))
+            }
         }
-        Ok(Self(Some(agent)))
     }
 
     fn holds(&self, agent: AgentId) -> bool {

@@ -7,7 +7,7 @@ use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
 const fn ratio(name: &'static str, plausible: [f64; 2]) -> ParamInfo {
@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the same way in space, a wrong base turns both too far or too little, and only straight \
                                 runs against a tape show the size; a gyro's bias grows with time also at rest",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -54,20 +54,18 @@ struct UnequalWheels {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     _model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let value = |name: &str| spec.value(info, name).unwrap_or(1.0);
-    let (ratio, scale) = (value("radius_ratio"), value("radius_scale"));
+    let (ratio, scale) = (values.get("radius_ratio"), values.get("radius_scale"));
     Ok(vec![LawEffect::Base(Arc::new(UnequalWheels {
-        riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
+        riders: TargetAgents::of(values, state, RequiredBase::DrivenWheels)?,
         radius_factors: [
             scale * 2.0 / (1.0 + ratio),
             scale * 2.0 * ratio / (1.0 + ratio),
         ],
-        base_factor: value("base_ratio"),
+        base_factor: values.get("base_ratio"),
     }))])
 }
 

@@ -7,7 +7,7 @@ use crate::error::PhysicsError;
 use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{AgentId, LawInfo, LawSpec, State};
+use dwell_scene::{AgentId, LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "drive the same way once slowly and once with hard starts and soft stops: a wrong radius \
                                 errs with the way whatever the speed, slip only where the speed changes",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -44,14 +44,13 @@ struct WheelSlip {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     _model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Base(Arc::new(WheelSlip {
-        riders: TargetAgents::of(spec, info, state, RequiredBase::DrivenWheels)?,
-        slip_per_m_s2: spec.value(info, "slip_per_m_s2").unwrap_or(0.0),
+        riders: TargetAgents::of(values, state, RequiredBase::DrivenWheels)?,
+        slip_per_m_s2: values.get("slip_per_m_s2"),
     }))])
 }
 

@@ -4,10 +4,9 @@ use super::size::cross_section_m2;
 use crate::error::PhysicsError;
 use crate::joints::LinkStep;
 use crate::laws::target::moving_bodies;
-use crate::laws::value;
 use crate::model::PhysicsModel;
+use dwell_scene::LawValues;
 use dwell_scene::law::ParamInfo;
-use dwell_scene::{LawInfo, LawSpec};
 use glam::DVec3;
 
 /// The cross-section; 0 uses the body's mean one.
@@ -47,16 +46,12 @@ pub(super) fn against_air(link: &LinkStep, gain: f64, against: DVec3) -> DVec3 {
 
 /// Returns the moving bodies that a spec acts on, each with `gain` of the air's density (kg/m³) and its cross-section (m²).
 pub(super) fn in_air(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     gain: impl Fn(f32, f32) -> f32,
 ) -> Result<Vec<(u32, f32)>, PhysicsError> {
-    let (density, stated) = (
-        value(spec, info, AIR_DENSITY.name),
-        value(spec, info, AREA.name),
-    );
-    let bodies = moving_bodies(spec, info, model)?.into_iter();
+    let (density, stated) = (values.get_f32(AIR_DENSITY.name), values.get_f32(AREA.name));
+    let bodies = moving_bodies(values, model)?.into_iter();
     Ok(bodies
         .map(|(index, plan)| {
             let area = if stated > 0.0 {

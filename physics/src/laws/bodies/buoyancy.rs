@@ -4,10 +4,10 @@ use super::size::volume_m3;
 use crate::error::PhysicsError;
 use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -52,7 +52,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "drop two objects of one shape and different density: gravity, clock and scale treat them \
                                 alike, the air carries the lighter one more",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -63,14 +63,13 @@ struct Buoyancy {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let density = value(spec, info, "fluid_density_kg_m3");
-    let volume = value(spec, info, "volume_m3");
-    let bodies = moving_bodies(spec, info, model)?
+    let density = values.get_f32("fluid_density_kg_m3");
+    let volume = values.get_f32("volume_m3");
+    let bodies = moving_bodies(values, model)?
         .into_iter()
         .map(|(index, plan)| {
             let volume = if volume > 0.0 {
@@ -83,7 +82,7 @@ fn install(
         .collect();
     Ok(vec![LawEffect::Mass(Arc::new(Buoyancy {
         bodies,
-        added_mass: value(spec, info, "added_mass"),
+        added_mass: values.get_f32("added_mass"),
     }))])
 }
 

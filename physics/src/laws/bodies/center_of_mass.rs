@@ -3,10 +3,10 @@
 use crate::error::PhysicsError;
 use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use glam::Vec3;
 use rapier3d::math::Pose as RapierPose;
 use std::sync::Arc;
@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 flight in the same way, but only the centre of mass decides over which edge it falls and \
                                 the slope at which it does",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -51,20 +51,19 @@ struct CenterOfMassOffset {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let plans = moving_bodies(spec, info, model)?;
-    let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| value(spec, info, name)));
+    let plans = moving_bodies(values, model)?;
+    let offset = Vec3::from_array(["x_m", "y_m", "z_m"].map(|name| values.get_f32(name)));
     for (_, plan) in plans.iter().filter(|(_, plan)| !plan.pieces.is_empty()) {
         // A thin object whose centre of mass is a metre away rotates about that: contacts lose it, and it falls through floors.
         let size = plan.bounds(&RapierPose::IDENTITY).size();
         if !offset.abs().cmple(size * MAX_OFFSET).all() {
             let name = &model.house.objects[plan.object].name;
             return Err(PhysicsError::Range {
-                at: format!("law {}, object {name:?} of {size} m", info.id),
+                at: format!("law {}, object {name:?} of {size} m", values.info.id),
                 field: "x_m, y_m, z_m",
                 found: offset.to_string(),
                 allowed: "offsets up to three quarters of the object's size along each axis",

@@ -3,10 +3,10 @@
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -37,7 +37,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 bodies of the same shape and different mass: drag alone bends the path in proportion \
                                 to v^2/m, gravity and clocks do not",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -47,15 +47,12 @@ struct Drag {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let c_d = value(spec, info, "c_d");
-    let bodies = in_air(spec, info, model, |density, area| {
-        0.5 * density * c_d * area
-    })?;
+    let c_d = values.get_f32("c_d");
+    let bodies = in_air(values, model, |density, area| 0.5 * density * c_d * area)?;
     let law = Arc::new(Drag { bodies });
     Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }

@@ -3,10 +3,10 @@
 use crate::error::PhysicsError;
 use crate::inertia::{BodyInertia, MassLaw};
 use crate::laws::target::moving_bodies;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 seen without a force), and let it hit the floor with a corner, or add a known mass, for \
                                 the scale",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -70,14 +70,13 @@ struct InertiaError {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| value(spec, info, name)));
-    let all = 1.0 + value(spec, info, "scale");
-    let plans = moving_bodies(spec, info, model)?;
+    let of = |names: [&str; 3]| Vec3::from_array(names.map(|name| values.get_f32(name)));
+    let all = 1.0 + values.get_f32("scale");
+    let plans = moving_bodies(values, model)?;
     let law = InertiaError {
         bodies: plans.iter().map(|(index, _)| *index).collect(),
         scale: ((Vec3::ONE + of(["x", "y", "z"])) * all).map(f32::sqrt),
@@ -94,7 +93,7 @@ fn install(
             return Err(PhysicsError::Range {
                 at: format!(
                     "law {}, object {:?}",
-                    info.id, model.house.objects[plan.object].name
+                    values.info.id, model.house.objects[plan.object].name
                 ),
                 field: "xy, yz, zx",
                 found: law.products.to_string(),

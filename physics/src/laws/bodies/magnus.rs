@@ -3,10 +3,10 @@
 use super::air::{AIR_DENSITY, AREA, gain_of, in_air};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State, math};
+use dwell_scene::{LawInfo, LawValues, State, math};
 use glam::Quat;
 use std::f32::consts::PI;
 use std::sync::Arc;
@@ -40,7 +40,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "throw the object twice alike with the spin turned round, its spin measured: only lift \
                                 changes sides; a tilted frame and wind push the same way both times",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -50,13 +50,12 @@ struct Magnus {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let c_l = value(spec, info, "c_l");
-    let bodies = in_air(spec, info, model, |density, area| {
+    let c_l = values.get_f32("c_l");
+    let bodies = in_air(values, model, |density, area| {
         0.5 * density * area * (area / PI).sqrt() * c_l
     })?;
     let law = Arc::new(Magnus { bodies });

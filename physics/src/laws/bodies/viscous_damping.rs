@@ -3,10 +3,10 @@
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
 use crate::laws::target::moving_bodies;
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State, math};
+use dwell_scene::{LawInfo, LawValues, State, math};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 takes the same share of the speed in each second, quadratic drag a share that grows with \
                                 it; friction acts in contact only",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -54,16 +54,15 @@ struct ViscousDamping {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let bodies = moving_bodies(spec, info, model)?;
+    let bodies = moving_bodies(values, model)?;
     let law = Arc::new(ViscousDamping {
         bodies: bodies.into_iter().map(|(index, _)| index).collect(),
-        linear_per_s: value(spec, info, "linear_per_s"),
-        angular_per_s: value(spec, info, "angular_per_s"),
+        linear_per_s: values.get_f32("linear_per_s"),
+        angular_per_s: values.get_f32("angular_per_s"),
     });
     Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }

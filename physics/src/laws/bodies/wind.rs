@@ -3,10 +3,10 @@
 use super::air::{AIR_DENSITY, AREA, against_air, gain_of, in_air};
 use crate::error::PhysicsError;
 use crate::joints::{ExternalWrench, LinkLaw, LinkStep};
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -72,7 +72,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "put a light and a heavy object of one shape side by side, or switch the fan off: wind moves \
                                 the light one, a tilted floor or frame both",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -85,21 +85,18 @@ struct Wind {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let c_d = value(spec, info, "c_d");
-    let bodies = in_air(spec, info, model, |density, area| {
-        0.5 * density * c_d * area
-    })?;
-    let velocity = ["x_m_s", "y_m_s", "z_m_s"].map(|name| value(spec, info, name));
+    let c_d = values.get_f32("c_d");
+    let bodies = in_air(values, model, |density, area| 0.5 * density * c_d * area)?;
+    let velocity = ["x_m_s", "y_m_s", "z_m_s"].map(|name| values.get_f32(name));
     let law = Arc::new(Wind {
         bodies,
         velocity: Vec3::from_array(velocity),
-        period_s: value(spec, info, "period_s"),
-        blowing_share: value(spec, info, "blowing_share"),
+        period_s: values.get_f32("period_s"),
+        blowing_share: values.get_f32("blowing_share"),
     });
     Ok(vec![LawEffect::Body(law.clone()), LawEffect::Link(law)])
 }

@@ -2,10 +2,10 @@
 
 use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State, math};
+use dwell_scene::{LawInfo, LawValues, State, math};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -57,7 +57,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 freely in the same directions: a tilted floor or frame also bends the flight, or pulls to \
                                 one side only",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -70,16 +70,15 @@ struct AnisotropicFriction {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    let (sin, cos) = math::sin_cos(value(spec, info, "axis_rad"));
+    let (sin, cos) = math::sin_cos(values.get_f32("axis_rad"));
     Ok(vec![LawEffect::Contact(Arc::new(AnisotropicFriction {
-        scope: ContactScope::of(spec, info, model)?,
-        grain: value(spec, info, "grain"),
-        pile: value(spec, info, "pile"),
+        scope: ContactScope::of(values, model)?,
+        grain: values.get_f32("grain"),
+        pile: values.get_f32("pile"),
         axis: Vec3::new(cos, 0.0, -sin),
     }))])
 }

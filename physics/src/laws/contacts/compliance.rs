@@ -2,10 +2,10 @@
 
 use crate::engine::ContactCompliance;
 use crate::error::PhysicsError;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
     info: LawInfo {
@@ -51,29 +51,28 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 with at least ten samples in it: only compliance sinks by m g / k and rebounds pi sqrt(m/k) \
                                 late whatever the speed; a wrong size or floor height is the same for every mass",
     },
-    install,
+    acts: install,
 };
 
 /// Natural frequency below which there is no compliance, Hz.
 const LOWEST_HZ: f32 = 0.1;
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     _model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
-    if let Some(target) = &spec.target {
+    if let Some(target) = &values.spec.target {
         return Err(PhysicsError::no_target(
-            info.id,
+            values.info.id,
             "part of the world (it acts on all contacts; leave the target out)",
             target,
             std::iter::empty(),
         ));
     }
     let compliance = ContactCompliance {
-        natural_frequency_hz: value(spec, info, "natural_frequency_hz"),
-        damping_ratio: value(spec, info, "damping_ratio"),
+        natural_frequency_hz: values.get_f32("natural_frequency_hz"),
+        damping_ratio: values.get_f32("damping_ratio"),
     };
     let gives = compliance.natural_frequency_hz >= LOWEST_HZ;
     Ok(gives

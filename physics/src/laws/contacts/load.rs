@@ -118,6 +118,7 @@ impl ContactLoad {
             .filter(|(_, rigid)| rigid.is_dynamic())
             .map(|(sign, rigid)| {
                 let arm = rigid.center_of_mass() - self.point;
+                // alpha = r x m g / I.
                 let torque = arm.cross(gravity * rigid.gravity_scale() * rigid.mass());
                 let axis = torque.normalize_or_zero();
                 torque * (sign * inverse_inertia(rigid, axis, Some(arm)))
@@ -127,6 +128,7 @@ impl ContactLoad {
 
     /// Returns the inertia about an axis, kg·m²: about the centres of mass, or rolling about the contact.
     pub(super) fn inertia(&self, stage: &LawContext<'_>, axis: Vec3, rolling: bool) -> f32 {
+        // An angular impulse L and -L changes the spin of one against the other by L (1/I_1 + 1/I_2).
         let inverse: f32 = self
             .each(stage)
             .filter(|(_, rigid)| rigid.is_dynamic())
@@ -164,6 +166,7 @@ impl ContactLoad {
 fn inverse_inertia(rigid: &RigidBody, axis: Vec3, arm: Option<Vec3>) -> f32 {
     let properties = &rigid.mass_properties().local_mprops;
     let local = rigid.rotation().inverse() * axis;
+    // a^T I a, and Steiner's m |r - a (a . r)|^2.
     let own = local.dot(properties.reconstruct_inertia_matrix() * local);
     let across = arm.map_or(0.0, |arm| (arm - axis * arm.dot(axis)).length_squared());
     let inertia = own + rigid.mass() * across;

@@ -3,10 +3,10 @@
 use super::load::loads;
 use crate::contact::ContactScope;
 use crate::error::PhysicsError;
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -35,7 +35,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 rolling resistance slows it alike each time, a tilted floor helps one way, air takes more \
                                 from the faster one",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -45,14 +45,13 @@ struct RollingResistance {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Body(Arc::new(RollingResistance {
-        scope: ContactScope::of(spec, info, model)?,
-        c_rr: value(spec, info, "c_rr"),
+        scope: ContactScope::of(values, model)?,
+        c_rr: values.get_f32("c_rr"),
     }))])
 }
 
@@ -67,6 +66,7 @@ impl BodyLaw for RollingResistance {
                 continue;
             }
             let axis = rolling / speed;
+            // c_rr N r h, and no more than the I omega that stops it.
             let most = self.c_rr * load.normal_force_n * load.radius_m(stage) * stage.dt_s;
             let stops = load.inertia(stage, axis, true) * speed;
             load.turn(stage, -axis * most.min(stops));

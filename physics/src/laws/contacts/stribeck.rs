@@ -2,10 +2,10 @@
 
 use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State, math};
+use dwell_scene::{LawInfo, LawValues, State, math};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tilt the floor slowly until the object starts to slide, then until one that was pushed \
                                 stops: two angles mean two frictions; a single coefficient, and play, have one",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -60,16 +60,15 @@ struct StribeckFriction {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Contact(Arc::new(StribeckFriction {
-        scope: ContactScope::of(spec, info, model)?,
-        ratio: value(spec, info, "static_ratio"),
-        speed_m_s: value(spec, info, "stribeck_m_s"),
-        shape: value(spec, info, "shape"),
+        scope: ContactScope::of(values, model)?,
+        ratio: values.get_f32("static_ratio"),
+        speed_m_s: values.get_f32("stribeck_m_s"),
+        shape: values.get_f32("shape"),
     }))])
 }
 
@@ -79,6 +78,7 @@ impl ContactLaw for StribeckFriction {
     }
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
+        // mu_k (1 + (ratio - 1) exp(-(v / v_s)^shape)).
         let share = touch.slip().length() / self.speed_m_s;
         values.friction *= 1.0 + (self.ratio - 1.0) * math::exp(-math::pow(share, self.shape));
     }

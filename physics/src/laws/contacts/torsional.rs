@@ -3,10 +3,10 @@
 use super::load::loads;
 use crate::contact::ContactScope;
 use crate::error::PhysicsError;
-use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw, value};
+use crate::laws::{BodyLaw, LawContext, LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
 pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "spin the object on the floor at two speeds, and in the air: friction of the patch takes the \
                                 same spin from it in each second and nothing in flight",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -44,14 +44,13 @@ struct TorsionalFriction {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Body(Arc::new(TorsionalFriction {
-        scope: ContactScope::of(spec, info, model)?,
-        radius_m: value(spec, info, "radius_m"),
+        scope: ContactScope::of(values, model)?,
+        radius_m: values.get_f32("radius_m"),
     }))])
 }
 
@@ -59,6 +58,7 @@ impl BodyLaw for TorsionalFriction {
     fn before_step(&self, stage: &mut LawContext<'_>) {
         for load in loads(stage, &self.scope) {
             let spin = load.spin(stage).dot(load.normal);
+            // mu N r h, and no more than the I omega that stops it.
             let most = load.friction * load.normal_force_n * self.radius_m * stage.dt_s;
             let stops = load.inertia(stage, load.normal, false) * spin.abs();
             let impulse = -most.min(stops) * spin.signum();

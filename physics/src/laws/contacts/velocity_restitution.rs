@@ -2,10 +2,10 @@
 
 use crate::contact::{ContactLaw, ContactScope, ContactValues, LawContact};
 use crate::error::PhysicsError;
-use crate::laws::{LawEffect, PhysicsLaw, value};
+use crate::laws::{LawEffect, PhysicsLaw};
 use crate::model::PhysicsModel;
 use dwell_scene::law::{EngineKind as ActsIn, ParamInfo};
-use dwell_scene::{LawInfo, LawSpec, State};
+use dwell_scene::{LawInfo, LawValues, State};
 use std::sync::Arc;
 
 /// From 1 on, resting bodies would bounce.
@@ -44,7 +44,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the share of the speed that is left: one restitution leaves the same share everywhere, and \
                                 air takes speed between the bounces as well",
     },
-    install,
+    acts: install,
 };
 
 #[derive(Clone, Debug)]
@@ -55,15 +55,14 @@ struct VelocityRestitution {
 }
 
 fn install(
-    spec: &LawSpec,
-    info: &LawInfo,
+    values: LawValues<'_>,
     model: &PhysicsModel,
     _state: &State,
 ) -> Result<Vec<LawEffect>, PhysicsError> {
     Ok(vec![LawEffect::Contact(Arc::new(VelocityRestitution {
-        scope: ContactScope::of(spec, info, model)?,
-        slope: value(spec, info, "slope_s_m"),
-        reference: value(spec, info, "reference_m_s"),
+        scope: ContactScope::of(values, model)?,
+        slope: values.get_f32("slope_s_m"),
+        reference: values.get_f32("reference_m_s"),
     }))])
 }
 
@@ -74,6 +73,7 @@ impl ContactLaw for VelocityRestitution {
 
     fn shape_contact(&self, touch: &LawContact<'_>, values: &mut ContactValues) {
         let speed = touch.approach_speed_m_s().max(0.0);
+        // e - slope (v - v_ref).
         let e = values.restitution - self.slope * (speed - self.reference);
         values.restitution = e.clamp(0.0, MAX_RESTITUTION);
     }

@@ -6,7 +6,7 @@ use dwell_physics::laws;
 use dwell_scene::{LawInfo, LawSpec};
 
 fn known() -> Vec<&'static LawInfo> {
-    laws::all().iter().collect()
+    laws::all().collect()
 }
 
 fn set(run: &mut Run, info: &LawInfo, name: &str, value: f64) {
@@ -115,7 +115,7 @@ fn what_a_law_remembers_outlives_a_change_of_its_numbers() {
         ("rate_limit", "max_rate", [2.0, 1.0]),
         ("backlash", "half_width", [0.1, 0.05]),
     ] {
-        let info = laws::all().iter().find(|info| info.id == id).unwrap();
+        let info = LawInfo::find(laws::all(), id).unwrap();
         let joint = dwell_scene::JointId(0);
         let mut run = lively(vec![spec(id, None, &[(name, values[0])])]);
         run.steps(60);

@@ -3,13 +3,11 @@
 use super::{spec, tower};
 use crate::common::{Build, Run};
 use dwell_physics::{AgentControl, PhysicsConfig, laws};
-use dwell_scene::{
-    AgentBody, AgentId, AgentState, DifferentialDrive, LawInfo, LawSpec, Locomotion, State,
-};
+use dwell_scene::{AgentBody, AgentId, AgentState, DifferentialDrive, LawInfo, Locomotion, State};
 use glam::Vec3;
 
 fn known() -> Vec<&'static LawInfo> {
-    laws::all().iter().collect()
+    laws::all().collect()
 }
 
 /// Regression: a joint named by number and by name got the law twice, and twice its delay.
@@ -59,14 +57,11 @@ fn a_law_on_one_thing_under_two_names_is_refused() {
             "parquet~glass",
         ),
     ] {
-        let Some(info) = laws::all().iter().find(|info| info.id == id) else {
-            panic!("no law {id}")
-        };
-        let param = info.params.iter().find(|known| known.name == param);
-        let param = param.unwrap_or(&info.params[0]).name;
+        let info = LawInfo::find(laws::all(), id).unwrap();
+        let param = info.param(param).unwrap_or(&info.params[0]).name;
         let mut state = State::new(&house);
         state.laws = [one, other]
-            .map(|target| spec_of(info, target, param))
+            .map(|target| info.spec(&[(param, 0.01)]).on(target))
             .into();
         let config = PhysicsConfig::default();
         let refused = dwell_physics::PhysicsWorld::new(house.clone(), config, &mut state);
@@ -112,13 +107,6 @@ fn a_name_of_several_joints_is_refused_beside_one_of_them() {
     };
     assert_eq!(set("hinge"), (true, 1));
     assert_eq!(set("door_1/hinge"), (false, 1));
-}
-
-fn spec_of(info: &LawInfo, target: &str, param: &str) -> LawSpec {
-    LawSpec {
-        version: info.version,
-        ..spec(info.id, Some(target), &[(param, 0.01)])
-    }
 }
 
 fn body() -> AgentBody {

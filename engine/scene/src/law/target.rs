@@ -4,10 +4,10 @@
 //! separates; a pair of substances has two orders. A law on one of them must not act twice because it was given in two
 //! spellings.
 
+use super::{LawInfo, LawSpec};
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::{Id, JointId, PartId};
-use crate::law::{LawInfo, LawSpec};
 
 impl LawSpec {
     /// Returns the canonical spelling of a law's target. A joint is `OBJECT/JOINT`, or its number where those names are
@@ -45,7 +45,7 @@ impl LawSpec {
         laws: &[Self],
     ) -> Result<(), SceneError> {
         for (k, spec) in laws.iter().enumerate() {
-            let Some(info) = known.iter().find(|info| info.id == spec.id) else {
+            let Ok(info) = LawInfo::find(known.iter().copied(), &spec.id) else {
                 continue;
             };
             let same = |other: &&Self| {
@@ -83,15 +83,27 @@ fn own_name(house: &House, id: JointId) -> String {
     format!("{}/{}", house.objects[joint.object].name, joint.name)
 }
 
-/// Returns the joints that a target names: by name, qualified by their object's, or by number.
+/// Returns whether a law's target names a joint: by its name, as `OBJECT/JOINT`, or by its number.
+pub fn is_joint_named(house: &House, id: JointId, target: &str) -> bool {
+    target == house.joints[id].name
+        || target == own_name(house, id)
+        || target == id.index().to_string()
+}
+
+/// Returns whether a law's target names a part as `OBJECT/PART`.
+pub fn is_part_named(house: &House, id: PartId, target: &str) -> bool {
+    let part = &house.parts[id];
+    let object = &house.objects[part.object];
+    let rest = target
+        .strip_prefix(&object.name)
+        .and_then(|rest| rest.strip_prefix('/'));
+    rest == Some(&part.name)
+}
+
+/// The joints that a target names.
 fn joints_named(house: &House, target: &str) -> impl Iterator<Item = JointId> {
-    let named = move |id: JointId, name: &str| {
-        target == name || target == own_name(house, id) || target == id.index().to_string()
-    };
-    let joints = house.joints.iter_ids();
-    joints
-        .filter(move |(id, joint)| named(*id, &joint.name))
-        .map(|(id, _)| id)
+    let joints = house.joints.ids();
+    joints.filter(move |id| is_joint_named(house, *id, target))
 }
 
 fn share_a_joint(house: &House, a: &str, b: &str) -> bool {
@@ -121,8 +133,8 @@ fn joint(house: &House, target: &str) -> Option<String> {
 
 fn body(house: &House, target: &str) -> Option<String> {
     let mut found = house.objects.iter().filter_map(|object| {
-        let part = target.strip_prefix(&object.name)?.strip_prefix('/')?;
-        let id = object.parts().find(|id| house.parts[*id].name == part)?;
+        let mut parts = object.parts();
+        let id = parts.find(|id| is_part_named(house, *id, target))?;
         Some((object, id))
     });
     let (object, part) = found.next()?;
