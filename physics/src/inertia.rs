@@ -40,6 +40,7 @@ impl BodyInertia {
 
     /// Returns whether the tensor is symmetric and positive definite.
     pub(crate) fn is_positive(&self) -> bool {
+        // Sylvester's criterion: all leading principal minors are positive.
         let t = self.tensor;
         let minor = t.x_axis.x * t.y_axis.y - t.x_axis.y * t.y_axis.x;
         t.is_finite() && t.x_axis.x > 0.0 && minor > 0.0 && t.determinant() > 0.0

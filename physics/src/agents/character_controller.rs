@@ -1,7 +1,11 @@
 //! The character controller: sliding along obstacles, climbing steps, falling.
 //!
-//! Every movement is cut into pieces shorter than half the body's core, and a piece that would leave the core inside a
-//! solid is not made. So an agent passes no wall, however thin, at any speed.
+//! Every movement is cut into pieces shorter than half the body's core, and a piece that would leave the core inside
+//! something solid is not made. So an agent passes no wall, however thin, at any speed.
+//!
+//! # Source
+//! K. Fauerby, Improved Collision Detection and Response (2003): collide and slide. A movement stops where a cast of the shape hits,
+//! and what is left of it goes on along what was hit.
 
 use super::shape_queries::{AgentQueries, SweepHit};
 use dwell_scene::AgentState;
@@ -145,6 +149,7 @@ impl CharacterController<'_> {
             };
             self.note_push(&hit, wall, left);
             walls[turn] = wall;
+            // d - n (n . d): what points into the wall is taken off.
             left -= wall * left.dot(wall).min(0.0);
             // Between two walls the movement ends.
             if walls[..turn].iter().any(|wall| left.dot(*wall) < -1e-6) {
@@ -183,6 +188,7 @@ impl CharacterController<'_> {
             agent.grounded = true;
             return;
         }
+        // Symplectic Euler: v' = v + g h, then y' = y - v' h.
         *fall_m_s = (*fall_m_s + self.gravity_m_s2 * self.dt_s).min(FASTEST_FALL_M_S);
         if *fall_m_s < 0.0 {
             let up = -*fall_m_s * self.dt_s;

@@ -53,6 +53,7 @@ impl CharacterController<'_> {
         let level = Vec3::new(normal.x, 0.0, normal.z);
         let steepness = level.length();
         let downhill = level / steepness;
+        // dv = g (sin a - tan(max_slope) cos a) h.
         let along = self.gravity_m_s2 * (steepness - math::tan(limit) * normal.y) * self.dt_s;
         // The horizontal part of the velocity along the surface.
         let speed = slide.dot(downhill).max(0.0) + along.max(0.0) * normal.y;
@@ -62,6 +63,7 @@ impl CharacterController<'_> {
     /// Returns a slide after a step of friction on a surface whose normal has the vertical component `levelness`.
     fn braked(&self, slide: Vec3, levelness: f32) -> Vec3 {
         let friction = math::tan(self.probe.body.max_slope_rad).max(0.1);
+        // dv = mu g cos a h.
         let lost = self.gravity_m_s2 * friction * levelness * self.dt_s;
         let speed = slide.length();
         if speed <= lost {

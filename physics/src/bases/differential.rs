@@ -26,8 +26,9 @@ impl WheelGeometry {
     /// of both speeds forward, their difference over the wheel base to the left.
     ///
     /// # Source
-    /// R. Siegwart, I. R. Nourbakhsh, Introduction to Autonomous Mobile Robots (2004), section 3.2.
+    /// R. Siegwart, I. R. Nourbakhsh, Introduction to Autonomous Mobile Robots (2004), section 3.2.2: forward kinematic models.
     pub fn twist(&self, wheel_rad_s: [f64; 2]) -> PlanarTwist {
+        // v = (r_l w_l + r_r w_r) / 2 and omega = (r_r w_r - r_l w_l) / b.
         let [left, right] = [0, 1].map(|side| self.radius_m[side] * wheel_rad_s[side]);
         PlanarTwist {
             forward_m_s: 0.5 * (left + right),
@@ -39,6 +40,7 @@ impl WheelGeometry {
     /// Returns the rates of the left and right wheel (rad/s) for a forward speed and a yaw rate; the inverse of
     /// [`WheelGeometry::twist`]. Such wheels cannot go sideways.
     pub fn rates(&self, forward_m_s: f64, yaw_rate_rad_s: f64) -> [f64; 2] {
+        // w_l = (v - b omega / 2) / r_l and w_r = (v + b omega / 2) / r_r.
         let turn = 0.5 * self.base_m * yaw_rate_rad_s;
         [
             (forward_m_s - turn) / self.radius_m[0],
@@ -94,9 +96,11 @@ pub(crate) fn ramp(now: f64, target: f64, acceleration: f64, dt_s: f64) -> (f64,
     let change = target - now;
     let needed_s = change.abs() / acceleration;
     if needed_s >= dt_s {
+        // v = v0 + a t, and the mean of both ends.
         let end = now + acceleration.copysign(change) * dt_s;
         (end, 0.5 * (now + end))
     } else {
+        // For t0 = |v - v0| / a it changes, then it stays: the mean is v - (v - v0) t0 / (2 t).
         let ramped = needed_s / dt_s;
         (target, target - 0.5 * change * ramped)
     }

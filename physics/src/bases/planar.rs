@@ -44,6 +44,7 @@ impl PlanarPose {
     #[must_use]
     pub fn advanced(&self, twist: &PlanarTwist, duration_s: f64) -> Self {
         let turn = twist.yaw_rate_rad_s * duration_s;
+        // An arc of the angle phi over the time t has the chord v t sin(phi/2) / (phi/2), half of phi aside.
         let chord = sinc(0.5 * turn) * duration_s;
         let (sin, cos) = libm::sincos(self.heading_rad + 0.5 * turn);
         Self {

@@ -52,6 +52,7 @@ impl ApproachMotion {
 /// Returns the speed of a body after an accelerated displacement along its direction; 0 where it turned before. Its
 /// duration is twice the displacement over the sum of both speeds.
 pub(super) fn speed_after(speed: f32, acceleration: f32, way_m: f32) -> f32 {
+    // v^2 = v0^2 + 2 a s.
     (speed * speed + 2.0 * acceleration * way_m).max(0.0).sqrt()
 }
 

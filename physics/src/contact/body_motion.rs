@@ -46,6 +46,7 @@ impl BodyMotion {
 
     /// Returns the position of the centre of mass of a body in free flight after a time, or before.
     pub(super) fn center_after(&self, time_s: f32) -> Vec3 {
+        // x + v t + g t^2 / 2.
         self.center + self.ahead + (self.linear + self.gravity * (0.5 * time_s)) * time_s
     }
 

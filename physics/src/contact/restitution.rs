@@ -1,9 +1,15 @@
 //! Restitution of impacts.
 //!
-//! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds
-//! until the impact, half a step's on average at every rebound, and with what it added beyond the surface to a body that
-//! was stopped there. Here a body in free flight leaves a surface at its speed of impact times the restitution. A body on
-//! joints yields as its joints do, and takes its share of the impulse: it is handled after its tree was assembled again.
+//! rapier gives back a share of the speed that a body had when the step began in which it hits: without what gravity adds on
+//! the last bit of the way, half a step's on the mean at every rebound, and with what it added beyond the surface to a body
+//! that was stopped there. A body that flew into something leaves it as fast as it met it, times the restitution, at the
+//! surface. What hangs on joints gives way as its joints do, and takes its part of the blow: it is looked at after its tree was
+//! put together again.
+//!
+//! # Source
+//! Newton's law of restitution, `v' = -e v` along the normal. B. Mirtich, J. Canny, Impulse-based simulation of rigid bodies (1995):
+//! how a point answers an impulse. E. Catto, Fast and simple physics using sequential impulses (GDC 2006): sweeps over the points,
+//! each of which keeps the sum of its impulses within its bounds.
 
 use super::approach::{ApproachMotion, speed_after};
 use super::body_motion::{BodyMotion, before};
@@ -207,6 +213,7 @@ impl RestitutionContext<'_> {
                 hits.push(ImpactPoint {
                     pair: (a.min(b), a.max(b)),
                     sides,
+                    // 1/m_eff is the sum of both sides'.
                     mass_kg: yields.recip(),
                     parting: self.parting(
                         engine,
@@ -266,6 +273,7 @@ impl RestitutionContext<'_> {
                 })
         });
         let way_m = (one - two).dot(normal);
+        // e times the speed at which they met, and what gravity made of it since.
         speed_after(restitution * approach.meeting, pull, way_m)
     }
 }
@@ -357,6 +365,7 @@ impl ImpactPoint {
         } else {
             0.0
         };
+        // dP = m_eff (wanted - found), and the sum of all dP within its bound.
         let added = (self.added + self.mass_kg * lacks).max(least);
         let push = added - self.added;
         self.added = added;
@@ -419,5 +428,6 @@ fn inverse_effective_mass(engine: &RapierWorld, body: RigidBodyHandle, turn: Vec
         return 0.0;
     };
     let properties = rigid.mass_properties();
+    // 1/m + (r x n)^T I^-1 (r x n).
     properties.effective_inv_mass.x + turn.dot(properties.effective_world_inv_inertia * turn)
 }

@@ -79,8 +79,11 @@ pub(crate) fn soft(
     } else {
         libm::cosh(run * libm::sqrt(damping * damping - 1.0))
     };
+    // The determinant: 1 - c = exp(-2 z w h).
     let c = 1.0 - decay * decay;
+    // The trace: c e h = 2 - c - 2 exp(-z w h) cos(w h sqrt(1 - z^2)).
     let stiffness = 2.0 - c - 2.0 * decay * turn;
+    // rapier's own, of its frequency W and damping ratio Z, with a = W h: c / (1 - c) = a^2 + 2 Z a, c e h = a^2 (1 - c).
     let ratio = c / (1.0 - c);
     let run_of_rapier = libm::sqrt(stiffness / (1.0 - c));
     let softness = SpringCoefficients {

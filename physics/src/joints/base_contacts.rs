@@ -4,6 +4,14 @@
 //! freedoms are eliminated, so that each joint has its true effective inertia: a knee under load a whole trunk, not a
 //! shank. The supporting points are found in a few iterations, in which points that would pull are released and points that
 //! would need more friction than there is slip.
+//!
+//! With the points' velocities `J v`, v the root's six and the joints', a step of length h is
+//! `(M + h b J^T J) v' = M v + h (tau - C + J^T f)`: the brake b of points that stand, and the friction f of those that slip. M is
+//! `[I^c_0 F; F^T H]` as in `floating_base`.
+//!
+//! # Source
+//! The conditions of a point, which presses or parts and sticks or slips, are those of D. E. Stewart, J. C. Trinkle (Int. J. Numer.
+//! Methods Eng. 39, 1996), with Coulomb's cone; here a set of active points is sought instead of the complementarity problem solved.
 
 use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
 use super::floating_base::{FloatingBase, dot};
@@ -91,6 +99,7 @@ impl ReducedProblem {
     ) -> Self {
         let mut inertia = motion.held_inertia();
         let bias = motion.along(loads, 0);
+        // H q' - h C.
         let mut momentum = inertia.times(now);
         for (momentum, bias) in momentum.iter_mut().zip(&bias) {
             *momentum -= dt_s * bias;
@@ -109,6 +118,7 @@ impl ReducedProblem {
         };
         let before = floating.before(&motion.root, motion.root_velocity);
         let mut own = floating.inertia();
+        // I^c_0 v_0 + F q'.
         let mut root_momentum: [f64; 6] = std::array::from_fn(|k| {
             let shared = floating.columns.iter().zip(now);
             let joints: f64 = shared.map(|(column, now)| column[k] * now).sum();
@@ -136,6 +146,7 @@ impl ReducedProblem {
             .collect();
         let strength = brake * dt_s;
         for (rows, hold) in rows.iter().zip(holds) {
+            // h J^T f.
             for (row, force) in rows.iter().zip(hold.force().to_array()) {
                 for (root, way) in root_momentum.iter_mut().zip(row.root) {
                     *root += dt_s * force * way;
@@ -144,6 +155,7 @@ impl ReducedProblem {
                     *joint += dt_s * force * way;
                 }
             }
+            // h b J^T J.
             for (row, _) in rows.iter().zip(hold.holds()).filter(|(_, holds)| *holds) {
                 for k in 0..6 {
                     for j in 0..=k {
@@ -160,6 +172,7 @@ impl ReducedProblem {
                 }
             }
         }
+        // Schur's complement: H - F^T I^c_0^-1 F, and the same of the momentum.
         let factor = own.factor();
         let answer = factor.solve(&root_momentum);
         for (k, column) in shared.iter().enumerate() {
@@ -212,6 +225,7 @@ fn rows(
 impl BaseContactSolver {
     /// Returns the root's response when the joints have these velocities at the end of the step.
     pub(super) fn answer(&self, velocities: &[f64], holds: &[SupportState]) -> BaseResponse {
+        // I^c_0 v_0 = p_0 - F q'.
         let mut left = self.momentum;
         for (column, velocity) in self.shared.iter().zip(velocities) {
             for (left, shared) in left.iter_mut().zip(column) {
@@ -223,6 +237,7 @@ impl BaseContactSolver {
             let along = |k: usize| {
                 let moves = dot(&rows[k].root, &root) + dot(&rows[k].joints, velocities);
                 if hold.holds()[k] {
+                    // -b J v.
                     -self.brake * moves
                 } else {
                     0.0
@@ -247,6 +262,7 @@ pub(super) fn update_support_states(
     let mut changed = false;
     let weighed = motion.supports.iter().zip(&loads.carried);
     for (((support, weight), force), hold) in weighed.zip(&answer.forces).zip(holds) {
+        // f_n >= 0, and |f_t| <= mu f_n with the weight there for f_n.
         let aside = libm::hypot(force.x, force.z);
         let most = support.friction * weight;
         let next = match *hold {

@@ -4,8 +4,14 @@
 //! energy of the difference from free motion, plus each effort's integral. Newton's method with a line search finds them; a
 //! few iterations suffice, whatever the gains.
 //!
+//! With the inertia H, the velocity v at the end of a step of length h, the velocity `v_free` that it would have without efforts, and
+//! efforts tau(J v) along the rows J, that is `1/2 (v - v_free)^T H (v - v_free) - h sum of the integrals of tau`. Its minimum is
+//! where the step's momentum is in balance: `H (v - v_free) = h J^T tau(J v)`.
+//!
 //! # Source
-//! The formulation is that of J. J. Moreau's time stepping; E. Todorov, "Convex and analytically-invertible dynamics with
+//! The formulation is that of J. J. Moreau's time stepping, by velocities and impulses as D. E. Stewart, J. C. Trinkle, "An
+//! implicit time-stepping scheme for rigid body dynamics with inelastic collisions and Coulomb friction" (Int. J. Numer. Methods
+//! Eng. 39, 1996), have it; E. Todorov, "Convex and analytically-invertible dynamics with
 //! contacts and constraints" (ICRA 2014), for writing all efforts as one convex problem.
 
 /// Most iterations; five are usual.
@@ -169,6 +175,7 @@ impl EffortProblem {
             let mut curvature = self.inertia.clone();
             let mut falls = Vec::with_capacity(self.elements.len());
             for element in &self.elements {
+                // The Hessian: H + h J^T diag(-d tau / d v) J.
                 let (_, fall) = element.at(element.velocity(&velocity));
                 let slope = self.dt_s * fall;
                 curvature.add(element.index, element.index, slope);
@@ -183,6 +190,7 @@ impl EffortProblem {
                 break;
             }
             let gradient: Vec<f64> = self.gradient(&velocity).iter().map(|g| -g).collect();
+            // Newton's step: Hessian * way = -gradient.
             let way = curvature.factor().solve(&gradient);
             let stride = self.stride(&velocity, &way);
             for (v, d) in velocity.iter_mut().zip(&way) {
@@ -208,6 +216,7 @@ impl EffortProblem {
             .zip(&self.free)
             .map(|(v, f)| v - f)
             .collect();
+        // H (v - v_free) - h J^T tau(J v).
         let mut gradient = self.inertia.times(&off);
         for (g, effort) in gradient.iter_mut().zip(self.efforts(velocity)) {
             *g -= self.dt_s * effort;
@@ -217,6 +226,7 @@ impl EffortProblem {
 
     /// Returns the step length along `way`: to the minimum, at most 1.
     fn stride(&self, from: &[f64], way: &[f64]) -> f64 {
+        // The derivative along the way.
         let rise = |stride: f64| -> f64 {
             let there: Vec<f64> = from.iter().zip(way).map(|(v, d)| v + stride * d).collect();
             self.gradient(&there)

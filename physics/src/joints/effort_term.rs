@@ -1,4 +1,11 @@
-//! Joint efforts that depend on the velocity at the end of a step.
+//! Efforts along joints that answer to the velocity at the end of a step.
+//!
+//! Each is `clamp(offset - slope v, bounds)` with the velocity v at the end of the step, of length h. Springs and servos are those of
+//! the backward Euler method, whose position at the end is `q + h v`: stable for any stiffness k and damping d.
+//!
+//! # Source
+//! E. Catto, Soft Constraints (GDC 2011), for springs by backward Euler; J. Baumgarte, Stabilization of constraints and integrals of
+//! motion in dynamical systems (Comput. Methods Appl. Mech. Eng. 1, 1972), for positions that are mended by velocities.
 
 use super::SlipSpring;
 use super::convex_solver::EffortTerm;
@@ -82,12 +89,14 @@ impl JointDof {
         } else {
             1.0 / (1.0 - libm::exp(-times)) - 1.0 / times
         };
+        // -d ((1 - theta) v0 + theta v) with theta = 1 / (1 - exp(-z)) - 1 / z, z = d h / m: v = v0 exp(-z).
         let offset = -damping * (1.0 - end) * self.velocity;
         self.element(offset, damping * end, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Coulomb friction: the effort that stops the motion within the step, up to its bound.
     pub(super) fn friction(&self, friction: f64) -> EffortTerm {
+        // |tau| <= F, and against v: the step from -F to F at v = 0 is made a steep slope.
         let slope = RIGID * self.inertia / self.dt_s;
         self.element(0.0, slope, [-friction, friction])
     }
@@ -98,6 +107,7 @@ impl JointDof {
         let (stiffness, most) = (f64::from(spring.stiffness), f64::from(spring.max_effort));
         let stiff = stiffness * self.dt_s * self.dt_s > self.inertia;
         let share = if stiff { 0.5 } else { 0.25 };
+        // F - k h/2 (v0 + v)/2 in the middle of the step, F - k h (v0 + v)/2 at its end.
         let slope = share * stiffness * self.dt_s;
         let offset = f64::from(spring.effort) - slope * self.velocity;
         self.element(offset, slope, [-most, most])
@@ -111,6 +121,7 @@ impl JointDof {
         } else {
             [f64::NEG_INFINITY, 0.0]
         };
+        // k (limit - q - h v), in one direction only.
         let offset = stiffness * (limit - self.position);
         self.element(offset, stiffness * self.dt_s, bounds)
     }
@@ -126,8 +137,8 @@ impl JointDof {
         let slope = RIGID * self.inertia / self.dt_s;
         let wanted = multiplier * leader.position + offset;
         let off = self.position - wanted.max(stops[0]).min(stops[1]);
-        let mended = (MIMIC_CORRECTION * off / self.dt_s)
-            .clamp(-MIMIC_CORRECTION_SPEED, MIMIC_CORRECTION_SPEED);
+        // Baumgarte: the velocity of what is off is -beta / h times it.
+        let mended = (LINKED * off / self.dt_s).clamp(-LINKED_SPEED, LINKED_SPEED);
         EffortTerm {
             follows: Some((leader.index, multiplier)),
             ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])
@@ -139,6 +150,7 @@ impl JointDof {
         let target = f64::from(pull.target);
         let carry = f64::from(pull.feed_forward) * self.weight;
         let most = f64::from(pull.max_effort);
+        // k (target - (q + h v)) - d v.
         let spring = |stiffness: f64, damping: f64| {
             let offset = stiffness * (target - self.position) + carry;
             (offset, damping + stiffness * self.dt_s)
@@ -151,6 +163,7 @@ impl JointDof {
             } => {
                 let slow = f64::from(frequency_rad_s).powi(2) * self.inertia;
                 let stiffness = slow.max(most / f64::from(lead));
+                // Critical damping: d = 2 sqrt(k m).
                 spring(stiffness, 2.0 * (stiffness * self.inertia).sqrt())
             }
             ActuationGain::Velocity(gain) => (f64::from(gain) * target + carry, gain.into()),

@@ -1,14 +1,18 @@
-//! Floating base: a free root that reacts to its joints.
+//! A root that is free to answer what its joints do.
+//!
+//! With the root's acceleration `a_0`, the inertia `I^c_0` of the whole tree and F, the tree's momentum for each unit of the joints'
+//! velocities, the equation of motion is `[I^c_0 F; F^T H] [a_0; q''] = [-p_0; tau - C]`. Elimination of `a_0` leaves the joints
+//! `H - F^T I^c_0^-1 F` as inertia and `C - F^T I^c_0^-1 p_0` as bias.
+//!
+//! # Source
+//! R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: forward dynamics of floating bases. The elimination is Schur's
+//! complement.
 
 use super::convex_solver::{CholeskyFactor, SymmetricMatrix};
 use super::tree_dynamics::{BodyAcceleration, JointAxisState, LumpedBody, Wrench};
 use glam::DVec3;
 
-/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints were locked, and its rotation.
-///
-/// # Source
-/// R. Featherstone, Rigid Body Dynamics Algorithms (2008), 9.4: floating bases, here with the root's freedoms eliminated
-/// (Schur's complement).
+/// The six freedoms of a root: the velocity of the tree's centre of mass as if all joints stood, and its rotation.
 pub(super) struct FloatingBase {
     /// The tree as one body.
     pub(super) whole: LumpedBody,
@@ -39,7 +43,7 @@ impl FloatingBase {
             .zip(carried)
             .filter(|(axis, _)| axis.parent.is_none());
         let whole = children.fold(*root, |whole, (_, mass)| whole.with(mass));
-        // About the common centre of mass, linear and angular momentum are decoupled.
+        // F_k = I^c_k S_k, about the centre of mass of all, where linear and angular momentum are apart.
         let columns = momenta
             .iter()
             .zip(carried)
@@ -57,7 +61,7 @@ impl FloatingBase {
         }
     }
 
-    /// Subtracts the inertia that joints lose because the root is free.
+    /// Takes off what the joints' inertia loses because the root gives way: `F^T I^c_0^-1 F`.
     pub(super) fn subtract_base_inertia(&self, inertia: &mut SymmetricMatrix) {
         for (k, column) in self.columns.iter().enumerate() {
             let answer = self.factor.solve(column);
@@ -67,7 +71,7 @@ impl FloatingBase {
         }
     }
 
-    /// Returns the inertia matrix of the six freedoms.
+    /// Returns what the six freedoms resist with, `I^c_0`.
     pub(super) fn inertia(&self) -> SymmetricMatrix {
         six_by_six(&self.whole)
     }
@@ -86,7 +90,7 @@ impl FloatingBase {
         )
     }
 
-    /// Subtracts the efforts that joints lose because the root is free under a load.
+    /// Takes off what the joints' efforts lose because the root gives way under a load: `F^T I^c_0^-1 p_0`.
     pub(super) fn subtract_base_load(&self, load: &Wrench, efforts: &mut [f64]) {
         let answer = self.factor.solve(&self.generalized_force(load));
         for (effort, column) in efforts.iter_mut().zip(&self.columns) {

@@ -3,6 +3,8 @@
 //! A leaf that is hit beside its hinge gives way about the hinge and nowhere else. Rebounds that took its body for a free
 //! or a fixed one would part too fast or too slowly.
 //!
+//! A point goes with `J q'` along a direction, an impulse P there changes velocities by `H^-1 J^T P`, and the point by `J H^-1 J^T P`.
+//!
 //! # Source
 //! R. Featherstone, Rigid Body Dynamics Algorithms (2008), 11.7: impulsive dynamics in joint space.
 
@@ -57,7 +59,7 @@ pub(crate) struct ImpulsePoint {
 }
 
 impl ImpulsePoint {
-    /// Returns the speed of the point after 1 N·s, m/s.
+    /// Returns how fast the point goes after 1 N·s, m/s: `J H^-1 J^T`.
     pub(crate) fn inverse_effective_mass(&self) -> f64 {
         dot(&self.row, &self.answer)
     }
@@ -137,6 +139,7 @@ impl ImpulseDynamics {
         let mut along = vec![0.0; self.velocities.len()];
         along[k] = 1.0;
         let answer = self.inertia.factor().solve(&along);
+        // q'_k + (H^-1)_kk P = 0.
         let impulse = -self.velocities[k] / answer[k];
         for (velocity, answer) in self.velocities.iter_mut().zip(&answer) {
             *velocity += impulse * answer;
@@ -165,6 +168,7 @@ impl ImpulseDynamics {
         }
         let mut row = vec![0.0; self.velocities.len()];
         while let Some(k) = link {
+            // J_k = n . S_k at the point.
             row[k] = self.axes[k].moves(at).0.dot(direction);
             link = self.axes[k].parent;
         }
@@ -191,6 +195,7 @@ impl ImpulseDynamics {
     /// Returns the velocity change by 1 N·s. Joints at a stop are not moved through it.
     fn answer(&mut self, row: &[f64]) -> Vec<f64> {
         let mut inertia = self.inertia.clone();
+        // H^-1 J^T.
         let mut answer = inertia.factor().solve(row);
         let mut held = vec![false; self.at_stop.len()];
         loop {
@@ -280,6 +285,7 @@ fn link(
             && let Some(mimic) = &joint.values.mimic
             && let Some(leader) = free.iter().position(|other| *other == leader)
         {
+            // H + s w w^T for the equation w q' = 0, w = (1, -multiplier) for follower and leader.
             let share = f64::from(mimic.multiplier);
             let strength = RIGID * inertia.get(k, k);
             inertia.add(k, k, strength);
@@ -289,7 +295,7 @@ fn link(
     }
 }
 
-/// Returns the inertia matrix of `n` joints and of a free root.
+/// The inertia of `n` joints and of a root that is free: `[H F^T; F I^c_0]`.
 fn with_root(joints: &SymmetricMatrix, floating: &FloatingBase, n: usize) -> SymmetricMatrix {
     let mut all = SymmetricMatrix::zero(n + 6);
     for k in 0..n {

@@ -141,11 +141,13 @@ impl TreeSolver<'_> {
                 answer: of_root,
             } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
-            for _ in 0..if moves { MIDPOINT_ITERATIONS } else { 0 } {
+            for _ in 0..if moves { SWEEPS } else { 0 } {
+                // The implicit midpoint rule, by fixed-point iteration: a = a(q + h/2 v_m, v_m) with v_m = v + h/2 a.
                 let between = plus(&v, &gained, 0.5 * part_s);
                 let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
                 gained = self.part(&middle, &q, &v, part_s).gained;
             }
+            // q' = q + h v_m and v' = v + h a.
             let next = plus(&q, &plus(&v, &gained, 0.5 * part_s), part_s);
             q = self.within_stops(&q, next);
             v = plus(&v, &gained, part_s);
@@ -275,6 +277,7 @@ impl TreeSolver<'_> {
             let mut inertia = reduced.inertia.clone();
             let mut momentum = reduced.momentum.clone();
             let mut freedoms = freedoms.clone();
+            // H + diag(armature), and its momentum.
             for (k, resistance) in resistances.iter().enumerate() {
                 let armature = f64::from(resistance.armature).max(1e-9);
                 inertia.add(k, k, armature);
@@ -299,6 +302,7 @@ impl TreeSolver<'_> {
                     let velocity = velocity[freedom.index];
                     let own = self.own_elements(freedom, resistance);
                     let own: f64 = own.map(|element| element.at(velocity).0).sum();
+                    // All others' effort is what is missing in m a = own + others.
                     freedom.inertia * (velocity - freedom.velocity) / part_s - own
                 })
                 .collect();

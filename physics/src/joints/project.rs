@@ -165,6 +165,7 @@ impl TreeDynamics<'_> {
             };
             *above = above.plus(&below, 1.0);
         }
+        // S^T h: the momentum along each joint of all that it moves.
         let along = self.axes.iter().zip(&momenta);
         let mut along: Vec<f64> = along
             .map(|(axis, momentum)| axis.generalized_force_of(momentum))
@@ -172,6 +173,7 @@ impl TreeDynamics<'_> {
         if let Some(floating) = floating {
             floating.subtract_base_load(&whole, &mut along);
         }
+        // H q' = S^T h, the normal equations of the least constraint; stops take what they hold.
         let velocity = EffortProblem {
             free: inertia.factor().solve(&along),
             inertia,
@@ -182,6 +184,7 @@ impl TreeDynamics<'_> {
         let Some(floating) = floating else {
             return (velocity, None);
         };
+        // I^c_0 v_0 = h_0 - F q'.
         let mut left = floating.generalized_force(&whole);
         for (column, velocity) in floating.columns.iter().zip(&velocity) {
             for (left, share) in left.iter_mut().zip(column) {

@@ -125,8 +125,8 @@ pub(super) fn place(
     })
 }
 
-/// Returns the vertical forces with the least squares that support a weight (about the origin), as far as pushes can. Shape
-/// (support,), N.
+/// The vertical forces with the least squares that carry a weight (about the origin), as far as pushes can: with the balance
+/// `A f = w` of force and two moments, `f = A^T (A A^T)^-1 w`. Shape (support,), N.
 pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) -> Vec<f64> {
     let mut carries = vec![true; supports.len()];
     let mut forces = vec![0.0; supports.len()];
@@ -155,6 +155,7 @@ pub(super) fn forces(supports: &[SupportPoint], weight: &Wrench, center: DVec3) 
         for k in 0..3 {
             squares.add(k, k, ridge);
         }
+        // (A A^T)^-1 w.
         let shares = squares.factor().solve(&needed);
         let mut pulls = false;
         for (k, support) in supports.iter().enumerate() {

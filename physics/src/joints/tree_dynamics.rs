@@ -1,8 +1,12 @@
 //! Dynamics of a kinematic tree: joint-space inertia, and the efforts of gravity and rotation.
 //!
+//! The equation of motion is `H q'' + C = tau`: the joint-space inertia matrix H, the bias C of gravity and of velocities, and the
+//! efforts tau along the joints. In the comments, S is the motion of a joint's body for each unit of its velocity, lambda a body's
+//! parent, I its inertia, and I^c that of it and all beyond it as one body.
+//!
 //! # Source
-//! R. Featherstone, Rigid Body Dynamics Algorithms (2008): the composite-rigid-body method (6.2) and the recursive
-//! Newton-Euler method (5.3), written here in world coordinates about centres of mass.
+//! R. Featherstone, Rigid Body Dynamics Algorithms (2008): the composite-rigid-body algorithm (section 6.2, table 6.2) for H, and
+//! the recursive Newton-Euler algorithm (section 5.3, table 5.1) for C, written here in world coordinates about centres of mass.
 
 use super::ExternalWrench;
 use super::base_contacts::BaseResponse;
@@ -67,7 +71,7 @@ impl LumpedBody {
         }
     }
 
-    /// Returns the inertia about another point (Steiner).
+    /// The inertia about another point (Steiner): `I_p = I_c + m (|d|^2 1 - d d^T)`.
     fn about(&self, point: DVec3) -> DMat3 {
         let d = self.center - point;
         let outer = DMat3::from_cols(d * d.x, d * d.y, d * d.z);
@@ -90,6 +94,7 @@ pub(super) struct JointAxisState {
 impl JointAxisState {
     /// Returns the velocity of a point, and the angular velocity, for each unit of this joint's velocity.
     pub(super) fn moves(&self, point: DVec3) -> (DVec3, DVec3) {
+        // S at the point: (z x r, z) about an axis z, (z, 0) along one.
         match self.kind {
             JointKind::Hinge => (self.direction.cross(point - self.at), self.direction),
             JointKind::Slide => (self.direction, DVec3::ZERO),
@@ -99,6 +104,7 @@ impl JointAxisState {
     /// Returns the generalized force of a wrench about the origin: its component along the joint.
     pub(super) fn generalized_force_of(&self, wrench: &Wrench) -> f64 {
         let Wrench { force, moment } = *wrench;
+        // S^T f.
         match self.kind {
             JointKind::Hinge => self.direction.dot(moment - self.at.cross(force)),
             JointKind::Slide => self.direction.dot(force),
@@ -127,6 +133,7 @@ impl BodyAcceleration {
 
     fn acceleration_at(&self, point: DVec3) -> DVec3 {
         let arm = point - self.center;
+        // a_p = a_c + alpha x r + omega x (omega x r).
         self.acceleration
             + self.angular_acceleration.cross(arm)
             + self.angular.cross(self.angular.cross(arm))
@@ -161,9 +168,11 @@ impl TreeDynamics<'_> {
         let mut carried = self.masses.clone();
         for k in (0..carried.len()).rev() {
             if let Some(parent) = self.axes[k].parent {
+                // I^c_lambda += I^c_k, from the leaves to the root (table 6.2).
                 carried[parent] = carried[parent].with(&carried[k]);
             }
         }
+        // F_k = I^c_k S_k (table 6.2).
         let momentum = |(axis, lump): (&JointAxisState, &LumpedBody)| {
             let (linear, angular) = axis.moves(lump.center);
             (linear * lump.mass, lump.inertia * angular)
@@ -189,6 +198,7 @@ impl TreeDynamics<'_> {
         for (k, momentum) in momenta.iter().enumerate() {
             let mut other = Some(k);
             while let Some(j) = other {
+                // H_kj = F_k^T S_j, for k itself and every joint between it and the root (table 6.2).
                 let (linear, angular) = self.axes[j].moves(carried[k].center);
                 inertia.set(k, j, momentum.0.dot(linear) + momentum.1.dot(angular));
                 other = self.axes[j].parent;
@@ -217,8 +227,10 @@ impl TreeDynamics<'_> {
             let gain = axis.direction * accelerations[k];
             let center = self.masses[k].center;
             let mut body = BodyAcceleration::at_constant_velocity(center, self.angular[k]);
+            // a_k = a_lambda + S_k q''_k + v_k x S_k q'_k (table 5.1), in three dimensions.
             match axis.kind {
                 JointKind::Hinge => {
+                    // alpha = alpha_lambda + omega_lambda x z q' + z q''.
                     body.angular_acceleration =
                         parent.angular_acceleration + parent.angular.cross(turn) + gain;
                     let arm = center - axis.at;
@@ -227,6 +239,7 @@ impl TreeDynamics<'_> {
                         + body.angular.cross(body.angular.cross(arm));
                 }
                 JointKind::Slide => {
+                    // With Coriolis' 2 omega_lambda x z q'.
                     body.angular_acceleration = parent.angular_acceleration;
                     body.acceleration =
                         parent.acceleration_at(center) + 2.0 * parent.angular.cross(turn) + gain;
@@ -246,6 +259,7 @@ impl TreeDynamics<'_> {
             whole = whole.plus(&wrench, 1.0);
             let mut link = touch.link;
             while let Some(k) = link {
+                // tau_k = S_k^T f for every joint between the touched body and the root.
                 efforts[k] += self.axes[k].generalized_force_of(&wrench);
                 link = self.axes[k].parent;
             }
@@ -267,6 +281,7 @@ impl TreeDynamics<'_> {
             _ => self.root,
         };
         let moving = self.moving_over(root, accelerations);
+        // Newton's m a - m g and Euler's I alpha; rapier adds omega x I omega itself.
         let wrench = |body: &BodyAcceleration, lump: &LumpedBody| Wrench {
             force: body.acceleration * lump.mass - self.gravity * lump.weight_mass,
             moment: lump.inertia * body.angular_acceleration,
@@ -301,6 +316,7 @@ impl TreeDynamics<'_> {
     /// Returns the loads of all bodies at zero joint and root acceleration.
     pub(super) fn loads(&self) -> TreeLoads {
         let n = self.axes.len();
+        // f^B = I a + v x* I v less what acts from outside (table 5.1), about the origin: here the weight, below what laws push with.
         let own = |body: &BodyAcceleration, lump: &LumpedBody| {
             let weight = -self.gravity * lump.weight_mass;
             let force = body.acceleration * lump.mass + weight;
@@ -355,6 +371,7 @@ impl TreeDynamics<'_> {
                 Some(parent) => &mut links[parent],
                 None => &mut root,
             };
+            // f_lambda += f_k, from the leaves to the root (table 5.1).
             for (load, below) in above.iter_mut().zip(below) {
                 *load = load.plus(&below, 1.0);
             }
@@ -369,6 +386,7 @@ impl TreeDynamics<'_> {
     /// Returns the efforts that bear the loads with motion (0) or of weight (1). Shape (freedom,).
     pub(super) fn along(&self, loads: &TreeLoads, which: usize) -> Vec<f64> {
         let pairs = self.axes.iter().zip(&loads.links);
+        // tau_k = S_k^T f_k (table 5.1).
         pairs
             .map(|(axis, load)| axis.generalized_force_of(&load[which]))
             .collect()
