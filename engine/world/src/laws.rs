@@ -17,7 +17,7 @@ pub(crate) fn known() -> &'static [&'static LawInfo] {
     &KNOWN
 }
 
-/// What a law does that is asked for by its name alone: numbers that need no choice.
+/// The numbers of a law that is given by its name alone, where these need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefaultAction {
     /// The law's id.

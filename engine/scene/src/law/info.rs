@@ -1,4 +1,4 @@
-//! What is known about a law.
+//! The description of a law.
 
 use super::LawSpec;
 use crate::error::SceneError;
@@ -33,22 +33,22 @@ pub struct ParamInfo {
     pub plausible: [f64; 2],
 }
 
-/// What is known about a law: for docs, calibration and errors.
+/// The description of a law: for docs, calibration and errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawInfo {
     /// The id, unique over all engines.
     pub id: &'static str,
     /// The version of the equation.
     pub version: u32,
-    /// What a person calls it: `"quadratic air drag"`.
+    /// Spoken name: `"quadratic air drag"`.
     pub name: &'static str,
     /// The equation, in plain text with units.
     pub equation: &'static str,
-    /// Where the equation comes from.
+    /// The source of the equation.
     pub source: &'static str,
     /// The engine it acts in.
     pub engine: EngineKind,
-    /// What it acts on: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
+    /// The kind of thing that it acts on: `"object"`, `"contact"`, `"joint"`, `"material"`, `"world"`, `"sensor"`; see [`LawSpec::target`].
     pub acts_on: &'static str,
     /// Its parameters.
     pub params: &'static [ParamInfo],

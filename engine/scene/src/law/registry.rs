@@ -8,9 +8,9 @@ use std::fmt::Debug;
 /// A law: what is known about it, and how it acts in its engine.
 #[derive(Clone, Debug)]
 pub struct Law<A> {
-    /// What is known about it.
+    /// Its description.
     pub info: LawInfo,
-    /// How it acts: the engine's own, such as the stage of a step together with a function.
+    /// Its effect, in the engine's own type, such as the stage of a step together with a function.
     pub acts: A,
 }
 
@@ -59,7 +59,7 @@ pub struct ActingLaw<'a, A: 'static> {
     pub place: usize,
     /// Its numbers.
     pub values: LawValues<'a>,
-    /// How it acts.
+    /// Its effect.
     pub acts: &'static A,
 }
 

@@ -1,4 +1,4 @@
-//! How a law is asked for.
+//! The specification of a law: its values and target.
 
 use super::LawInfo;
 use crate::error::SceneError;
@@ -14,7 +14,7 @@ pub struct LawSpec {
     pub id: String,
     /// The version of the law's equation.
     pub version: u32,
-    /// What it acts on; `None`: everything it can act on. For a law on objects an object's name
+    /// The thing that it acts on; `None`: everything it can act on. For a law on objects an object's name
     /// (all of its bodies, free or moved by joints) or `OBJECT/PART`; on joints a joint's name,
     /// `OBJECT/JOINT` or a number; on contacts `NAME` (all contacts of it) or `NAME~NAME` (those between the two), where a
     /// name is an object's, a piece of structure's or a substance's; laws on the world take none.

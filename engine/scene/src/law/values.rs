@@ -5,9 +5,9 @@ use super::{LawInfo, LawSpec};
 /// A law that is asked for, with what is known about it.
 #[derive(Clone, Copy, Debug)]
 pub struct LawValues<'a> {
-    /// How it is asked for.
+    /// The installed specification.
     pub spec: &'a LawSpec,
-    /// What is known about it.
+    /// Its description.
     pub info: &'static LawInfo,
 }
 
