@@ -170,6 +170,17 @@ pub const fn beech() -> Finish {
     )
 }
 
+/// Golden brown teak.
+pub const fn teak() -> Finish {
+    Finish::tiled(
+        "teak",
+        "wood",
+        "wood",
+        [[178, 128, 82], [146, 98, 58], [0; 3]],
+        0.8,
+    )
+}
+
 /// Boards with white lacquer.
 pub const fn white_lacquer() -> Finish {
     Finish::plain("white_lacquer", "particle_board", [238, 236, 230])

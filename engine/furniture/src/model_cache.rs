@@ -143,29 +143,24 @@ pub fn built_to_size(settings: String, build: impl FnOnce() -> Model) -> Arc<Mod
 /// One of the entries of a kind that suit a style, in one of its variants; `None` when there is no such kind.
 pub fn cached_model(kind: &str, style: &Style, key: RandomKey) -> Option<Arc<CachedModel>> {
     let mut draw = key.stream();
-    let (index, entry) = *draw.choose(&entries_of(kind, style))?;
+    let entry = *draw.choose(&entries_of(kind, style))?;
     let variant = draw.bits() % entry.variants;
-    Some(variant_of(index, entry, style, variant))
+    Some(variant_of(entry, style, variant))
 }
 
 /// A variant of an entry.
-fn variant_of(
-    index: usize,
-    entry: &'static CatalogueEntry,
-    style: &Style,
-    variant: u64,
-) -> Arc<CachedModel> {
-    type Shelf = BTreeMap<(usize, &'static str, u64), Arc<CachedModel>>;
+fn variant_of(entry: &'static CatalogueEntry, style: &Style, variant: u64) -> Arc<CachedModel> {
+    type Shelf = BTreeMap<(&'static str, u64, &'static str, u64), Arc<CachedModel>>;
     static SHELF: Mutex<Shelf> = Mutex::new(BTreeMap::new());
     let lock = || SHELF.lock().unwrap_or_else(PoisonError::into_inner);
-    let place = (index, style.name, variant);
+    let place = (entry.kind, entry.seed, style.name, variant);
     if let Some(known) = lock().get(&place) {
         return known.clone();
     }
     let key = RandomKey::root(0)
         .child("furniture")
         .child(entry.kind)
-        .child(index as u64)
+        .child(entry.seed)
         .child(style.name)
         .child(variant);
     let made = Arc::new(CachedModel::new(entry.kind, (entry.build)(style, key)));

@@ -7,26 +7,31 @@ use crate::style::FrontStyle;
 use std::f32::consts::FRAC_PI_2;
 
 /// Thickness of boards, m.
-pub const BOARD_M: f32 = 0.018;
+pub(super) const BOARD_M: f32 = 0.018;
 /// Thickness of back panels, m.
 const BACK_M: f32 = 0.006;
 /// Which of a carcass' boards is its top.
-pub const TOP: usize = 3;
+pub(super) const TOP: usize = 3;
 /// Gap between neighbouring fronts, m.
-pub const GAP_M: f32 = 0.005;
+pub(super) const GAP_M: f32 = 0.005;
+
+/// What the compartments of a bookcase are called, from below.
+pub(super) const SHELVES: [&str; 6] = [
+    "shelf_1", "shelf_2", "shelf_3", "shelf_4", "shelf_5", "shelf_6",
+];
 
 /// A box of boards with an open front.
 #[derive(Clone, Copy, Debug)]
-pub struct Carcass {
+pub(super) struct Carcass {
     /// Outer corners, m; the front is at the larger z.
-    pub min: [f32; 3],
+    pub(super) min: [f32; 3],
     /// The highest corner, m.
-    pub max: [f32; 3],
+    pub(super) max: [f32; 3],
 }
 
 impl Carcass {
     /// A carcass on the floor (from `base_m` up), its back at z = `-depth_m / 2`.
-    pub fn standing(width_m: f32, base_m: f32, top_m: f32, depth_m: f32) -> Self {
+    pub(super) fn standing(width_m: f32, base_m: f32, top_m: f32, depth_m: f32) -> Self {
         Self {
             min: [-0.5 * width_m, base_m, -0.5 * depth_m],
             max: [0.5 * width_m, top_m, 0.5 * depth_m],
@@ -35,7 +40,7 @@ impl Carcass {
 
     /// Sides, bottom, top and back; shelves at `shelves` (share of the height, 0 to 1); walls between bays at `walls`
     /// (share of the width).
-    pub fn boards(&self, shelves: &[f32], walls: &[f32]) -> Vec<SolidMesh> {
+    pub(super) fn boards(&self, shelves: &[f32], walls: &[f32]) -> Vec<SolidMesh> {
         let ([x0, y0, z0], [x1, y1, z1]) = (self.min, self.max);
         let b = BOARD_M;
         let mut boards = vec![
@@ -68,7 +73,7 @@ impl Carcass {
     }
 
     /// The free space above the shelf at `share` (0: the bottom) up to the one at `next` (1: the top), over the whole width.
-    pub fn space(&self, share: f32, next: f32) -> ([f32; 3], [f32; 3]) {
+    pub(super) fn space(&self, share: f32, next: f32) -> ([f32; 3], [f32; 3]) {
         let height = self.max[1] - self.min[1];
         let surface = |s: f32| {
             if s <= 0.0 {
@@ -122,7 +127,7 @@ impl FrontStyle {
 
 /// A door in front of a carcass: from the lower left corner (x, y) to the upper right one, its back at z. The handle is an
 /// upright bar at the right edge, or at the left one.
-pub fn door(
+pub(super) fn door(
     name: &'static str,
     low: [f32; 2],
     high: [f32; 2],
@@ -167,7 +172,7 @@ fn knob(x: f32, y: f32, z: f32) -> SolidMesh {
 }
 
 /// An upright bar handle on the face at `z`.
-pub fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
+pub(super) fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
     let bar = rod(
         [x, low - 0.015, z + 0.025],
         [x, high + 0.015, z + 0.025],
@@ -178,7 +183,7 @@ pub fn upright_handle(x: f32, low: f32, high: f32, z: f32) -> SolidMesh {
 }
 
 /// A level bar handle on the face at `z`.
-pub fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
+pub(super) fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
     let bar = rod(
         [x - half - 0.015, y, z + 0.025],
         [x + half + 0.015, y, z + 0.025],
@@ -189,7 +194,7 @@ pub fn level_handle(x: f32, y: f32, z: f32, half: f32) -> SolidMesh {
 }
 
 /// A drawer: its front from the lower left corner to the upper right one with its back at z, and a box of `depth_m` behind.
-pub fn drawer(
+pub(super) fn drawer(
     name: &'static str,
     low: [f32; 2],
     high: [f32; 2],
@@ -234,7 +239,12 @@ pub fn drawer(
 }
 
 /// The free space in a [`drawer`].
-pub fn drawer_space(low: [f32; 2], high: [f32; 2], z: f32, depth_m: f32) -> ([f32; 3], [f32; 3]) {
+pub(super) fn drawer_space(
+    low: [f32; 2],
+    high: [f32; 2],
+    z: f32,
+    depth_m: f32,
+) -> ([f32; 3], [f32; 3]) {
     (
         [low[0] + 0.037, low[1] + 0.032, z - depth_m + 0.012],
         [high[0] - 0.037, high[1] - 0.03, z],

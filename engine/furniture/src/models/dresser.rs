@@ -1,49 +1,38 @@
 //! A chest of drawers.
 
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, drawer, drawer_space};
-use crate::finishes::{Finish, brass, walnut};
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::Finish;
 use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, rounded_block, tapered_leg};
-use crate::style::FrontStyle;
+use crate::style::{FrontStyle, Style};
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
+
+pub(super) const ENTRIES: &[CatalogueEntry] =
+    &[CatalogueEntry::new("dresser", "dresser", 22, dresser)];
 
 /// Two columns of drawers under one top, on legs.
 #[derive(Clone, Debug)]
-pub struct Dresser {
+struct Dresser {
     /// m.
-    pub width_m: f32,
+    width_m: f32,
     /// m.
-    pub height_m: f32,
+    height_m: f32,
     /// m.
-    pub depth_m: f32,
+    depth_m: f32,
     /// Drawers above each other.
-    pub rows: usize,
+    rows: usize,
     /// What the body is made of.
-    pub wood: Finish,
+    wood: Finish,
     /// What doors and drawers look like.
-    pub front: FrontStyle,
+    front: FrontStyle,
 }
-
-impl Default for Dresser {
-    fn default() -> Self {
-        Self {
-            width_m: 1.1,
-            height_m: 0.82,
-            depth_m: 0.45,
-            rows: 3,
-            wood: walnut(),
-            front: FrontStyle::plain(walnut(), brass()),
-        }
-    }
-}
-
-const NAMES: [&str; 8] = [
-    "drawer_1", "drawer_2", "drawer_3", "drawer_4", "drawer_5", "drawer_6", "drawer_7", "drawer_8",
-];
 
 impl Dresser {
     /// The model of these sizes and finishes.
-    pub fn build(&self) -> Model {
+    fn build(&self) -> Model {
         const LEG_M: f32 = 0.12;
         let (x, top) = (0.5 * self.width_m, self.height_m - 0.022);
         let carcass = Carcass::standing(self.width_m - 0.02, LEG_M, top, self.depth_m - BOARD_M);
@@ -92,4 +81,22 @@ impl Dresser {
         }
         model
     }
+}
+
+const NAMES: [&str; 8] = [
+    "drawer_1", "drawer_2", "drawer_3", "drawer_4", "drawer_5", "drawer_6", "drawer_7", "drawer_8",
+];
+
+fn dresser(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("dresser", key);
+    let height = d.m("height");
+    Dresser {
+        width_m: d.m("width"),
+        height_m: height,
+        depth_m: d.m("depth"),
+        rows: ((height / 0.26) as usize).clamp(2, 4),
+        wood: style.any_wood(&mut d.stream("wood")).clone(),
+        front: style.doors(),
+    }
+    .build()
 }

@@ -1,11 +1,23 @@
-//! Fruit and bread, and the boards they lie on.
+//! Fruit, bread and cake.
 
-use crate::finishes::{Finish, beech, black, steel};
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::{Finish, plastic};
 use crate::model::{Model, PartBuilder};
-use crate::shapes::{block, extrude, loft, oval, rod, rounded_block, surface_of_revolution};
+use crate::sampling::SizeSampler;
+use crate::shapes::{ball, cylinder, rod, rounded_block, surface_of_revolution, tube, vessel};
+use crate::style::Style;
+use dwell_scene::random::RandomKey;
+use std::f32::consts::TAU;
+
+pub(super) const ENTRIES: &[CatalogueEntry] = &[
+    CatalogueEntry::new("fruit_bowl", "fruit_bowl", 174, fruit_bowl),
+    CatalogueEntry::new("fruit", "food", 175, sample_fruit),
+    CatalogueEntry::new("bread", "bread", 176, sample_bread),
+    CatalogueEntry::new("cake", "cake", 177, cake),
+];
 
 /// An apple, a pear or an orange: a round fruit with a stalk; its colours are ground, blush, freckle.
-pub fn fruit(radius_m: f32, skin: &Finish) -> Model {
+fn fruit(radius_m: f32, skin: &Finish) -> Model {
     let r = radius_m;
     let shape = [
         (0.0, 0.06 * r),
@@ -29,7 +41,7 @@ pub fn fruit(radius_m: f32, skin: &Finish) -> Model {
 }
 
 /// Skin of a red apple.
-pub const fn red_skin() -> Finish {
+const fn red_skin() -> Finish {
     Finish::tiled(
         "red_apple",
         "food",
@@ -40,7 +52,7 @@ pub const fn red_skin() -> Finish {
 }
 
 /// Skin of a green apple.
-pub const fn green_skin() -> Finish {
+const fn green_skin() -> Finish {
     Finish::tiled(
         "green_apple",
         "food",
@@ -51,7 +63,7 @@ pub const fn green_skin() -> Finish {
 }
 
 /// Skin of an orange.
-pub const fn orange_skin() -> Finish {
+const fn orange_skin() -> Finish {
     Finish::tiled(
         "orange_peel",
         "food",
@@ -61,8 +73,66 @@ pub const fn orange_skin() -> Finish {
     )
 }
 
+fn sample_fruit(_style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("fruit", key);
+    let skins = [red_skin(), green_skin(), orange_skin()];
+    fruit(0.5 * d.m("width"), &skins[d.below("skin", 3)])
+}
+
+/// A bowl heaped with fruit.
+fn fruit_bowl(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("fruit_bowl", key);
+    let (w, h) = (d.m("width"), d.m("height"));
+    let r = 0.5 * w;
+    let rim = 0.6 * h;
+    let glaze = style.glaze(&mut d.stream("glaze"));
+    let shell = vessel(
+        &[(0.0, 0.0), (0.5 * r, 0.0), (0.86 * r, 0.4 * rim), (r, rim)],
+        0.006,
+        24,
+    );
+    let skins = [red_skin(), green_skin(), orange_skin()];
+    let banana = plastic("banana_skin", [232, 200, 70]);
+    let banana = Finish {
+        substance: "food",
+        ..banana
+    };
+    let size = 0.036;
+    let mut random = d.stream("fruit");
+    let mut body = PartBuilder::new("body").with(glaze, shell);
+    for k in 0..6 {
+        let (sin, cos) = dwell_scene::math::sin_cos(TAU * k as f32 / 6.0);
+        let out = 0.52 * r;
+        let skin = &skins[random.below(3)];
+        body = body.with_filled(
+            skin,
+            ball(size, 12).at(out * sin, rim - 0.2 * size, out * cos),
+            0.9,
+        );
+    }
+    let top = ball(size, 12).at(0.0, h - size, 0.0);
+    body = body.with_filled(&skins[random.below(3)], top, 0.9);
+    if d.chance("bananas", 0.5) {
+        for side in [-0.5_f32, 0.5] {
+            let z = side * 0.036;
+            let long = tube(
+                &[
+                    [-0.09, h - 0.02, z],
+                    [-0.03, h - 0.045, z],
+                    [0.04, h - 0.045, z],
+                    [0.09, h - 0.02, z],
+                ],
+                0.015,
+                8,
+            );
+            body = body.with_filled(&banana, long.visual_only(), 0.9);
+        }
+    }
+    Model::movable("fruit_bowl", "fruit_bowl").part(body)
+}
+
 /// A loaf of bread.
-pub fn bread() -> Model {
+fn bread() -> Model {
     let crust = Finish::tiled(
         "crust",
         "food",
@@ -76,61 +146,70 @@ pub fn bread() -> Model {
     ))
 }
 
-/// A board for cutting.
-pub fn cutting_board() -> Model {
-    let body = PartBuilder::new("body").with(
-        &beech(),
-        rounded_block([-0.19, 0.0, -0.13], [0.19, 0.02, 0.13], 0.008, 1),
+fn sample_bread(_style: &Style, key: RandomKey) -> Model {
+    bread().resized(SizeSampler::new("bread", key).m("width") / 0.26)
+}
+
+/// A cake on a stand, a slice taken out.
+fn cake(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("cake", key);
+    let (w, h) = (d.m("width"), d.m("height"));
+    let (r, stand) = (0.5 * w, 0.35 * h);
+    let (icing, crumb) = d.of(
+        "kind",
+        [
+            ([92, 54, 38], [70, 40, 28]),
+            ([244, 232, 222], [226, 186, 120]),
+            ([238, 170, 186], [232, 200, 140]),
+            ([240, 214, 110], [226, 186, 120]),
+        ],
     );
-    Model::pickable("cutting_board", "cutting_board")
-        .part(body)
-        .top("top", [-0.19, 0.02, -0.13], [0.19, 0.3, 0.13])
-}
-
-/// A block with five knives.
-pub fn knife_block() -> Model {
-    let side = [[-0.08, 0.0], [0.08, 0.0], [0.03, 0.2], [-0.06, 0.24]];
-    let grip = |k: usize| {
-        let (x, z) = (
-            -0.045 + 0.036 * (k / 2) as f32,
-            -0.024 + 0.048 * (k % 2) as f32,
+    let (icing, crumb) = (
+        Finish::plain("icing", "food", icing),
+        Finish::plain("sponge_cake", "food", crumb),
+    );
+    let cherry = Finish::plain("cherry", "food", [176, 24, 40]);
+    let cr = 0.82 * r;
+    let low = stand + 0.008;
+    // Seven eighths of a round cake, as wedges in the (x, y) plane laid flat.
+    let wedge = |k: usize, radius: f32, tall: f32| {
+        let at = |j: usize| {
+            let (sin, cos) = dwell_scene::math::sin_cos(TAU * j as f32 / 24.0);
+            [radius * cos, radius * sin]
+        };
+        let mut points = vec![[0.0, 0.0]];
+        points.extend((3 * k..=3 * k + 3).map(at));
+        crate::shapes::extrude(&points, tall).about_x(-std::f32::consts::FRAC_PI_2)
+    };
+    let (lower, upper) = (0.6 * (h - low - 0.02), 0.4 * (h - low - 0.02));
+    let glaze = style.glaze(&mut d.stream("glaze"));
+    let mut body = PartBuilder::new("body")
+        .with_filled(
+            glaze,
+            surface_of_revolution(
+                &[
+                    (0.0, 0.0),
+                    (0.5 * r, 0.0),
+                    (0.12 * r, 0.3 * stand),
+                    (0.14 * r, stand),
+                    (0.0, stand),
+                ],
+                20,
+            ),
+            0.6,
+        )
+        .with(glaze, cylinder(r, 0.008, 28).at(0.0, stand, 0.0));
+    for k in 0..7 {
+        body = body
+            .with(&crumb, wedge(k, 0.985 * cr, lower).at(0.0, low, 0.0))
+            .with(&icing, wedge(k, cr, upper).at(0.0, low + lower, 0.0));
+        let (sin, cos) = dwell_scene::math::sin_cos(TAU * (k as f32 + 0.5) / 8.0);
+        body = body.with(
+            &cherry,
+            ball(0.011, 8)
+                .at(0.75 * cr * cos, h - 0.012, -0.75 * cr * sin)
+                .visual_only(),
         );
-        rod([x, 0.2, z], [x - 0.012, 0.31, z], 0.009).visual_only()
-    };
-    let body = PartBuilder::new("body")
-        .with(
-            &beech(),
-            crate::shapes::extrude(&side, 0.1).at(0.0, 0.0, -0.05),
-        )
-        .with_all(&black(), (0..5).map(grip));
-    Model::pickable("knife_block", "knife_rack").part(body)
-}
-
-/// A knife, a fork or a spoon, seen as a bar with a head; it points towards -Z.
-pub fn cutlery(name: &'static str) -> Model {
-    let handle = block([-0.006, 0.0, 0.0], [0.006, 0.0035, 0.1]);
-    let head = match name {
-        "knife" => extrude(
-            &[
-                [-0.008, 0.0],
-                [0.008, 0.0],
-                [0.009, 0.06],
-                [0.004, 0.1],
-                [-0.005, 0.112],
-                [-0.008, 0.108],
-            ],
-            0.0025,
-        )
-        .about_x(-std::f32::consts::FRAC_PI_2),
-        "fork" => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0])
-            .and(block([-0.012, 0.0, -0.06], [0.012, 0.003, -0.05]))
-            .and(block([-0.012, 0.0, -0.1], [-0.008, 0.003, -0.06]))
-            .and(block([-0.002, 0.0, -0.1], [0.002, 0.003, -0.06]))
-            .and(block([0.008, 0.0, -0.1], [0.012, 0.003, -0.06])),
-        _ => block([-0.004, 0.0, -0.05], [0.004, 0.003, 0.0]).and(loft(&[
-            oval(0.01, 0.018, 0.0, -0.077, 14),
-            oval(0.02, 0.03, 0.007, -0.077, 14),
-        ])),
-    };
-    Model::pickable(name, name).part(PartBuilder::new("body").with(&steel(), handle.and(head)))
+    }
+    Model::movable("cake", "cake").part(body)
 }

@@ -1,20 +1,24 @@
 //! A bedside table with a drawer.
 
 use super::cabinet_parts::{Carcass, drawer, drawer_space};
-use crate::finishes::{Finish, brass};
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::Finish;
 use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::tapered_leg;
-use crate::style::FrontStyle;
+use crate::style::{FrontStyle, Style};
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 
-/// A small cupboard on legs: an open shelf below a drawer.
-pub fn nightstand(width_m: f32, height_m: f32, wood: &Finish) -> Model {
-    let front = FrontStyle::plain(wood.clone(), brass());
-    nightstand_with(width_m, height_m, wood, &front)
-}
+pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
+    "nightstand",
+    "stand",
+    16,
+    sample_nightstand,
+)];
 
-/// The same with a front of another look.
-pub fn nightstand_with(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) -> Model {
+/// A small cupboard on legs: an open shelf below a drawer.
+fn nightstand(width_m: f32, height_m: f32, wood: &Finish, front: &FrontStyle) -> Model {
     const DEPTH_M: f32 = 0.38;
     const SHARE: f32 = 0.52;
     let carcass = Carcass::standing(width_m, 0.14, height_m, DEPTH_M);
@@ -36,4 +40,10 @@ pub fn nightstand_with(width_m: f32, height_m: f32, wood: &Finish, front: &Front
         .part(drawer("drawer", front_low, front_high, face, 0.3, front))
         .sliding("drawer", Vec3::Z, 0.24)
         .inside("drawer", min, max)
+}
+
+fn sample_nightstand(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("nightstand", key);
+    let wood = style.any_wood(&mut d.stream("wood"));
+    nightstand(d.m("width"), d.m("height"), wood, &style.doors())
 }

@@ -1,47 +1,46 @@
-//! Plants in pots, vases with flowers.
+//! Plants in pots.
 
+use crate::catalogue_entry::CatalogueEntry;
 use crate::finishes::{Finish, foliage as green, soil};
 use crate::model::{Model, PartBuilder};
-use crate::shapes::{ball, cylinder, foliage, leaf, rod, surface_of_revolution, turn, vessel};
+use crate::sampling::SizeSampler;
+use crate::shapes::{cylinder, foliage, leaf, rod, surface_of_revolution, turn, vessel};
+use crate::style::Style;
 use dwell_scene::Pose;
 use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::TAU;
 
+pub(super) const ENTRIES: &[CatalogueEntry] = &[
+    CatalogueEntry::new("plant", "plant", 178, plant),
+    CatalogueEntry::new("snake_plant", "plant", 179, snake_plant),
+    CatalogueEntry::new("small_plant", "plant", 180, small_plant),
+];
+
 /// A plant in a pot: a crown of leaves on a stem.
 #[derive(Clone, Debug)]
-pub struct Plant {
+struct Plant {
     /// Of the whole, m.
-    pub height_m: f32,
+    height_m: f32,
     /// Radius of the pot, m.
-    pub pot_m: f32,
+    pot_m: f32,
     /// Length and width of a leaf, m.
-    pub leaf_m: [f32; 2],
+    leaf_m: [f32; 2],
     /// How many leaves.
-    pub leaves: usize,
+    leaves: usize,
     /// Bare stem between soil and crown, m.
-    pub stem_m: f32,
+    stem_m: f32,
     /// What the pot is made of.
-    pub pot: Finish,
+    pot: Finish,
     /// What the leaves look like.
-    pub leaf: Finish,
+    leaf: Finish,
     /// What the shapes of the leaves are drawn by.
-    pub key: RandomKey,
-}
-
-/// Deep green leaves.
-pub const fn deep_green() -> Finish {
-    green("deep_green_leaves", [52, 96, 48], [110, 150, 80])
-}
-
-/// Fresh green leaves.
-pub const fn fresh_green() -> Finish {
-    green("fresh_green_leaves", [92, 140, 62], [160, 190, 104])
+    key: RandomKey,
 }
 
 impl Plant {
     /// The model of these sizes and finishes.
-    pub fn build(&self) -> Model {
+    fn build(&self) -> Model {
         let r = self.pot_m;
         let pot_height = 1.55 * r;
         let shell = vessel(
@@ -93,8 +92,59 @@ impl Plant {
     }
 }
 
+/// Deep green leaves.
+const fn deep_green() -> Finish {
+    green("deep_green_leaves", [52, 96, 48], [110, 150, 80])
+}
+
+/// Fresh green leaves.
+pub(super) const fn fresh_green() -> Finish {
+    green("fresh_green_leaves", [92, 140, 62], [160, 190, 104])
+}
+
+fn leaf_green(d: &SizeSampler) -> Finish {
+    if d.chance("deep", 0.5) {
+        deep_green()
+    } else {
+        fresh_green()
+    }
+}
+
+fn plant(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("plant", key);
+    let height = d.m("height");
+    let pot = style.glaze(&mut d.stream("pot")).clone();
+    Plant {
+        height_m: height,
+        pot_m: 0.5 * d.m("pot"),
+        leaf_m: [0.26 * height, d.range("leaf", 0.09, 0.13) * height],
+        leaves: 14 + d.below("leaves", 8),
+        stem_m: d.range("stem", 0.2, 0.32) * height,
+        pot,
+        leaf: leaf_green(&d),
+        key: key.child("crown"),
+    }
+    .build()
+}
+
+fn small_plant(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("small_plant", key);
+    let height = d.m("height");
+    Plant {
+        height_m: height,
+        pot_m: 0.5 * d.m("pot"),
+        leaf_m: [0.42 * height, 0.17 * height],
+        leaves: 9 + d.below("leaves", 5),
+        stem_m: 0.08 * height,
+        pot: style.glaze(&mut d.stream("pot")).clone(),
+        leaf: leaf_green(&d),
+        key: key.child("crown"),
+    }
+    .build()
+}
+
 /// A plant of upright sword-like leaves.
-pub fn sansevieria(height_m: f32, pot: &Finish) -> Model {
+fn sansevieria(height_m: f32, pot: &Finish) -> Model {
     let r = 0.11;
     let shell = vessel(&[(0.0, 0.0), (0.8 * r, 0.0), (r, 0.17)], 0.007, 24);
     let mut body = PartBuilder::new("body").with(pot, shell).with_filled(
@@ -124,55 +174,7 @@ pub fn sansevieria(height_m: f32, pot: &Finish) -> Model {
     Model::movable("sansevieria", "plant").part(body)
 }
 
-/// A vase; with flowers of `bloom` where given.
-pub fn vase(height_m: f32, glaze: &Finish, bloom: Option<&Finish>) -> Model {
-    let (h, r) = (height_m, 0.3 * height_m);
-    let shell = vessel(
-        &[
-            (0.0, 0.0),
-            (0.6 * r, 0.0),
-            (r, 0.35 * h),
-            (0.85 * r, 0.6 * h),
-            (0.42 * r, 0.88 * h),
-            (0.5 * r, h),
-        ],
-        0.005,
-        24,
-    );
-    let mut body = PartBuilder::new("body").with(glaze, shell);
-    if let Some(bloom) = bloom {
-        let stem = fresh_green();
-        let mut random = RandomKey::root(23).child("vase").stream();
-        for k in 0..9 {
-            let (sin, cos) = dwell_scene::math::sin_cos(TAU * 0.381_966 * k as f32);
-            let out = 0.42 * r * (0.4 + random.range(0.0, 1.6));
-            let top = [
-                out * 1.6 * sin,
-                h * random.range(1.35, 1.75),
-                out * 1.6 * cos,
-            ];
-            body = body
-                .with(
-                    &stem,
-                    rod([0.1 * r * sin, 0.2 * h, 0.1 * r * cos], top, 0.0022).visual_only(),
-                )
-                .with_filled(
-                    bloom,
-                    ball(0.026, 10).at(top[0], top[1], top[2]).visual_only(),
-                    0.1,
-                );
-            let low = Vec3::new(0.3 * r * sin, 0.95 * h, 0.3 * r * cos);
-            let pose = Pose::new(
-                low,
-                turn(Vec3::Y, TAU * 0.381_966 * k as f32) * turn(Vec3::X, -0.7),
-            );
-            body = body.with(&stem, leaf(0.12, 0.03, 0.5).placed(&pose));
-        }
-    }
-    let neck = 0.24 * r;
-    Model::pickable("vase", "vase").part(body).inside(
-        "inside",
-        [-neck, 0.008, -neck],
-        [neck, h, neck],
-    )
+fn snake_plant(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("snake_plant", key);
+    sansevieria(d.m("height"), style.glaze(&mut d.stream("pot")))
 }

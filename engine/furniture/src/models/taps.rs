@@ -1,16 +1,28 @@
 //! Taps: a spout with a lever that turns the water on.
 
-use crate::finishes::chrome;
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::{Finish, chrome};
 use crate::model::{Model, PartBuilder};
-use crate::shapes::{cylinder, rod, tube};
+use crate::sampling::SizeSampler;
+use crate::shapes::{cylinder, rod, tube, turn};
+use crate::style::Style;
+use dwell_scene::Pose;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
+
+pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
+    "mixer_tap",
+    "tap",
+    52,
+    sample_mixer_tap,
+)];
 
 /// How far the lever turns from off to full, rad.
 const TURN_RAD: f32 = 0.9;
 
 /// A mixer tap that stands on a rim, its spout towards +Z, its lever upright on the right; the lever comes forward.
-pub fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
+fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
     let (h, reach) = (height_m, reach_m);
     let spout = [
         [0.0, 0.0, 0.0],
@@ -39,4 +51,41 @@ pub fn mixer_tap(height_m: f32, reach_m: f32) -> Model {
         .part(lever)
         .hinged("lever", [x, level, 0.0], Vec3::X, TURN_RAD)
         .with_switch()
+}
+
+fn sample_mixer_tap(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("mixer_tap", key);
+    let tap = mixer_tap(d.m("height"), d.m("reach"));
+    if d.chance("metal", 0.3) {
+        tap.repainted("chrome", &tap_metal(style))
+    } else {
+        tap
+    }
+}
+
+/// The style's metal, polished.
+fn tap_metal(style: &Style) -> Finish {
+    Finish {
+        name: "tap_metal",
+        substance: "chrome",
+        ..style.metal.clone()
+    }
+}
+
+/// A mixer tap of `sizes_m` (height, reach) on the point `at` of a basin, its spout turned to the left by `turn_rad`.
+pub(super) fn tapped(
+    basin: Model,
+    style: &Style,
+    d: &SizeSampler,
+    sizes_m: [f32; 2],
+    at: [f32; 3],
+    turn_rad: f32,
+) -> Model {
+    let [height, reach] = sizes_m;
+    let mut tap = mixer_tap(height, reach);
+    if d.chance("metal_tap", 0.3) {
+        tap = tap.repainted("chrome", &tap_metal(style));
+    }
+    let pose = Pose::new(at.into(), turn(Vec3::Y, turn_rad));
+    basin.mounting(tap, "tap", &pose)
 }

@@ -1,11 +1,19 @@
 //! A toilet with a lid that opens.
 
-use crate::finishes::{chrome, plastic, sanitary};
+use super::washbasins::sanitary_finish;
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::{Finish, chrome, plastic, sanitary};
 use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, cylinder, loft, rounded_block};
+use crate::style::Style;
 use dwell_scene::math;
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
 use std::f32::consts::PI;
+
+pub(super) const ENTRIES: &[CatalogueEntry] =
+    &[CatalogueEntry::new("toilet", "toilet", 77, sample_toilet)];
 
 /// A level outline from `back` to `front` (z, m), round in front and blunt behind.
 fn outline(half_width: f32, back: f32, front: f32, y: f32) -> Vec<Vec3> {
@@ -27,7 +35,7 @@ fn outline(half_width: f32, back: f32, front: f32, y: f32) -> Vec<Vec3> {
 }
 
 /// A toilet, its cistern at -Z.
-pub fn toilet() -> Model {
+fn toilet() -> Model {
     let white = sanitary();
     let seat = plastic("white_plastic", [240, 240, 236]);
     let z = 0.34;
@@ -68,4 +76,22 @@ pub fn toilet() -> Model {
         .part(lid)
         // Beyond upright, against the cistern, so that it stays up.
         .hinged("lid", [0.0, 0.426, back + 0.03], Vec3::NEG_X, 1.6)
+}
+
+fn sample_toilet(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("toilet", key);
+    let seat = Finish {
+        name: "toilet_seat",
+        substance: "plastic",
+        ..style.wood.clone()
+    };
+    let size = d.m("height") / 0.79;
+    let closet = toilet()
+        .resized(size)
+        .repainted("white_porcelain", &sanitary_finish(&d));
+    if d.chance("wooden", 0.2) && seat.pattern.is_none() {
+        closet.repainted("white_plastic", &seat)
+    } else {
+        closet
+    }
 }

@@ -1,47 +1,42 @@
 //! A wardrobe with hinged doors.
 
 use super::cabinet_parts::{BOARD_M, Carcass, GAP_M, door};
-use crate::finishes::{Finish, black, chrome, oak, white_lacquer};
+use crate::catalogue_entry::CatalogueEntry;
+use crate::finishes::{Finish, chrome};
 use crate::model::{Model, PartBuilder};
+use crate::sampling::SizeSampler;
 use crate::shapes::{block, rod};
-use crate::style::FrontStyle;
+use crate::style::{FrontStyle, Style};
+use dwell_scene::random::RandomKey;
 use glam::Vec3;
+
+pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
+    "wardrobe",
+    "wardrobe_cabinet",
+    20,
+    wardrobe,
+)];
 
 /// Doors in pairs over a carcass with a rail and a hat shelf.
 #[derive(Clone, Debug)]
-pub struct Wardrobe {
+struct Wardrobe {
     /// m.
-    pub width_m: f32,
+    width_m: f32,
     /// m.
-    pub height_m: f32,
+    height_m: f32,
     /// m.
-    pub depth_m: f32,
+    depth_m: f32,
     /// Doors beside each other.
-    pub doors: usize,
+    doors: usize,
     /// What the carcass is made of.
-    pub body: Finish,
+    body: Finish,
     /// What doors and drawers look like.
-    pub front: FrontStyle,
+    front: FrontStyle,
 }
-
-impl Default for Wardrobe {
-    fn default() -> Self {
-        Self {
-            width_m: 1.5,
-            height_m: 2.1,
-            depth_m: 0.58,
-            doors: 3,
-            body: white_lacquer(),
-            front: FrontStyle::plain(oak(), black()),
-        }
-    }
-}
-
-const NAMES: [&str; 4] = ["door_1", "door_2", "door_3", "door_4"];
 
 impl Wardrobe {
     /// The model of these sizes and finishes.
-    pub fn build(&self) -> Model {
+    fn build(&self) -> Model {
         let carcass = Carcass::standing(self.width_m, 0.06, self.height_m, self.depth_m - BOARD_M);
         let (x, z) = (0.5 * self.width_m, carcass.max[2]);
         let rail = self.height_m - 0.42;
@@ -82,4 +77,20 @@ impl Wardrobe {
         }
         model
     }
+}
+
+const NAMES: [&str; 4] = ["door_1", "door_2", "door_3", "door_4"];
+
+fn wardrobe(style: &Style, key: RandomKey) -> Model {
+    let d = SizeSampler::new("wardrobe", key);
+    let width = d.m("width");
+    Wardrobe {
+        width_m: width,
+        height_m: d.m("height"),
+        depth_m: d.m("depth"),
+        doors: ((width / 0.48).round() as usize).clamp(2, 4),
+        body: style.any_wood(&mut d.stream("wood")).clone(),
+        front: style.doors(),
+    }
+    .build()
 }

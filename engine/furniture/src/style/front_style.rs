@@ -14,15 +14,3 @@ pub struct FrontStyle {
     /// A frame around a panel instead of a plain board.
     pub panelled: bool,
 }
-
-impl FrontStyle {
-    /// A plain board with a bar to pull.
-    pub fn plain(board: Finish, handle: Finish) -> Self {
-        Self {
-            board,
-            handle,
-            knobs: false,
-            panelled: false,
-        }
-    }
-}

@@ -1,7 +1,8 @@
-//! What must hold for every entry of the catalogue, in every style, whatever is drawn.
+//! What must hold for every entry of the catalogue, in every style, whatever is drawn, and for what is built to measure.
 
 mod affordances;
 mod bodies;
+mod built_to_measure;
 mod cases;
 mod joints;
 mod sizes;

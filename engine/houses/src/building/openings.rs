@@ -4,7 +4,8 @@ use std::f32::consts::FRAC_PI_2;
 
 use super::assembly::HouseAssembly;
 use dwell_furniture::model_cache::built_to_size;
-use dwell_furniture::models::openings::{Door, Window};
+use dwell_furniture::models::doors::Door;
+use dwell_furniture::models::windows::Window;
 use dwell_scene::{Pose, RoomId};
 
 /// Hangs a door into a hole, open by `openness` (0 to 1). `square`: the leaf opens to a right angle, as beside an outer wall,

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use dwell_furniture::finishes::Finish;
-use dwell_furniture::models::openings::{Door, Window, clear_pane};
+use dwell_furniture::models::doors::Door;
+use dwell_furniture::models::windows::{Window, clear_pane};
 use dwell_furniture::shapes::extrude;
 use dwell_scene::{Aabb, Mesh, Pose, Room, StructureKind};
 use glam::{DVec2, Vec2, Vec3};

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use dwell_furniture::models::openings::{
-    Door as DoorModel, Window as WindowModel, clear_pane, frosted_pane,
-};
+use dwell_furniture::models::doors::Door as DoorModel;
+use dwell_furniture::models::windows::{Window as WindowModel, clear_pane, frosted_pane};
 use dwell_furniture::style::Style;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{HouseData, Pose, RoomId, Sky};
