@@ -11,7 +11,7 @@ use std::path::Path;
 const BUILT_ALONE: &[&str] = &["dwell-python"];
 
 pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
-    let all = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
+    let all = tree::workspace(root)?;
     let mut outcome = CheckOutcome::default();
     for name in BUILT_ALONE {
         let alone = tree::tree(root, &["--package", name, "--edges", "normal,build"])?;

@@ -35,6 +35,23 @@ pub(crate) fn tree(root: &Path, selection: &[&str]) -> Result<DependencyTree, St
     parse(&cargo(root, &args)?)
 }
 
+/// The graph of all members with all that builds and tests them, for this machine.
+pub(crate) fn workspace(root: &Path) -> Result<DependencyTree, String> {
+    tree(root, &["--workspace", "--edges", "normal,build,dev"])
+}
+
+/// The same for all machines.
+pub(crate) fn workspace_on_all_targets(root: &Path) -> Result<DependencyTree, String> {
+    let selection = [
+        "--workspace",
+        "--edges",
+        "normal,build,dev",
+        "--target",
+        "all",
+    ];
+    tree(root, &selection)
+}
+
 /// Standard output of a cargo command.
 pub(crate) fn cargo(root: &Path, args: &[&str]) -> Result<String, String> {
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());

@@ -136,6 +136,19 @@ pub enum HousesError {
     },
 }
 
+/// An [`HousesError::Field`] as a result.
+pub(crate) fn refuse_field<T>(
+    at: FileLocation,
+    expected: &'static str,
+    found: impl Into<String>,
+) -> Result<T, HousesError> {
+    Err(HousesError::Field {
+        at,
+        expected,
+        found: found.into(),
+    })
+}
+
 impl HousesError {
     /// An [`HousesError::Io`] for `path`.
     pub(crate) fn io(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {

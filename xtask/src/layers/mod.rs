@@ -13,16 +13,7 @@ use std::path::Path;
 
 pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let members = manifests::members(root)?;
-    let tree = tree::tree(
-        root,
-        &[
-            "--workspace",
-            "--edges",
-            "normal,build,dev",
-            "--target",
-            "all",
-        ],
-    )?;
+    let tree = tree::workspace_on_all_targets(root)?;
     let mut outcome = CheckOutcome::default();
     outcome
         .findings

@@ -26,21 +26,12 @@ pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let text =
         std::fs::read_to_string(root.join(FILE)).map_err(|error| format!("{FILE}: {error}"))?;
     let policy: Policy = toml::from_str(&text).map_err(|error| format!("{FILE}: {error}"))?;
-    let everything = tree::tree(
-        root,
-        &[
-            "--workspace",
-            "--edges",
-            "normal,build,dev",
-            "--target",
-            "all",
-        ],
-    )?;
+    let everything = tree::workspace_on_all_targets(root)?;
     let shipped = tree::tree(
         root,
         &["--workspace", "--exclude", "xtask", "--edges", "normal"],
     )?;
-    let built = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
+    let built = tree::workspace(root)?;
 
     let mut outcome = CheckOutcome::default();
     outcome

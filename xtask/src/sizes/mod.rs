@@ -10,7 +10,7 @@ use std::path::Path;
 pub(crate) fn run(root: &Path) -> Result<CheckOutcome, String> {
     let mut outcome = files::check(root)?;
     let ceilings = ceilings::read(root)?;
-    let build = tree::tree(root, &["--workspace", "--edges", "normal,build,dev"])?;
+    let build = tree::workspace(root)?;
     let wheel = tree::tree(root, &["--package", "dwell-python", "--edges", "normal"])?;
     let measured = [
         (

@@ -6,6 +6,7 @@ use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
+use super::extras::{Extras, dwell_extras};
 use super::lights::{self, LampExtras};
 use crate::import::{
     AnnotatedLight, AnnotatedObject, AnnotatedPart, ImportedLamp, NamedRoom, NodeRole,
@@ -37,12 +38,6 @@ pub(super) struct NodeTree {
     pub(super) lamps: Vec<ImportedLamp>,
     /// Objects with more than shapes and names in the file.
     pub(super) objects: Vec<AnnotatedObject>,
-}
-
-/// A node's `extras`.
-#[derive(Deserialize)]
-struct NodeExtras<T> {
-    dwell: T,
 }
 
 /// A node's `extras.dwell`, as far as it is read; `docs/formats/glb.md` has all of it.
@@ -271,7 +266,7 @@ fn given<T: DeserializeOwned>(
     report: &mut LoadReport,
 ) -> Option<T> {
     let text = node.extras.as_ref()?.get();
-    let read: Result<NodeExtras<T>, _> = serde_json::from_str(text);
+    let read: Result<Extras<T>, _> = serde_json::from_str(text);
     read.map(|extras| extras.dwell)
         .map_err(|error| {
             let what = format!(
@@ -285,23 +280,7 @@ fn given<T: DeserializeOwned>(
 
 /// Returns a node's annotations; `None` where `extras` are not ours.
 fn known(node: &Node, at: &FileLocation, report: &mut LoadReport) -> DwellNodeExtras {
-    let Some(text) = node.extras.as_ref().map(|extras| extras.get()) else {
-        return DwellNodeExtras::default();
-    };
-    if !text.contains("\"dwell\"") {
-        return DwellNodeExtras::default();
-    }
-    serde_json::from_str(text).map_or_else(
-        |error| {
-            let what = format!(
-                "extras.dwell is not read: {}",
-                crate::plain_parse_error(&error)
-            );
-            report.warn(at.field("extras"), WarningKind::Simplified { what });
-            DwellNodeExtras::default()
-        },
-        |extras: NodeExtras<DwellNodeExtras>| extras.dwell,
-    )
+    dwell_extras(node.extras.as_ref().map(|extras| extras.get()), at, report)
 }
 
 /// The room that a node is; its numbers count in the world, so that a node that is moved is none.

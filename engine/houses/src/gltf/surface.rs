@@ -11,6 +11,7 @@ use dwell_scene::{Material, MaterialId, Texture, TextureId, units};
 use serde::Deserialize;
 
 use super::buffers::{Buffers, read_uri};
+use super::extras::dwell_extras;
 use crate::data_root::DataRoot;
 use crate::import::{
     ImportedMaterial, MaterialTableBuilder, PixelBudget, decode, is_cut, pixels, substance_of,
@@ -127,13 +128,7 @@ fn image_of(json: &Root, material: &::gltf::json::Material) -> Option<usize> {
     Some(json.textures.get(texture.value())?.source.value())
 }
 
-/// A material's `extras`.
-#[derive(Deserialize)]
-struct MaterialExtras {
-    dwell: DwellMaterialExtras,
-}
-
-/// A material's `extras.dwell`: its properties beyond its look.
+/// A material's `extras.dwell`: what it is beyond its looks.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct DwellMaterialExtras {
@@ -149,20 +144,10 @@ struct DwellMaterialExtras {
 
 impl DwellMaterialExtras {
     fn read(material: &::gltf::json::Material, at: &FileLocation, report: &mut LoadReport) -> Self {
-        let text = material.extras.as_ref().map(|extras| extras.get());
-        let Some(text) = text.filter(|text| text.contains("\"dwell\"")) else {
-            return Self::default();
-        };
-        serde_json::from_str(text).map_or_else(
-            |error| {
-                let what = format!(
-                    "extras.dwell is not read: {}",
-                    crate::plain_parse_error(&error)
-                );
-                report.warn(at.field("extras"), WarningKind::Simplified { what });
-                Self::default()
-            },
-            |extras: MaterialExtras| extras.dwell,
+        dwell_extras(
+            material.extras.as_ref().map(|extras| extras.get()),
+            at,
+            report,
         )
     }
 

@@ -12,7 +12,7 @@ use mjcf_rs::{BodyId, Model};
 use super::geoms::{self, BodyGeom};
 use super::{actuators, includes};
 use crate::data_root::folder_of;
-use crate::error::HousesError;
+use crate::error::{HousesError, refuse_field};
 use crate::limits::MAX_NODES;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::{LinkInertia, Robot, RobotFiles, RobotJoint, RobotJointKind, RobotLink, check};
@@ -182,7 +182,7 @@ impl MjcfSource {
     pub(super) fn first_robot(&mut self, report: &mut LoadReport) -> Result<Robot, HousesError> {
         let roots = self.roots();
         let Some(root) = roots.first() else {
-            return refuse(self.at.clone(), "a <body> in <worldbody>", "none");
+            return refuse_field(self.at.clone(), "a <body> in <worldbody>", "none");
         };
         let left_out = roots.len() - 1 + self.model.bodies[0].body.geoms.len();
         if left_out > 0 {
@@ -222,19 +222,7 @@ pub(super) fn pose(pose: &mjcf_rs::Pose) -> Pose {
     Pose::new(pose.translation.as_vec3(), rotation)
 }
 
-fn refuse<T>(
-    at: FileLocation,
-    expected: &'static str,
-    found: impl Into<String>,
-) -> Result<T, HousesError> {
-    Err(HousesError::Field {
-        at,
-        expected,
-        found: found.into(),
-    })
-}
-
-/// The attachment of a root body.
+/// What holds a root.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RootAttachment {
     /// Nothing: it falls.
@@ -252,7 +240,7 @@ fn base(root: &Body, at: &FileLocation) -> Result<RootAttachment, HousesError> {
         [ref joint] if matches!(joint.type_, JointType::Hinge | JointType::Slide) => {
             Ok(RootAttachment::Hung)
         }
-        _ => refuse(
+        _ => refuse_field(
             at.field("joint"),
             "a free joint, a hinge, a slide or none for the root",
             "another joint",
@@ -289,20 +277,20 @@ fn joint(
         [joint] => joint,
         several => {
             let found = format!("{} joints", several.len());
-            return refuse(at.field("joint"), "at most one joint a body", found);
+            return refuse_field(at.field("joint"), "at most one joint a body", found);
         }
     };
     let at = at.field(format_args!("joint[{name}]"));
     let motion = match joint.type_ {
         JointType::Hinge => RobotJointKind::Hinge,
         JointType::Slide => RobotJointKind::Slide,
-        JointType::Ball => return refuse(at.field("type"), "hinge or slide", "ball"),
+        JointType::Ball => return refuse_field(at.field("type"), "hinge or slide", "ball"),
         JointType::Free => {
-            return refuse(at.field("type"), "hinge or slide below the root", "free");
+            return refuse_field(at.field("type"), "hinge or slide below the root", "free");
         }
     };
     let Some(axis) = DVec3::from_array(joint.axis).try_normalize() else {
-        return refuse(at.field("axis"), "a direction", format!("{:?}", joint.axis));
+        return refuse_field(at.field("axis"), "a direction", format!("{:?}", joint.axis));
     };
     if joint.ref_ != 0.0 || joint.stiffness != 0.0 {
         let field = if joint.ref_ == 0.0 {
@@ -310,7 +298,7 @@ fn joint(
         } else {
             "ref"
         };
-        return refuse(
+        return refuse_field(
             at.field(field),
             "0: springs and references are not read",
             "another value",
@@ -349,7 +337,7 @@ fn weight(
             let weight = stated_weight(stated);
             if !(1e-6..=1e6).contains(&weight.mass) {
                 let at = at.field("inertial.mass");
-                return refuse(at, "a mass of 1e-6 to 1e6 kg", weight.mass.to_string());
+                return refuse_field(at, "a mass of 1e-6 to 1e6 kg", weight.mass.to_string());
             }
             weight.report_impossible(&at.field("inertial"), report);
             Ok(Some(weight))

@@ -7,21 +7,9 @@ use glam::DMat3;
 
 use super::masses::FixedLinks;
 use super::model::{Robot, RobotJoint, RobotJointKind, RobotLink};
-use crate::error::HousesError;
+use crate::error::{HousesError, refuse_field};
 use crate::limits::MAX_NODES;
 use crate::report::FileLocation;
-
-fn refuse<T>(
-    at: FileLocation,
-    expected: &'static str,
-    found: impl Into<String>,
-) -> Result<T, HousesError> {
-    Err(HousesError::Field {
-        at,
-        expected,
-        found: found.into(),
-    })
-}
 
 /// Sorts links and joints so that parents come first, and checks every number.
 ///
@@ -49,7 +37,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
                 "link {:?}, which joint {:?} moves already: the links form a loop",
                 robot.links[joint.child].name, robot.joints[other].name
             );
-            return refuse(at.field("child"), "a link that no other joint moves", found);
+            return refuse_field(at.field("child"), "a link that no other joint moves", found);
         }
     }
     let roots: Vec<usize> = (0..count).filter(|k| above[*k].is_none()).collect();
@@ -66,7 +54,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
         } else {
             format!("{} of them, {names:?}", roots.len())
         };
-        return refuse(at.field("link"), "one link that no joint moves", found);
+        return refuse_field(at.field("link"), "one link that no joint moves", found);
     };
     let mut below: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (k, joint) in robot.joints.iter().enumerate() {
@@ -88,7 +76,7 @@ pub(crate) fn check(mut robot: Robot) -> Result<Robot, HousesError> {
     if order.len() != count {
         let left = places.iter().position(Option::is_none).unwrap_or(0);
         let at = at.field(format_args!("link[{}]", robot.links[left].name));
-        return refuse(at, "links that hang on the root", "a loop of links");
+        return refuse_field(at, "links that hang on the root", "a loop of links");
     }
     let place = |link: usize| places[link].unwrap_or(0);
     robot.joints = joints
@@ -130,10 +118,10 @@ fn unique<'a>(
     for name in names {
         let at = at.field(format_args!("{what}[{name}]")).field("name");
         if name.is_empty() || name.contains('/') {
-            return refuse(at, "a name without a slash", format!("{name:?}"));
+            return refuse_field(at, "a name without a slash", format!("{name:?}"));
         }
         if !seen.insert(name) {
-            return refuse(at, "a name that is used once", format!("{name:?} again"));
+            return refuse_field(at, "a name that is used once", format!("{name:?} again"));
         }
     }
     Ok(())
@@ -143,7 +131,7 @@ fn check_pose(pose: &Pose, at: &FileLocation, field: &str) -> Result<(), HousesE
     if pose.is_valid() {
         return Ok(());
     }
-    refuse(at.field(field), "finite numbers", format!("{pose:?}"))
+    refuse_field(at.field(field), "finite numbers", format!("{pose:?}"))
 }
 
 /// `leaders`: the names of joints that others may follow.
@@ -155,12 +143,12 @@ fn check_joint(
     check_pose(&joint.parent_from_joint, at, "origin")?;
     check_pose(&joint.child_from_joint, at, "origin")?;
     if !joint.axis.is_finite() || (joint.axis.length() - 1.0).abs() > 1e-3 {
-        return refuse(at.field("axis"), "a direction", format!("{}", joint.axis));
+        return refuse_field(at.field("axis"), "a direction", format!("{}", joint.axis));
     }
     if let Some([low, high]) = joint.limits
         && !(low.is_finite() && high.is_finite() && low <= high)
     {
-        return refuse(
+        return refuse_field(
             at.field("limit"),
             "lower <= upper",
             format!("{low} to {high}"),
@@ -175,7 +163,7 @@ fn check_joint(
         ("limit.velocity", servo.max_velocity.unwrap_or(0.0)),
     ] {
         if !(0.0..=1e9).contains(&value) {
-            return refuse(at.field(field), "0 to 1e9", value.to_string());
+            return refuse_field(at.field(field), "0 to 1e9", value.to_string());
         }
     }
     let Some((leader, multiplier, offset)) = &joint.mimic else {
@@ -184,10 +172,10 @@ fn check_joint(
     let at = at.field("mimic");
     if !leaders.contains(leader.as_str()) {
         let expected = "a joint that moves and follows none";
-        return refuse(at.field("joint"), expected, format!("{leader:?}"));
+        return refuse_field(at.field("joint"), expected, format!("{leader:?}"));
     }
     if !(multiplier.is_finite() && offset.is_finite()) {
-        return refuse(at, "finite numbers", format!("{multiplier}, {offset}"));
+        return refuse_field(at, "finite numbers", format!("{multiplier}, {offset}"));
     }
     Ok(())
 }
@@ -200,7 +188,7 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
             check_pose(&shape.link_from_shape, &at, "origin")?;
             if !shape.solid.is_sound() {
                 let found = format!("{:?}", shape.solid.numbers());
-                return refuse(at.field("geometry"), "sizes of 1e-6 to 1000 m", found);
+                return refuse_field(at.field("geometry"), "sizes of 1e-6 to 1000 m", found);
             }
         }
     }
@@ -209,10 +197,10 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
     };
     let at = at.field("inertial");
     if !(1e-6..=1e6).contains(&weight.mass) {
-        return refuse(at.field("mass"), "1e-6 to 1e6 kg", weight.mass.to_string());
+        return refuse_field(at.field("mass"), "1e-6 to 1e6 kg", weight.mass.to_string());
     }
     if !weight.center.is_finite() {
-        return refuse(
+        return refuse_field(
             at.field("origin"),
             "finite numbers",
             weight.center.to_string(),
@@ -222,7 +210,7 @@ fn check_link(link: &RobotLink, at: &FileLocation) -> Result<(), HousesError> {
     let whole = m.is_finite() && positive(&m);
     if !whole {
         let found = format!("{:?}", m.to_cols_array());
-        return refuse(at.field("inertia"), "a positive definite matrix", found);
+        return refuse_field(at.field("inertia"), "a positive definite matrix", found);
     }
     Ok(())
 }
@@ -250,7 +238,7 @@ fn massive(robot: &Robot, at: &FileLocation) -> Result<(), HousesError> {
             let at = at
                 .field(format_args!("link[{name}]"))
                 .field("inertial.mass");
-            return refuse(at, "a mass above 0 for what a joint moves", "none");
+            return refuse_field(at, "a mass above 0 for what a joint moves", "none");
         }
     }
     Ok(())

@@ -218,6 +218,19 @@ impl Serialize for BinaryFlag {
     }
 }
 
+impl SuncgHouse {
+    /// The nodes that are to be used in storeys that are to be used, each with its place: storey, position there.
+    pub(crate) fn valid_nodes(&self) -> impl Iterator<Item = ((usize, usize), &NodeFile)> {
+        let levels = self.levels.iter().enumerate();
+        let levels = levels.filter(|(_, level)| level.valid != Some(BinaryFlag(false)));
+        levels.flat_map(|(k, level)| {
+            let nodes = level.nodes.iter().enumerate();
+            let nodes = nodes.filter(|(_, node)| node.is_valid());
+            nodes.map(move |(i, node)| ((k, i), node))
+        })
+    }
+}
+
 impl NodeFile {
     /// Returns whether the node is to be used.
     pub fn is_valid(&self) -> bool {

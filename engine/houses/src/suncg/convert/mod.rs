@@ -129,21 +129,11 @@ impl Converter<'_> {
                 bounds: Aabb::EMPTY,
             });
         }
-        for (k, level) in self.files.house.levels.iter().enumerate() {
-            if level.valid == Some(super::file::BinaryFlag(false)) {
-                continue;
-            }
-            for (i, node) in level
-                .nodes
-                .iter()
-                .enumerate()
-                .filter(|(_, node)| node.is_valid())
-            {
-                match node.kind.as_deref() {
-                    Some("Room") => self.room((k, i), node),
-                    Some("Ground") => self.ground((k, i), node),
-                    _ => {}
-                }
+        for (key, node) in self.files.house.valid_nodes() {
+            match node.kind.as_deref() {
+                Some("Room") => self.room(key, node),
+                Some("Ground") => self.ground(key, node),
+                _ => {}
             }
         }
         self.arch_leftovers();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use dwell_scene::RoomId;
 
-use super::super::file::{NodeFile, SuncgHouse};
+use super::super::file::SuncgHouse;
 use super::{Converter, NodeKey};
 use crate::import::UniqueNames;
 use crate::report::{FileLocation, LoadReport};
@@ -107,18 +107,9 @@ impl Converter<'_> {
 
     /// The node of each room, in order.
     fn room_nodes(&self) -> Vec<(RoomId, NodeKey)> {
-        let is_room = |node: &NodeFile| node.is_valid() && node.kind.as_deref() == Some("Room");
-        let levels = self.files.house.levels.iter().enumerate();
-        let levels =
-            levels.filter(|(_, level)| level.valid != Some(super::super::file::BinaryFlag(false)));
-        let keys = levels.flat_map(|(k, level)| {
-            level
-                .nodes
-                .iter()
-                .enumerate()
-                .filter(move |(_, node)| is_room(node))
-                .map(move |(i, _)| (k, i))
-        });
+        let nodes = self.files.house.valid_nodes();
+        let rooms = nodes.filter(|(_, node)| node.kind.as_deref() == Some("Room"));
+        let keys = rooms.map(|(key, _)| key);
         self.data.rooms.ids().zip(keys).collect()
     }
 }

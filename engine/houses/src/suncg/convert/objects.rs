@@ -16,28 +16,18 @@ use crate::warning_kind::{UnmappedKind, WarningKind};
 impl<'a> Converter<'a> {
     pub(super) fn objects(&mut self) {
         let rooms = self.membership();
-        for (k, level) in self.files.house.levels.iter().enumerate() {
-            if level.valid == Some(BinaryFlag(false)) {
-                continue;
-            }
-            for (i, node) in level
-                .nodes
-                .iter()
-                .enumerate()
-                .filter(|(_, node)| node.is_valid())
-            {
-                let room = rooms.get(&(k, i)).copied();
-                match node.kind.as_deref() {
-                    Some("Object") => self.object((k, i), node, room),
-                    Some("Box") => self.box_object((k, i), node, room),
-                    Some("Room" | "Ground") => {}
-                    kind => {
-                        let found = kind.unwrap_or("").to_owned();
-                        self.report.warn(
-                            self.node_at((k, i)).field("type"),
-                            WarningKind::UnknownNodeType { found },
-                        );
-                    }
+        for (key, node) in self.files.house.valid_nodes() {
+            let room = rooms.get(&key).copied();
+            match node.kind.as_deref() {
+                Some("Object") => self.object(key, node, room),
+                Some("Box") => self.box_object(key, node, room),
+                Some("Room" | "Ground") => {}
+                kind => {
+                    let found = kind.unwrap_or("").to_owned();
+                    self.report.warn(
+                        self.node_at(key).field("type"),
+                        WarningKind::UnknownNodeType { found },
+                    );
                 }
             }
         }
