@@ -308,9 +308,7 @@ fn resets(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
             Env::new(engines, &config)
         });
         if let Some(Ok(mut env)) = made {
-            rows.row(shape, count, &format!("reset {task}"), || {
-                env.reset(1).map(drop)
-            });
+            rows.row(shape, count, &format!("reset {task}"), || env.reset(1));
         }
     }
 }

@@ -262,7 +262,11 @@ class World:
 
 @final
 class Batch:
-    """Environments stepped together; observations are written into arrays of the caller."""
+    """Environments stepped together; observations are written into arrays of the caller.
+
+    In each the same agents act; ``agent`` is the place of one among them. Arrays of environments and
+    agents are flat, the agents of an environment one after the other.
+    """
 
     def __new__(
         cls,
@@ -271,33 +275,44 @@ class Batch:
         threads: int | None = ...,
         overlap: bool = ...,
     ) -> Self: ...
+    def agents(self) -> list[int]:
+        """Who acts in every environment, by the number among the world's agents."""
+    def sensor_agents(self) -> list[int]:
+        """Whose each sensor is."""
     def specs_json(self) -> str:
-        """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor."""
+        """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor: those of the first agent, of the second, and so on."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
     def put(self, env: int, spare: PreparedEnv) -> None:
         """``spare`` takes the place of environment ``env``, once; worlds of :meth:`World.of_env` are its from then on."""
     def steps(self) -> NDArray[np.int64]:
         """Number of steps of each environment's episode so far."""
     def step(self, actions: NDArray[np.int64]) -> dict[str, NDArray[Any] | list[str]]:
-        """-1: that environment is not stepped. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of n) and action_error (list)."""
+        """``actions``: for each environment and agent; -1 for all agents: that environment is not stepped. Of an agent whose episode has ended none is looked at. Keys: reward, terminated, success, action_success, collision, distance_to_goal (NaN without a goal), spl, soft_spl, path_length, collisions (arrays of that shape) and action_error (list)."""
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
     def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
-        """The view of environment ``env``'s agent, lit; ``view_json``: as :meth:`World.render`."""
-    def instruction(self, env: int) -> str: ...
-    def ask(self, env: int, instruction: str | None = ..., distance_m: float | None = ...) -> None:
+        """What environment ``env``'s first agent sees, lit; ``view_json``: as :meth:`World.render`."""
+    def instruction(self, env: int, agent: int = ...) -> str: ...
+    def ask(
+        self,
+        env: int,
+        instruction: str | None = ...,
+        distance_m: float | None = ...,
+        agent: int = ...,
+    ) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
-    def rule(self, env: int, ruling_json: str) -> str:
+    def rule(self, env: int, ruling_json: str, agent: int = ...) -> str:
         """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``; null without a goal."""
-    def expert_actions(self) -> NDArray[np.int64]: ...
-    def expert_action(self, env: int) -> int: ...
+    def expert_actions(self) -> NDArray[np.int64]:
+        """For each environment and agent."""
+    def expert_action(self, env: int, agent: int = ...) -> int: ...
     def state_hash(self, env: int) -> int: ...
     def snapshot(self, env: int) -> bytes:
         """World and episode of one environment."""
     def restore(self, env: int, snapshot: bytes) -> None: ...
     def clipped(self) -> list[int]:
-        """For each environment, samples of sound that its latest observation cut off."""
+        """For each environment and agent, samples of sound that its latest observation cut off."""
     def agents_json(self, env: int) -> str: ...
     def __len__(self) -> int: ...
 

@@ -23,9 +23,11 @@ class PluginPart:
             the environment's snapshots, so it holds what JSON holds: numbers, text, lists, and
             dicts with text for keys. Taking a snapshot refuses arrays and tuples, which would come
             back as lists.
+        agent: Which of the world's agents the environment is about: ``world.agents()[self.agent]``.
     """
 
     state: dict[str, Any]
+    agent: int = 0
 
 
 def factory(

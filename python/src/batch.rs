@@ -17,7 +17,8 @@ use numpy::{
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// Environments stepped together; observations are written into arrays of the caller.
+/// Environments stepped together; observations are written into arrays of the caller. In each the same agents act, which are
+/// told by their place among those who act.
 #[pyclass(name = "Batch", module = "dwell._native", frozen)]
 pub(crate) struct PyBatch {
     batch: std::sync::Mutex<Batch>,
@@ -153,6 +154,18 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.envs().len()))
     }
 
+    /// Returns who acts in every environment, by the number among the world's agents.
+    fn agents(&self, py: Python<'_>) -> PyResult<Vec<u32>> {
+        self.with(py, |batch| {
+            Ok(batch.agents().map(|agent| agent.0).collect())
+        })
+    }
+
+    /// Returns whose each sensor is, by the agent's place.
+    fn sensor_agents(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        self.with(py, |batch| Ok(batch.sensor_agents()))
+    }
+
     fn specs_json(&self, py: Python<'_>) -> PyResult<String> {
         self.with(py, |batch| Ok(serde_json::to_string(&batch.specs())?))
     }
@@ -179,6 +192,7 @@ impl PyBatch {
         Ok(steps.into_pyarray(py))
     }
 
+    /// Steps by actions of shape (environment x agent,), -1 for none; all that is answered has that shape.
     fn step<'py>(
         &self,
         py: Python<'py>,
@@ -272,30 +286,37 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.observe(&which, &mut slices)?))
     }
 
-    fn instruction(&self, py: Python<'_>, env: usize) -> PyResult<String> {
+    #[pyo3(signature = (env, agent=0))]
+    fn instruction(&self, py: Python<'_>, env: usize, agent: usize) -> PyResult<String> {
         self.with(py, |batch| {
-            let episode = batch.env(env)?.episode();
-            let refuse = || PyFault::Usage("no episode has begun; call reset first".to_owned());
-            Ok(episode.ok_or_else(refuse)?.instruction.clone())
+            Ok(batch.env(env)?.episode(agent)?.instruction.clone())
         })
     }
 
-    #[pyo3(signature = (env, instruction=None, distance_m=None))]
+    #[pyo3(signature = (env, instruction=None, distance_m=None, agent=0))]
     fn ask(
         &self,
         py: Python<'_>,
         env: usize,
         instruction: Option<&str>,
         distance_m: Option<f64>,
+        agent: usize,
     ) -> PyResult<()> {
         self.with(py, |batch| {
             let asked = instruction.map(|text| (text, distance_m));
-            Ok(batch.env_mut(env)?.set_goal(asked)?)
+            Ok(batch.env_mut(env)?.set_goal(agent, asked)?)
         })
     }
 
-    /// Returns `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
-    fn rule(&self, py: Python<'_>, env: usize, ruling_json: &str) -> PyResult<String> {
+    /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
+    #[pyo3(signature = (env, ruling_json, agent=0))]
+    fn rule(
+        &self,
+        py: Python<'_>,
+        env: usize,
+        ruling_json: &str,
+        agent: usize,
+    ) -> PyResult<String> {
         self.with(py, |batch| {
             let ruling: ExternalVerdict = serde_json::from_str(ruling_json)?;
             let verdict = Verdict {
@@ -305,7 +326,7 @@ impl PyBatch {
             };
             let progress = batch
                 .env_mut(env)?
-                .set_verdict(verdict, ruling.distance_m)?;
+                .set_verdict(agent, verdict, ruling.distance_m)?;
             Ok(serde_json::json!({
                 "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
@@ -327,14 +348,11 @@ impl PyBatch {
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut seen = self.with(py, |batch| {
             let mut view: serde_json::Value = serde_json::from_str(view_json)?;
-            if let Some(view) = view.as_object_mut() {
-                view.entry("agent").or_insert_with(|| 0.into());
+            let env = batch.env(env)?;
+            if let (Some(view), Some(first)) = (view.as_object_mut(), env.agents().next()) {
+                view.entry("agent").or_insert_with(|| first.0.into());
             }
-            picture::render(
-                batch.env(env)?.world(),
-                &view.to_string(),
-                &["rgb".to_owned()],
-            )
+            picture::render(env.world(), &view.to_string(), &["rgb".to_owned()])
         })?;
         let rgb = seen.pop().ok_or_else(|| {
             crate::errors::to_python(PyFault::Usage("no picture was taken".to_owned()))
@@ -351,9 +369,12 @@ impl PyBatch {
             .into_pyarray(py))
     }
 
-    /// Returns the action of one environment's scripted expert now.
-    fn expert_action(&self, py: Python<'_>, env: usize) -> PyResult<i64> {
-        self.with(py, |batch| Ok(batch.env_mut(env)?.expert_action()? as i64))
+    /// Returns what the scripted expert of an agent would do now.
+    #[pyo3(signature = (env, agent=0))]
+    fn expert_action(&self, py: Python<'_>, env: usize, agent: usize) -> PyResult<i64> {
+        self.with(py, |batch| {
+            Ok(batch.env_mut(env)?.expert_action(agent)? as i64)
+        })
     }
 
     fn state_hash(&self, py: Python<'_>, env: usize) -> PyResult<u64> {
@@ -371,7 +392,7 @@ impl PyBatch {
 
     fn clipped(&self, py: Python<'_>) -> PyResult<Vec<u64>> {
         self.with(py, |batch| {
-            Ok(batch.envs().iter().map(dwell::Env::clipped).collect())
+            Ok(batch.envs().iter().flat_map(Env::clipped).collect())
         })
     }
 

@@ -10,12 +10,12 @@ use crate::navigation::PyNavigation;
 use crate::picture;
 use crate::values::{self, Data};
 use crate::world_access::{ActiveGuide, WorldAccess};
-use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, StepSizes, World, WorldConfig};
+use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{Address, JointCommand, JointId, Pose, Velocity};
+use dwell_scene::{Address, IdVec, JointCommand, JointId, Pose, Velocity};
 use glam::{Quat, Vec3};
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -75,24 +75,24 @@ impl PyWorld {
         work: impl FnOnce(&mut WorldAccess<'_>) -> Result<T, PyFault>,
     ) -> Result<T, PyFault> {
         let mut guide = self.guide.lock().map_err(|_| stopped())?;
-        let work = |world: &mut World, stride| {
+        let work = |world: &mut World, strides| {
             let guide = &mut *guide;
             work(&mut WorldAccess {
                 world,
                 guide,
-                stride,
+                strides,
             })
         };
         match &self.source {
             WorldSource::Own(world) => {
                 let mut world = world.lock().map_err(|_| stopped())?;
-                work(&mut world, StepSizes::default())
+                work(&mut world, IdVec::default())
             }
             WorldSource::Env { batch, env } => {
                 let mut batch = batch.get().lock()?;
                 let env = batch.env_mut(*env)?;
-                let stride = *env.stride();
-                work(env.world_mut(), stride)
+                let strides = env.strides();
+                work(env.world_mut(), strides)
             }
         }
     }
@@ -191,7 +191,8 @@ impl PyWorld {
             let action = known.ok_or_else(|| {
                 PyFault::Config(format!("action {action}; allowed are 0 to {last}"))
             })?;
-            let outcome = running.world.act_discrete(agent, action, &running.stride)?;
+            let stride = running.stride(agent);
+            let outcome = running.world.act_discrete(agent, action, &stride)?;
             running.outcome(&outcome)
         })?;
         values::object(py, &outcome)
@@ -408,7 +409,7 @@ impl PyWorld {
                 };
                 *running.guide = Some((
                     bits,
-                    ShortestPathFollower::new(id, grid, &[cell], running.stride),
+                    ShortestPathFollower::new(id, grid, &[cell], running.stride(id)),
                 ));
             }
             let WorldAccess { world, guide, .. } = running;
@@ -423,8 +424,10 @@ impl PyWorld {
         self.look(py, |running| {
             let agent = running.agent(agent)?;
             let object = running.object(&json!(object))?;
-            Ok(dwell::face(running.world, agent, object, &running.stride)
-                .map(|action| action as usize))
+            Ok(
+                dwell::face(running.world, agent, object, &running.stride(agent))
+                    .map(|action| action as usize),
+            )
         })
     }
 

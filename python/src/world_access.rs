@@ -3,7 +3,7 @@
 use crate::errors::PyFault;
 use dwell::{ShortestPathFollower, StepSizes, World};
 use dwell_physics::ActionOutcome;
-use dwell_scene::{AgentId, Entity, Id, ObjectId, PartId};
+use dwell_scene::{AgentId, Entity, Id, IdVec, ObjectId, PartId};
 use serde_json::json;
 
 /// Number of names that an error lists, the nearest first.
@@ -16,8 +16,8 @@ pub(crate) type ActiveGuide = Option<([u32; 3], ShortestPathFollower)>;
 pub(crate) struct WorldAccess<'a> {
     pub(crate) world: &'a mut World,
     pub(crate) guide: &'a mut ActiveGuide,
-    /// Step sizes of discrete actions.
-    pub(crate) stride: StepSizes,
+    /// How far discrete actions of each agent go; of those beyond, as by default. Shape (agent,).
+    pub(crate) strides: IdVec<AgentId, StepSizes>,
 }
 
 impl WorldAccess<'_> {
@@ -56,6 +56,11 @@ impl WorldAccess<'_> {
                 let known: Vec<_> = parts.map(|id| &house.parts[id].name).collect();
                 PyFault::Config(format!("no part {name:?}; {object:?} has {known:?}"))
             })
+    }
+
+    /// Returns how far discrete actions of an agent go.
+    pub(crate) fn stride(&self, agent: AgentId) -> StepSizes {
+        self.strides.get(agent).copied().unwrap_or_default()
     }
 
     pub(crate) fn agent(&self, agent: usize) -> Result<AgentId, PyFault> {

@@ -48,8 +48,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
     let mut last = Vec::new();
     for step in 0..MOST_STEPS {
-        let action = env.expert_action()?;
-        let info = env.step(action)?;
+        let action = env.expert_action(0)?;
+        let info = &env.step(&[Some(action)])?[0];
         let notice = if info.action_success {
             ""
         } else {
@@ -70,7 +70,7 @@ fn play(env: &mut Env, seed: u64) -> Result<bool, dwell::WorldError> {
 
 fn tell(env: &Env, seed: u64, steps: usize, actions: &[String]) {
     let agent = env.world().state().agents[AgentId(0)];
-    let text = env.episode().map_or("", |episode| &episode.instruction);
+    let text = env.episode(0).map_or("", |episode| &episode.instruction);
     let last = &actions[actions.len().saturating_sub(6)..];
     println!(
         "episode {seed}, {steps} steps: {text:?}, at {:.3} {:.2} rad, {last:?}",

@@ -382,8 +382,8 @@ fn the_expert_walks_with_the_strides_of_its_environment() {
     for seed in 0..6 {
         env.reset(seed).unwrap();
         for _ in 0..1000 {
-            let action = env.expert_action().unwrap();
-            let info = env.step(action).unwrap();
+            let action = env.expert_action(0).unwrap();
+            let info = &env.step(&[Some(action)]).unwrap()[0];
             if info.verdict.terminated {
                 fulfilled += u32::from(info.verdict.success);
                 break;

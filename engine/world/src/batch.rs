@@ -7,11 +7,12 @@ use crate::episode::StepInfo;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_acoustics::signals;
+use dwell_scene::AgentId;
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use std::collections::BTreeSet;
 
-/// Environments of one make. Shapes and types of their observations are the same.
+/// Environments of one make: the same agents act in all, and shapes and types of their observations are the same.
 #[derive(Debug)]
 pub struct Batch {
     envs: Vec<Env>,
@@ -27,7 +28,19 @@ pub struct Batch {
 /// Waves in which worlds step where pictures overlap with it: the adapter takes those of one while the next steps.
 const WAVES: usize = 4;
 
-/// One environment of a batch, and the result of its part of a step.
+/// In what two environments differ that a batch cannot join.
+fn difference(first: &Env, other: &Env) -> Option<&'static str> {
+    let (agents, sensors) = (first.agents(), first.specs());
+    if !agents.eq(other.agents()) {
+        Some("agents")
+    } else if sensors != other.specs() || first.sensor_agents() != other.sensor_agents() {
+        Some("sensors")
+    } else {
+        None
+    }
+}
+
+/// One environment of a batch, and what its part of a step came to.
 struct EnvSlot<'a, R> {
     env: &'a mut Env,
     active: bool,
@@ -38,18 +51,19 @@ impl Batch {
     /// Joins environments.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for none, or for environments whose sensors differ.
+    /// [`WorldError::Usage`] for none, or for environments whose agents or sensors differ.
     pub fn new(envs: Vec<Env>, threads: Threads) -> Result<Self, WorldError> {
         let Some(first) = envs.first() else {
             return Err(WorldError::Usage(
                 "a batch needs at least one environment".to_owned(),
             ));
         };
-        let specs = first.specs();
-        if let Some(k) = envs.iter().position(|env| env.specs() != specs) {
-            return Err(WorldError::Usage(format!(
-                "environment {k} has other sensors than environment 0"
-            )));
+        for (k, env) in envs.iter().enumerate() {
+            if let Some(what) = difference(first, env) {
+                return Err(WorldError::Usage(format!(
+                    "environment {k} has other {what} than environment 0"
+                )));
+            }
         }
         Ok(Self {
             is_started: vec![false; envs.len()],
@@ -103,12 +117,12 @@ impl Batch {
     /// Replaces an environment and returns the old one: an episode may begin in another house.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment that does not exist or whose sensors differ, [`WorldError::Render`] for a
-    /// picture of it that was under way; nothing has changed then.
+    /// [`WorldError::Usage`] for an environment that does not exist or whose agents or sensors differ, [`WorldError::Render`] for
+    /// a picture of it that was under way; nothing has changed then.
     pub fn put(&mut self, index: usize, env: Env) -> Result<Env, WorldError> {
-        if self.env(index)?.specs() != env.specs() {
-            let what = format!("put: the sensors differ from those of environment {index}");
-            return Err(WorldError::Usage(what));
+        if let Some(what) = difference(self.env(index)?, &env) {
+            let told = format!("put: the {what} differ from those of environment {index}");
+            return Err(WorldError::Usage(told));
         }
         // Pictures belong to environments by their indices, and the other one has other indices.
         let mut waiting = self.under_way.iter().flatten();
@@ -131,22 +145,32 @@ impl Batch {
         self.or_over(&active, |batch| batch.env_mut(index)?.restore(bytes))
     }
 
-    /// Returns the scripted expert's action now in each environment.
+    /// Returns what each agent's scripted expert would do now. Shape (environment, agent).
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
     pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
         let all = vec![true; self.envs.len()];
-        let actions = self.for_active(&all, |_, env| env.expert_action())?;
-        Ok(actions.into_iter().flatten().collect())
+        let actions = self.for_active(&all, |_, env| env.expert_actions())?;
+        Ok(actions.into_iter().flatten().flatten().collect())
     }
 
-    /// Returns the specifications of every environment's sensors.
+    /// Returns who acts in every environment, in the order of actions. Shape (agent,).
+    pub fn agents(&self) -> impl ExactSizeIterator<Item = AgentId> + '_ {
+        self.envs[0].agents()
+    }
+
+    /// Returns what every environment's sensors give, as [`Env::specs`]. Shape (sensor,).
     pub fn specs(&self) -> Vec<SensorSpec> {
         self.envs[0].specs()
     }
 
-    /// Does `work` in the environments of `active`; then starts their pictures, where requested.
+    /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
+    pub fn sensor_agents(&self) -> Vec<usize> {
+        self.envs[0].sensor_agents()
+    }
+
+    /// Does `work` in the environments of `active`; then, where that is asked for, their pictures are under way.
     fn change<R: Send>(
         &mut self,
         active: &[bool],
@@ -309,28 +333,53 @@ impl Batch {
         (all.into_iter().collect(), rate_hz)
     }
 
-    /// Steps the environments for which `actions` has one.
+    /// Steps the environments for which `actions` has any.
+    ///
+    /// `actions`: shape (environment, agent); those of an environment as [`Env::step`] takes them, or all none: it stays as it is.
+    /// Returns what each agent's step came to, of the same shape; none for those of environments that stay.
     ///
     /// Stopped by [`interrupt`], the episodes of all of them are over: reset them.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an environment whose episode has ended; then none is stepped.
+    /// Those of [`Env::check_can_step`] for any environment; then none is stepped.
     pub fn step(
         &mut self,
         actions: &[Option<DiscreteAction>],
     ) -> Result<Vec<Option<StepInfo>>, WorldError> {
-        self.check_count("actions", actions.len())?;
-        let active: Vec<bool> = actions.iter().map(Option::is_some).collect();
-        for (env, _) in self.envs.iter().zip(&active).filter(|(_, active)| **active) {
-            env.check_can_step()?;
+        let agents = self.agents().len();
+        if actions.len() != self.envs.len() * agents {
+            return Err(WorldError::Usage(format!(
+                "actions: expected one for each of {agents} agents in each of {} environments, found {}",
+                self.envs.len(),
+                actions.len()
+            )));
         }
-        self.or_over(&active, |batch| {
+        let own: Vec<&[Option<DiscreteAction>]> = actions.chunks(agents).collect();
+        let active: Vec<bool> = own
+            .iter()
+            .map(|own| own.iter().any(Option::is_some))
+            .collect();
+        for ((env, own), _) in self
+            .envs
+            .iter()
+            .zip(&own)
+            .zip(&active)
+            .filter(|(_, on)| **on)
+        {
+            env.check_can_step(own)?;
+        }
+        let infos = self.or_over(&active, |batch| {
             batch.change(&active, |k, env| {
-                let info = env.step(actions[k].unwrap_or(DiscreteAction::Stop))?;
+                let infos = env.step(own[k])?;
                 env.listen()?;
-                Ok(info)
+                Ok(infos)
             })
-        })
+        })?;
+        let rows = infos.into_iter().flat_map(|infos| match infos {
+            Some(infos) => infos.into_iter().map(Some).collect(),
+            None => vec![None; agents],
+        });
+        Ok(rows.collect())
     }
 
     /// Writes the observations of the environments in `which`: all their views in one submission.
@@ -400,7 +449,7 @@ impl Batch {
             .envs
             .iter()
             .zip(&mut texts)
-            .filter(|(env, _)| env.episode().is_some())
+            .filter(|(env, _)| env.has_episode())
         {
             if let Err(error) = env.observe(sensor, ObservationBuffer::Text(text)) {
                 tracing::warn!(%error, "no text");

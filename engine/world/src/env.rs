@@ -1,186 +1,118 @@
-//! One agent's environment: a world, a task and sensors, stepped by discrete actions.
+//! The agents of a world, each with a task and sensors, who act at once.
 
-use crate::actions::{DiscreteAction, StepSizes};
+use crate::actions::{DiscreteAction, DiscreteStep, StepSizes};
 use crate::camera_capture::PictureRequest;
-use crate::config::WorldConfig;
 use crate::engines::Engines;
+use crate::env_agent::EnvAgent;
+use crate::env_config::EnvConfig;
 use crate::episode::{Episode, StepInfo};
 use crate::error::WorldError;
 use crate::sensor_requests::{Requests, Results};
-use crate::sensors::{self, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec};
-use crate::tasks::{self, Task, TaskKind, TaskSetup};
+use crate::sensors::{ObservationBuffer, Sensor, SensorContext, SensorSpec};
 use crate::world::World;
 use dwell_render::{Camera, Preset};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Id};
-use serde::{Deserialize, Serialize};
+use dwell_scene::{AgentId, Id, IdVec, Pose};
 use std::sync::Arc;
 
 /// Time for which things come to rest before an environment's world begins, s. Else each episode's first second would cost ten
 /// times what the others do.
 const SETTLE_S: f64 = 2.0;
 
-/// The settings of an environment. Every field has a default; unknown fields are refused.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct EnvConfig {
-    /// The task's name.
-    pub task: String,
-    /// The task's settings.
-    pub task_settings: serde_json::Value,
-    /// Rates, laws, parameters.
-    pub world: WorldConfig,
-    /// The agent whom the task is about, and who acts; default 0.
-    pub agent: u32,
-    /// Step sizes of movement actions.
-    pub stride: StepSizes,
-    /// Sensors by name with their settings; `None`: the task's own choice.
-    pub sensors: Option<Vec<SensorConfig>>,
-}
-
-/// A requested sensor.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SensorConfig {
-    /// The kind's name.
-    pub kind: String,
-    /// Its settings.
-    #[serde(default)]
-    pub settings: serde_json::Value,
-}
-
-impl Default for EnvConfig {
-    fn default() -> Self {
-        Self {
-            task: "InstructionFollowing".to_owned(),
-            task_settings: serde_json::Value::Null,
-            world: WorldConfig::default(),
-            agent: 0,
-            stride: StepSizes::default(),
-            sensors: None,
-        }
-    }
-}
-
-/// An environment about one of the agents of a world; the others stand still.
+/// A world in which some agents act at once, at one clock; the others stand still. Alone or not, each has a task, sensors and an
+/// episode of its own.
+///
+/// An agent is told by its place among those who act, as [`EnvConfig::agents`] lists them. An episode that ends before the
+/// others leaves its agent where it stands: its actions are not looked at, and it goes on observing.
 #[derive(Debug)]
 pub struct Env {
     pub(crate) world: World,
-    task: Box<dyn Task>,
-    pub(crate) kind: &'static TaskKind,
-    /// The agent that the task is about.
-    pub(crate) agent: AgentId,
-    stride: StepSizes,
-    pub(crate) sensors: Vec<Box<dyn Sensor>>,
+    /// Those who act, in the order of actions. Shape (agent,).
+    pub(crate) agents: Vec<EnvAgent>,
     requests: Requests,
     pub(crate) results: Results,
-    pub(crate) episode: Option<Episode>,
+    /// Where all agents of the world stood when the episodes began. Shape (agent of the world,).
+    pub(crate) starts: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
     episode_key: RandomKey,
     /// True while the world is as it was made.
     is_new: bool,
-    /// Steps of the episode.
+    /// Steps of the episodes.
     pub(crate) steps: u64,
-    pub(crate) done: bool,
 }
 
 impl Env {
-    /// Builds world, task and sensors over a house.
+    /// Builds world, tasks and sensors over a house.
     ///
     /// # Errors
     /// [`WorldError`] names the setting or the fault of the house.
     pub fn new(engines: Arc<Engines>, config: &EnvConfig) -> Result<Self, WorldError> {
-        let kind = tasks::find(&config.task)?;
-        config.stride.check()?;
-        let agent = AgentId(config.agent);
-        if agent.index() >= config.world.agents.len().max(1) {
-            let count = config.world.agents.len();
-            return Err(WorldError::Config {
-                field: "agent",
-                found: agent.0.to_string(),
-                allowed: format!("below the number of agents, {count}"),
-            });
-        }
-        let setup = TaskSetup {
-            agent,
-            stride: config.stride,
-        };
-        let task = (kind.build)(&config.task_settings, setup)?;
-        let site = SensorSetup {
-            config: &config.world,
-            agent,
-        };
-        let defaults: Vec<SensorConfig> = kind
-            .sensors
+        let agents = config
+            .roles()?
             .iter()
-            .map(|name| SensorConfig {
-                kind: (*name).to_owned(),
-                settings: serde_json::Value::Null,
-            })
-            .collect();
-        let wanted = config.sensors.as_ref().unwrap_or(&defaults);
-        let sensors: Vec<_> = wanted
-            .iter()
-            .map(|sensor| sensors::build(&sensor.kind, &sensor.settings, site))
-            .collect::<Result<_, _>>()?;
-        for (k, sensor) in sensors.iter().enumerate() {
-            let name = sensor.spec().name;
-            if sensors[..k].iter().any(|other| other.spec().name == name) {
-                let allowed = "each sensor once".to_owned();
-                return Err(WorldError::Config {
-                    field: "sensors",
-                    found: format!("{name:?} twice"),
-                    allowed,
-                });
-            }
-        }
+            .map(|role| EnvAgent::new(role, &config.world))
+            .collect::<Result<Vec<_>, _>>()?;
         let mut world_config = config.world.clone();
         world_config.settle_s.get_or_insert(SETTLE_S);
-        // `agent/N/camera/fov_deg` reads the value of the agent's first camera with a field of view.
-        for (k, body) in world_config.agents.iter_mut().enumerate() {
-            let eyes = sensors.iter().filter_map(|sensor| sensor.eye());
-            let mut own = eyes.filter(|eye| eye.agent.index() == k);
-            if let Some(fov_deg) = own.find_map(|eye| eye.fov_deg) {
+        // What `agent/N/camera/fov_deg` reads is what the agent sees with.
+        for (number, body) in world_config.agents.iter_mut().enumerate() {
+            if let Some(fov_deg) = fov_deg(&agents, AgentId::from_index(number)) {
                 body.camera_fov_deg = fov_deg;
             }
         }
         let world = World::new(engines, &world_config)?;
         let mut requests = Requests::default();
-        for sensor in &sensors {
+        for sensor in agents.iter().flat_map(|agent| &agent.sensors) {
             sensor.plan(&world, &mut requests);
         }
         Ok(Self {
             world,
-            task,
-            kind,
-            agent,
-            stride: config.stride,
-            sensors,
+            agents,
             requests,
             results: Results::default(),
-            episode: None,
+            starts: IdVec::default(),
             seed: 0,
             episode_key: RandomKey::root(0),
             is_new: true,
             steps: 0,
-            done: false,
         })
     }
 
-    /// The task's kind.
-    pub fn kind(&self) -> &'static TaskKind {
-        self.kind
+    /// Returns those who act, in the order of actions. Shape (agent,).
+    pub fn agents(&self) -> impl ExactSizeIterator<Item = AgentId> + '_ {
+        self.agents.iter().map(|agent| agent.id)
     }
 
-    /// Returns the step sizes of movement actions.
-    pub fn stride(&self) -> &StepSizes {
-        &self.stride
+    /// Returns how far movement actions go: of each agent that acts its own, of the world's others as of the first that acts.
+    pub fn strides(&self) -> IdVec<AgentId, StepSizes> {
+        let first = self.agents[0].stride;
+        let mut strides = IdVec::filled(first, self.world.state().agents.len());
+        for agent in &self.agents {
+            if let Some(stride) = strides.get_mut(agent.id) {
+                *stride = agent.stride;
+            }
+        }
+        strides
     }
 
-    /// Returns the specifications of the sensors, in order.
+    /// Returns what the sensors give: those of the first agent in order, of the second, and so on. Shape (sensor,).
     pub fn specs(&self) -> Vec<SensorSpec> {
-        self.sensors.iter().map(|sensor| sensor.spec()).collect()
+        self.sensors().map(|(_, sensor)| sensor.spec()).collect()
+    }
+
+    /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
+    pub fn sensor_agents(&self) -> Vec<usize> {
+        let agents = self.agents.iter().enumerate();
+        agents
+            .flat_map(|(place, agent)| std::iter::repeat_n(place, agent.sensors.len()))
+            .collect()
+    }
+
+    fn sensors(&self) -> impl Iterator<Item = (&EnvAgent, &dyn Sensor)> {
+        self.agents
+            .iter()
+            .flat_map(|agent| agent.sensors.iter().map(move |sensor| (agent, &**sensor)))
     }
 
     /// The world.
@@ -194,21 +126,43 @@ impl Env {
         &mut self.world
     }
 
-    /// The episode that runs, if one does.
-    pub fn episode(&self) -> Option<&Episode> {
-        self.episode.as_ref()
+    /// Returns the episode of an agent, also one that has ended.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset.
+    pub fn episode(&self, agent: usize) -> Result<&Episode, WorldError> {
+        let own = self.agent(agent)?.episode.as_ref();
+        let none = || WorldError::Usage("no episode has begun; call reset first".to_owned());
+        own.ok_or_else(none)
     }
 
-    /// Returns the number of steps of the episode; 0 where none runs.
+    pub(crate) fn agent(&self, agent: usize) -> Result<&EnvAgent, WorldError> {
+        let found = self.agents.get(agent);
+        found.ok_or_else(|| no_agent(agent, self.agents.len()))
+    }
+
+    pub(crate) fn agent_mut(&mut self, agent: usize) -> Result<&mut EnvAgent, WorldError> {
+        let count = self.agents.len();
+        let found = self.agents.get_mut(agent);
+        found.ok_or_else(|| no_agent(agent, count))
+    }
+
+    /// Returns whether an episode has begun, and was not given up.
+    pub fn has_episode(&self) -> bool {
+        self.agents.iter().all(|agent| agent.episode.is_some())
+    }
+
+    /// Returns how many steps the episodes have had; 0 where none runs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Starts a new episode; everything random in it comes from `seed`.
+    /// Starts new episodes; everything random in them comes from `seed`. Agents that come first have first choice of where to
+    /// start, and the others keep clear of them.
     ///
     /// # Errors
-    /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
-    pub fn reset(&mut self, seed: u64) -> Result<&Episode, WorldError> {
+    /// [`WorldError::Unplayable`] when the house does not hold what a task needs.
+    pub fn reset(&mut self, seed: u64) -> Result<(), WorldError> {
         let key = RandomKey::root(seed).child("episode");
         // A failure from here on leaves no episode behind that could go on.
         self.abandon_episode();
@@ -218,9 +172,35 @@ impl Env {
         } else {
             self.world.reset(key)?;
         }
-        let episode = self.task.reset(&mut self.world, key.child("task"))?;
+        for agent in &mut self.agents {
+            agent.task.prepare(&self.world)?;
+        }
+        let mut begun = Vec::with_capacity(self.agents.len());
+        let mut placed = Vec::with_capacity(self.agents.len());
+        for agent in &mut self.agents {
+            let own = agent.key(key).child("task");
+            begun.push(agent.task.reset(&mut self.world, &placed, own)?);
+            placed.push(agent.id);
+        }
+        for (agent, episode) in self.agents.iter_mut().zip(begun) {
+            agent.episode = Some(episode);
+        }
         (self.seed, self.episode_key) = (seed, key);
-        Ok(self.episode.insert(episode))
+        self.note_starts();
+        Ok(())
+    }
+
+    /// Notes where all agents start: those who act where their episodes say, the others where they stand.
+    pub(crate) fn note_starts(&mut self) {
+        let standing = self.world.state().agents.iter();
+        self.starts = standing
+            .map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad))
+            .collect();
+        for agent in &self.agents {
+            if let (Some(start), Some(episode)) = (self.starts.get_mut(agent.id), &agent.episode) {
+                *start = episode.start;
+            }
+        }
     }
 
     /// [`Self::reset`], with the ears open that the sensors need, as a [`Batch`](crate::Batch) begins an episode.
@@ -253,76 +233,110 @@ impl Env {
         Ok(())
     }
 
-    /// Ends the episode: later changes of the world belong to none.
+    /// Ends the episodes: what happens to the world from here on belongs to none.
     pub(crate) fn abandon_episode(&mut self) {
-        self.episode = None;
+        self.agents.iter_mut().for_each(EnvAgent::abandon_episode);
         self.steps = 0;
-        self.done = false;
     }
 
-    /// Returns whether a step can be made.
+    /// Returns whether a step can be made by these actions.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset and after the end of an episode.
-    pub fn check_can_step(&self) -> Result<(), WorldError> {
-        let what = match &self.episode {
-            Some(_) if self.done => "the episode has ended",
-            Some(_) => return Ok(()),
-            None => "no episode has begun",
-        };
-        Err(WorldError::Usage(format!("step: {what}; call reset first")))
+    /// [`WorldError::Usage`] before the first reset, when all episodes have ended, and where the actions are not one for each
+    /// agent whose episode goes on.
+    pub fn check_can_step(&self, actions: &[Option<DiscreteAction>]) -> Result<(), WorldError> {
+        if !self.has_episode() {
+            return Err(no_episode("step"));
+        }
+        if self.agents.iter().all(|agent| agent.done) {
+            let what = "step: the episode has ended; call reset first";
+            return Err(WorldError::Usage(what.to_owned()));
+        }
+        if actions.len() != self.agents.len() {
+            return Err(WorldError::Usage(format!(
+                "step: expected one action for each of {} agents, found {}",
+                self.agents.len(),
+                actions.len()
+            )));
+        }
+        let mut idle = self.agents.iter().zip(actions);
+        match idle.find(|(agent, action)| !agent.done && action.is_none()) {
+            None => Ok(()),
+            Some((agent, _)) => Err(WorldError::Usage(format!(
+                "step: no action for agent {}, whose episode goes on",
+                agent.id.0
+            ))),
+        }
     }
 
-    /// Number of samples of sound in the latest observation that were clipped.
-    pub fn clipped(&self) -> u64 {
-        self.sensors.iter().map(|sensor| sensor.clipped()).sum()
+    /// Samples of sound that were cut off in each agent's latest observation, because they were louder than it can hold. Shape
+    /// (agent,).
+    pub fn clipped(&self) -> Vec<u64> {
+        let of = |agent: &EnvAgent| agent.sensors.iter().map(|sensor| sensor.clipped()).sum();
+        self.agents.iter().map(of).collect()
     }
 
-    /// Makes one control step with `action`, without observing: a [`Batch`](crate::Batch) observes afterwards.
+    /// Makes one control step of all agents together, without looking: a [`Batch`](crate::Batch) observes afterwards.
+    ///
+    /// `actions`: shape (agent,). Of an agent whose episode has ended none is looked at; it stands still, is paid nothing and
+    /// reports how it ended.
+    ///
+    /// Hands act before the step, in the order of the agents.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset and after the end of an episode.
-    pub fn step(&mut self, action: DiscreteAction) -> Result<StepInfo, WorldError> {
-        self.check_can_step()?;
-        let Some(episode) = self.episode.as_mut() else {
-            return Err(WorldError::Usage("step: no episode has begun".to_owned()));
-        };
-        let agent = self.agent;
-        let outcome = self.world.act_discrete(agent, action, &self.stride)?;
+    /// Those of [`Self::check_can_step`]; nothing has changed then.
+    pub fn step(
+        &mut self,
+        actions: &[Option<DiscreteAction>],
+    ) -> Result<Vec<StepInfo>, WorldError> {
+        self.check_can_step(actions)?;
+        let acting = self.agents.iter().zip(actions);
+        let acting = acting.filter(|(agent, _)| !agent.done);
+        let steps: Vec<DiscreteStep> = acting
+            .filter_map(|(agent, action)| {
+                Some(DiscreteStep {
+                    agent: agent.id,
+                    action: (*action)?,
+                    stride: agent.stride,
+                })
+            })
+            .collect();
+        let outcomes = self.world.act_together(&steps)?;
         self.steps += 1;
-        let verdict = self.task.judge(&self.world, episode, action);
-        self.done = verdict.terminated;
-        let collision = self
-            .world
-            .state()
-            .agents
-            .get(agent)
-            .is_some_and(|agent| agent.collided);
-        Ok(StepInfo {
-            agent,
-            verdict,
-            action_success: outcome.success,
-            action_error: if outcome.success {
-                String::new()
+        let mut done = steps.into_iter().zip(outcomes);
+        let mut infos = Vec::with_capacity(self.agents.len());
+        for agent in &mut self.agents {
+            let info = if agent.done {
+                agent.rest()
             } else {
-                outcome.sentence
-            },
-            progress: episode.progress,
-            collision,
-        })
+                done.next()
+                    .and_then(|(step, outcome)| agent.judge(&self.world, step.action, outcome))
+            };
+            infos.push(info.ok_or_else(|| no_episode("step"))?);
+        }
+        Ok(infos)
     }
 
-    /// Returns the scripted expert's action now.
+    /// Returns what each agent's scripted expert would do now. Shape (agent,).
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
-    pub fn expert_action(&mut self) -> Result<DiscreteAction, WorldError> {
-        let Some(episode) = &self.episode else {
-            return Err(WorldError::Usage(
-                "expert: no episode has begun; call reset first".to_owned(),
-            ));
-        };
-        Ok(self.task.expert(&mut self.world, episode))
+    pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
+        (0..self.agents.len())
+            .map(|agent| self.expert_action(agent))
+            .collect()
+    }
+
+    /// Returns what the scripted expert of one agent would do now.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset.
+    pub fn expert_action(&mut self, agent: usize) -> Result<DiscreteAction, WorldError> {
+        let count = self.agents.len();
+        let own = self.agents.get_mut(agent);
+        let own = own.ok_or_else(|| no_agent(agent, count))?;
+        let episode = own.episode.as_ref().ok_or_else(|| no_episode("expert"))?;
+        Ok(own.task.expert(&mut self.world, episode))
     }
 
     /// Opens the ears that the sensors need, where they are not open yet.
@@ -349,7 +363,7 @@ impl Env {
         (&self.world, &self.requests, &mut self.results)
     }
 
-    /// Writes sensor `index`'s observation.
+    /// Writes the observation of a sensor, by its place among [`Self::specs`].
     ///
     /// # Errors
     /// [`WorldError::Usage`] for a wrong index or length, or before the first reset.
@@ -358,7 +372,10 @@ impl Env {
         index: usize,
         out: ObservationBuffer<'_>,
     ) -> Result<(), WorldError> {
-        let (Some(sensor), Some(episode)) = (self.sensors.get(index), &self.episode) else {
+        let found = self.sensors().nth(index);
+        let found =
+            found.and_then(|(agent, sensor)| Some((agent, sensor, agent.episode.as_ref()?)));
+        let Some((agent, sensor, episode)) = found else {
             return Err(WorldError::Usage(format!(
                 "observe: no sensor {index}, or no episode has begun"
             )));
@@ -378,8 +395,8 @@ impl Env {
                 spec.shape
             )));
         }
-        let key = self
-            .episode_key
+        let key = agent
+            .key(self.episode_key)
             .child("sensor")
             .child(spec.name.as_str())
             .child(self.world.state().step);
@@ -387,6 +404,7 @@ impl Env {
             SensorContext {
                 world: &self.world,
                 episode,
+                starts: &self.starts,
                 results: &self.results,
                 key,
             },
@@ -396,11 +414,32 @@ impl Env {
     }
 }
 
+fn no_episode(call: &str) -> WorldError {
+    WorldError::Usage(format!("{call}: no episode has begun; call reset first"))
+}
+
+fn no_agent(agent: usize, count: usize) -> WorldError {
+    WorldError::Usage(format!(
+        "no agent {agent} acts; there are {count}, counted from 0"
+    ))
+}
+
+/// The field of view of an agent's eyes, degrees: that of the first camera with one, of its own sensors or else of the others'.
+fn fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
+    let (own, others): (Vec<_>, Vec<_>) = agents.iter().partition(|agent| agent.id == whose);
+    let sensors = own.iter().chain(&others).flat_map(|agent| &agent.sensors);
+    let mut eyes = sensors.filter_map(|sensor| sensor.eye());
+    eyes.find_map(|eye| eye.fov_deg.filter(|_| eye.agent == whose))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Batch;
+    use crate::batch::Batch;
+    use crate::config::WorldConfig;
+    use crate::env_config::SensorConfig;
     use crate::episode::Verdict;
+    use crate::tasks::Task;
 
     fn env() -> Env {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
@@ -425,7 +464,7 @@ mod tests {
         assert_eq!(env.world.state().time_s, 0.0);
         let start = env.world.state().part_pose.clone();
         env.reset(5).unwrap();
-        env.step(DiscreteAction::TurnLeft).unwrap();
+        env.step(&[Some(DiscreteAction::TurnLeft)]).unwrap();
         env.reset(6).unwrap();
         assert_eq!(env.world.state().part_pose, start);
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
@@ -448,7 +487,7 @@ mod tests {
             env.begin(5).unwrap();
             let walk = [DiscreteAction::MoveForward, DiscreteAction::TurnLeft];
             walk.map(|action| {
-                env.step(action).unwrap();
+                env.step(&[Some(action)]).unwrap();
                 env.world.hash()
             })
         };
@@ -464,70 +503,17 @@ mod tests {
         assert_eq!(play(&mut changed), first);
     }
 
-    /// The second agent acts, senses and is judged as the first does where the first alone plays; the other stands still.
-    #[test]
-    fn an_environment_is_about_the_agent_that_it_names() {
-        let sensors = ["gps", "compass", "gyro", "wheel_odometry"];
-        let env = |agent: u32| {
-            let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
-            let named = |kind: &str, other: u32| SensorConfig {
-                kind: kind.to_owned(),
-                settings: match other {
-                    0 => serde_json::Value::Null,
-                    _ => serde_json::json!({"name": format!("other_{kind}"), "agent": 1 - agent}),
-                },
-            };
-            let all = sensors.map(|kind| [named(kind, 0), named(kind, 1)]);
-            let config = EnvConfig {
-                task: "Free".to_owned(),
-                task_settings: serde_json::json!({"start": "anywhere"}),
-                world: WorldConfig {
-                    agents: vec![dwell_scene::AgentBody::default(); 2],
-                    ..WorldConfig::default()
-                },
-                agent,
-                sensors: Some(all.into_iter().flatten().collect()),
-                ..EnvConfig::default()
-            };
-            Env::new(Engines::new(Arc::new(house)), &config).unwrap()
-        };
-        for agent in [AgentId(0), AgentId(1)] {
-            let mut env = env(agent.0);
-            env.reset(3).unwrap();
-            let other = AgentId(1 - agent.0);
-            let before = env.world().state().agents[other].position;
-            for action in [DiscreteAction::TurnLeft, DiscreteAction::MoveForward] {
-                assert_eq!(env.step(action).unwrap().agent, agent);
-            }
-            let state = env.world().state();
-            assert!((state.agents[other].position - before).length() < 1e-3);
-            let observed = |name: &str| {
-                let specs = env.specs();
-                let index = specs.iter().position(|spec| spec.name == name).unwrap();
-                let mut out = vec![0.0; specs[index].len()];
-                env.observe(index, ObservationBuffer::Float32(&mut out))
-                    .unwrap();
-                out
-            };
-            assert!((observed("compass")[0] - 9_f32.to_radians()).abs() < 1e-3);
-            assert!(observed("other_compass")[0].abs() < 1e-6);
-            assert!(observed("other_gps").iter().all(|way| way.abs() < 1e-3));
-        }
-        let none = EnvConfig {
-            agent: 1,
-            ..EnvConfig::default()
-        };
-        let engines = env(0).world.engines().clone();
-        let told = Env::new(engines, &none).unwrap_err().to_string();
-        assert_eq!(told, "agent is 1; allowed is below the number of agents, 1");
-    }
-
     /// A task that starts nothing.
     #[derive(Debug)]
     struct RefusingTask;
 
     impl Task for RefusingTask {
-        fn reset(&mut self, world: &mut World, _: RandomKey) -> Result<Episode, WorldError> {
+        fn reset(
+            &mut self,
+            world: &mut World,
+            _: &[AgentId],
+            _: RandomKey,
+        ) -> Result<Episode, WorldError> {
             Err(WorldError::Unplayable {
                 task: "Refusing",
                 house: world.house().name.clone(),
@@ -548,10 +534,13 @@ mod tests {
     fn a_reset_that_fails_leaves_no_episode_that_could_go_on() {
         let mut env = env();
         env.reset(1).unwrap();
-        env.task = Box::new(RefusingTask);
+        env.agents[0].task = Box::new(RefusingTask);
         assert!(matches!(env.reset(2), Err(WorldError::Unplayable { .. })));
-        assert!(env.episode().is_none());
-        let error = env.step(DiscreteAction::Wait).unwrap_err().to_string();
+        assert!(env.episode(0).is_err());
+        let error = env
+            .step(&[Some(DiscreteAction::Wait)])
+            .unwrap_err()
+            .to_string();
         assert_eq!(error, "step: no episode has begun; call reset first");
     }
 

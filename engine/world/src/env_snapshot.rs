@@ -1,29 +1,64 @@
 //! An environment at one moment, as bytes.
 
 use crate::env::Env;
+use crate::env_agent::EnvAgent;
+use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
-/// Header of [`Env::snapshot`]: its kind and version.
-const MAGIC: &[u8] = b"dwenv4";
+/// What [`Env::snapshot`] begins with: its kind and version.
+const MAGIC: &[u8] = b"dwenv5";
 
-/// An episode at one moment. Its goal comes from the seed again.
+/// Episodes at one moment. Their goals come from the seed again.
 #[derive(Serialize, Deserialize)]
 struct EnvSnapshot {
-    task: String,
     seed: u64,
     steps: u64,
-    done: bool,
-    instruction: String,
+    /// Those who act, in order.
+    agents: Vec<AgentSnapshot>,
     starts: IdVec<AgentId, Pose>,
-    progress: NavigationMetrics,
     world: Vec<u8>,
 }
 
+/// An agent's episode at one moment.
+#[derive(Serialize, Deserialize)]
+struct AgentSnapshot {
+    agent: u32,
+    task: String,
+    done: bool,
+    success: bool,
+    instruction: String,
+    start: Pose,
+    progress: NavigationMetrics,
+}
+
+impl AgentSnapshot {
+    fn of(agent: &EnvAgent, episode: &Episode) -> Self {
+        Self {
+            agent: agent.id.0,
+            task: agent.kind.name.to_owned(),
+            done: agent.done,
+            success: agent.success,
+            instruction: episode.instruction.clone(),
+            start: episode.start,
+            progress: episode.progress,
+        }
+    }
+
+    /// Puts an episode of the same seed to this moment.
+    fn apply(self, agent: &mut EnvAgent, tokens: Vec<i32>) {
+        if let Some(episode) = &mut agent.episode {
+            (episode.instruction, episode.tokens) = (self.instruction, tokens);
+            (episode.start, episode.progress) = (self.start, self.progress);
+        }
+        (agent.done, agent.success) = (self.done, self.success);
+    }
+}
+
 impl Env {
-    /// World and episode as bytes.
+    /// World and episodes as bytes.
     ///
     /// # Errors
     /// [`WorldError::Usage`] before the first reset.
@@ -31,18 +66,17 @@ impl Env {
     /// # Panics
     /// Never: plain data can always be written to memory.
     pub fn snapshot(&self) -> Result<Vec<u8>, WorldError> {
-        let Some(episode) = &self.episode else {
+        let agents = self.agents.iter();
+        let agents = agents.map(|agent| Some(AgentSnapshot::of(agent, agent.episode.as_ref()?)));
+        let Some(agents) = agents.collect() else {
             let message = "snapshot: no episode has begun; call reset first";
             return Err(WorldError::Usage(message.to_owned()));
         };
         let moment = EnvSnapshot {
-            task: self.kind.name.to_owned(),
             seed: self.seed,
             steps: self.steps,
-            done: self.done,
-            instruction: episode.instruction.clone(),
-            starts: episode.starts.clone(),
-            progress: episode.progress,
+            agents,
+            starts: self.starts.clone(),
             world: self.world.snapshot(),
         };
         let body =
@@ -50,8 +84,8 @@ impl Env {
         Ok([MAGIC, &body].concat())
     }
 
-    /// Restores [`Self::snapshot`] in an environment of the same make; the next steps give the same bits as
-    /// they did then. Only the scripted expert forgets a manoeuvre that it was about.
+    /// Goes to where [`Self::snapshot`] was taken in an environment of the same make; the next steps give the same bits as
+    /// they did then. Only scripted experts forget manoeuvres that they were about.
     ///
     /// # Errors
     /// [`WorldError::Snapshot`] with the reason; no episode runs then.
@@ -59,24 +93,50 @@ impl Env {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
-            .ok_or_else(|| refuse("it does not begin with \"dwenv4\"".to_owned()))?;
+            .ok_or_else(|| refuse("it does not begin with \"dwenv5\"".to_owned()))?;
         let moment: EnvSnapshot =
             postcard::from_bytes(body).map_err(|error| refuse(error.to_string()))?;
-        if moment.task != self.kind.name {
-            return Err(refuse(format!("it is of the task {}", moment.task)));
+        if moment.agents.len() != self.agents.len() {
+            let (found, allowed) = (moment.agents.len(), self.agents.len());
+            return Err(refuse(format!(
+                "{found} agents act in it, and {allowed} in the environment"
+            )));
+        }
+        for (own, saved) in self.agents.iter().zip(&moment.agents) {
+            if saved.task != own.kind.name {
+                return Err(refuse(format!("it is of the task {}", saved.task)));
+            }
+            if saved.agent != own.id.0 {
+                let (found, allowed) = (saved.agent, own.id.0);
+                return Err(refuse(format!(
+                    "agent {found} acts in it where agent {allowed} does in the environment"
+                )));
+            }
         }
         self.reset(moment.seed)?;
-        let tokens = self.tokens_of(&moment.instruction);
-        let restored = self.world.restore(&moment.world).and(tokens);
-        let (Some(episode), Ok(tokens)) = (self.episode.as_mut(), &restored) else {
-            self.episode = None;
-            return restored.map(drop);
+        let restored = self.restore_world(&moment);
+        let tokens = match restored {
+            Ok(tokens) => tokens,
+            Err(error) => {
+                self.abandon_episode();
+                return Err(error);
+            }
         };
-        episode.tokens.clone_from(tokens);
-        episode.instruction = moment.instruction;
-        (episode.starts, episode.progress) = (moment.starts, moment.progress);
-        (self.steps, self.done) = (moment.steps, moment.done);
+        let agents = self.agents.iter_mut().zip(moment.agents);
+        for ((agent, saved), tokens) in agents.zip(tokens) {
+            saved.apply(agent, tokens);
+        }
+        (self.steps, self.starts) = (moment.steps, moment.starts);
         Ok(())
+    }
+
+    /// Restores the world. Gives back the tokens of all instructions.
+    fn restore_world(&mut self, moment: &EnvSnapshot) -> Result<Vec<Vec<i32>>, WorldError> {
+        let agents = self.agents.iter().zip(&moment.agents);
+        let tokens = agents.map(|(agent, saved)| agent.tokens_of(&saved.instruction));
+        let tokens: Result<Vec<_>, _> = tokens.collect();
+        self.world.restore(&moment.world)?;
+        tokens
     }
 }
 
@@ -85,7 +145,7 @@ mod tests {
     use super::*;
     use crate::actions::DiscreteAction;
     use crate::engines::Engines;
-    use crate::env::EnvConfig;
+    use crate::env_config::EnvConfig;
     use crate::episode::StepInfo;
     use std::sync::Arc;
 
@@ -103,27 +163,27 @@ mod tests {
         let mut env = env();
         assert!(matches!(env.snapshot(), Err(WorldError::Usage(_))));
         env.reset(3).unwrap();
-        let go = |env: &mut Env, actions: &[DiscreteAction]| -> Vec<(u64, StepInfo)> {
+        let go = |env: &mut Env, actions: &[DiscreteAction]| -> Vec<(u64, Vec<StepInfo>)> {
             let step = |action: &DiscreteAction| {
-                let info = env.step(*action).unwrap();
+                let info = env.step(&[Some(*action)]).unwrap();
                 env.listen().unwrap();
                 (env.world().hash(), info)
             };
             actions.iter().map(step).collect()
         };
         go(&mut env, &[MoveForward, TurnLeft, MoveForward]);
-        let text = env.episode().unwrap().instruction.clone();
+        let text = env.episode(0).unwrap().instruction.clone();
         let saved = env.snapshot().unwrap();
         let rest = [MoveForward, MoveForward, TurnLeft, Stop];
         let first = go(&mut env, &rest);
-        assert!(env.check_can_step().is_err());
+        assert!(env.check_can_step(&[Some(Stop)]).is_err());
         env.restore(&saved).unwrap();
         assert_eq!(go(&mut env, &rest), first);
         let mut other = self::env();
         other.reset(8).unwrap();
         other.restore(&saved).unwrap();
         assert_eq!(other.steps(), 3);
-        assert_eq!(other.episode().unwrap().instruction, text);
+        assert_eq!(other.episode(0).unwrap().instruction, text);
         assert_eq!(go(&mut other, &rest), first);
         for cut in [0, 5, 30, saved.len() / 2, saved.len() - 1] {
             assert!(other.restore(&saved[..cut]).is_err(), "{cut}");

@@ -1,7 +1,7 @@
 //! Episodes: their goals, the verdicts on their steps, and the reports of these.
 
 use crate::metrics::NavigationMetrics;
-use dwell_scene::{AgentId, IdVec, Pose};
+use dwell_scene::{AgentId, Pose};
 use serde::Serialize;
 
 /// The goal of an episode, and its progress.
@@ -13,20 +13,13 @@ pub struct Episode {
     pub tokens: Vec<i32>,
     /// The agent that it is about.
     pub agent: AgentId,
-    /// Each agent's pose at the start.
-    pub starts: IdVec<AgentId, Pose>,
+    /// Where that agent started.
+    pub start: Pose,
     /// Distance, path, collisions.
     pub progress: NavigationMetrics,
 }
 
-impl Episode {
-    /// Returns where an agent started.
-    pub fn start_of(&self, agent: AgentId) -> Pose {
-        self.starts.get(agent).copied().unwrap_or(Pose::IDENTITY)
-    }
-}
-
-/// The task's verdict on a step.
+/// How a step is judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Verdict {
     /// The reward of the step.

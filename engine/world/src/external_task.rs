@@ -1,54 +1,58 @@
 //! Tasks outside of this crate, in Python for instance, on an environment: they set the goal and judge the steps.
 
 use crate::env::Env;
+use crate::env_agent::EnvAgent;
 use crate::episode::Verdict;
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::sensors::Dtype;
-use crate::tasks::starts;
 use dwell_scene::Pose;
 use dwell_semantics::instruct::{CHARSET, MAX_TEXT_LEN};
 use dwell_semantics::vocabulary;
 
 impl Env {
-    /// Sets another goal of the episode that has just begun: for a task outside of this crate, once it has arranged
-    /// the world. The agent starts where it stands now.
+    /// Asks something else of an agent, by its place among those who act, whose episode has just begun: what a task outside of
+    /// this crate does, once it has arranged the world. The agent starts where it stands now.
     ///
     /// `asked`: the instruction, and the distance to the goal, m, where there is a goal to go to; `None`: as the task sets it.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a text that the sensors of instructions
-    /// cannot give, or a distance that is none. Nothing has changed then.
-    pub fn set_goal(&mut self, asked: Option<(&str, Option<f64>)>) -> Result<(), WorldError> {
-        let tokens = asked.map(|(text, _)| self.tokens_of(text)).transpose()?;
+    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a text that
+    /// the sensors of instructions cannot give, or a distance that is none. Nothing has changed then.
+    pub fn set_goal(
+        &mut self,
+        agent: usize,
+        asked: Option<(&str, Option<f64>)>,
+    ) -> Result<(), WorldError> {
+        let own = self.agent(agent)?;
+        let tokens = asked.map(|(text, _)| own.tokens_of(text)).transpose()?;
         check_distance(asked.and_then(|(_, distance_m)| distance_m))?;
-        let about = self.world.state().agents.get(self.agent);
-        let start = about.map(|agent| Pose::from_position_yaw(agent.position, agent.yaw_rad));
-        let now = start.map(|start| starts(&self.world, self.agent, start));
-        let Some(episode) = self.episode.as_mut() else {
+        let now = self.world.state().agents.get(own.id);
+        let now = now.map(|now| Pose::from_position_yaw(now.position, now.yaw_rad));
+        let Some(episode) = self.agent_mut(agent)?.episode.as_mut() else {
             let message = "ask: no episode has begun; call reset first";
             return Err(WorldError::Usage(message.to_owned()));
         };
-        if let Some(now) = now {
-            episode.starts = now;
-        }
+        episode.start = now.unwrap_or(episode.start);
         let mut distance_m = episode.progress.start_distance_m;
         if let (Some((text, way_m)), Some(tokens)) = (asked, tokens) {
             text.clone_into(&mut episode.instruction);
             (episode.tokens, distance_m) = (tokens, way_m);
         }
-        episode.progress =
-            NavigationMetrics::new(episode.start_of(self.agent).position, distance_m);
+        episode.progress = NavigationMetrics::new(episode.start.position, distance_m);
+        self.note_starts();
         Ok(())
     }
 
-    /// Judges the latest step anew, in place of the task; `distance_m` is the remaining distance to the goal, m, the last known
-    /// one where it is `None`. Gives back the measures of the episode.
+    /// Judges the latest step of an agent, by its place among those who act, anew, in place of the task; `distance_m` is the way
+    /// to the goal that is left, m, the last known one where it is `None`. Gives back the measures of the episode.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] before the first reset, [`WorldError::Config`] for a reward or a distance that is no number.
+    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset, [`WorldError::Config`] for a reward or a
+    /// distance that is no number.
     pub fn set_verdict(
         &mut self,
+        agent: usize,
         verdict: Verdict,
         distance_m: Option<f64>,
     ) -> Result<NavigationMetrics, WorldError> {
@@ -60,15 +64,19 @@ impl Env {
                 allowed: "finite numbers".to_owned(),
             });
         }
-        let Some(episode) = self.episode.as_mut() else {
+        let own = self.agent_mut(agent)?;
+        let Some(episode) = own.episode.as_mut() else {
             let message = "rule: no episode has begun; call reset first";
             return Err(WorldError::Usage(message.to_owned()));
         };
         episode.progress.distance_m = distance_m.or(episode.progress.distance_m);
-        self.done = verdict.terminated;
-        Ok(episode.progress)
+        let progress = episode.progress;
+        own.accept(verdict);
+        Ok(progress)
     }
+}
 
+impl EnvAgent {
     /// The tokens of an instruction; where no sensor gives tokens, words need none.
     pub(crate) fn tokens_of(&self, instruction: &str) -> Result<Vec<i32>, WorldError> {
         let specs = self.sensors.iter().map(|sensor| sensor.spec());
@@ -113,7 +121,7 @@ mod tests {
     use super::*;
     use crate::actions::DiscreteAction;
     use crate::engines::Engines;
-    use crate::env::{EnvConfig, SensorConfig};
+    use crate::env_config::{EnvConfig, SensorConfig};
     use std::sync::Arc;
 
     #[test]
@@ -133,30 +141,32 @@ mod tests {
             terminated: true,
             success: true,
         };
-        assert!(env.set_goal(None).is_err() && env.set_verdict(ruled, None).is_err());
+        let wait = [Some(DiscreteAction::Wait)];
+        assert!(env.set_goal(0, None).is_err() && env.set_verdict(0, ruled, None).is_err());
         env.reset(3).unwrap();
         // There is no sensor of instructions here, so that any words will do.
-        env.set_goal(Some(("Über die Treppe!", Some(4.0)))).unwrap();
+        env.set_goal(0, Some(("Über die Treppe!", Some(4.0))))
+            .unwrap();
         for distance_m in [-1.0, f64::NAN, f64::INFINITY] {
-            assert!(env.set_goal(Some(("x", Some(distance_m)))).is_err());
-            assert!(env.set_verdict(ruled, Some(distance_m)).is_err());
+            assert!(env.set_goal(0, Some(("x", Some(distance_m)))).is_err());
+            assert!(env.set_verdict(0, ruled, Some(distance_m)).is_err());
         }
-        env.step(DiscreteAction::MoveForward).unwrap();
+        env.step(&[Some(DiscreteAction::MoveForward)]).unwrap();
         let unread = Verdict {
             reward: f64::NAN,
             ..ruled
         };
-        assert!(env.set_verdict(unread, None).is_err() && env.check_can_step().is_ok());
-        let progress = env.set_verdict(ruled, Some(3.0)).unwrap();
+        assert!(env.set_verdict(0, unread, None).is_err() && env.check_can_step(&wait).is_ok());
+        let progress = env.set_verdict(0, ruled, Some(3.0)).unwrap();
         assert_eq!(progress.start_distance_m, Some(4.0));
         assert_eq!(progress.distance_m, Some(3.0));
-        assert!(env.check_can_step().is_err());
+        assert!(env.check_can_step(&wait).is_err());
         let snapshot = env.snapshot().unwrap();
         env.reset(4).unwrap();
         env.restore(&snapshot).unwrap();
-        let episode = env.episode().unwrap();
+        let episode = env.episode(0).unwrap();
         assert_eq!(episode.instruction, "Über die Treppe!");
         assert_eq!(episode.progress, progress);
-        assert!(env.check_can_step().is_err());
+        assert!(env.check_can_step(&wait).is_err());
     }
 }

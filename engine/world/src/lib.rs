@@ -1,7 +1,7 @@
 //! Time: worlds, agents, sensors, tasks and batches over a shared house; joins the engines.
 //!
-//! A [`World`] is stepped at the control rate. An [`Env`] adds a task and sensors; a [`Batch`] steps several and renders
-//! all their views in one submission.
+//! A [`World`] is stepped at the control rate. An [`Env`] adds tasks and sensors of the agents that act in it; a [`Batch`] steps
+//! several and renders all their views in one submission.
 
 pub mod actions;
 mod air_position;
@@ -13,6 +13,8 @@ mod config;
 mod current_objects;
 mod engines;
 mod env;
+mod env_agent;
+mod env_config;
 mod env_snapshot;
 mod episode;
 mod error;
@@ -41,13 +43,14 @@ mod world;
 mod world_snapshot;
 mod world_sounds;
 
-pub use actions::{ActionRequest, DiscreteAction, ObjectRef, PixelCamera, StepSizes};
+pub use actions::{ActionRequest, DiscreteAction, DiscreteStep, ObjectRef, PixelCamera, StepSizes};
 pub use batch::Batch;
 pub use camera_capture::{CameraMount, PictureRequest};
 pub use config::WorldConfig;
 pub use current_objects::{ObjectState, effective_agents, object_state, object_states};
 pub use engines::Engines;
-pub use env::{Env, EnvConfig, SensorConfig};
+pub use env::Env;
+pub use env_config::{AgentConfig, EnvConfig, SensorConfig};
 pub use episode::{Episode, StepInfo, Verdict};
 pub use error::WorldError;
 pub use expert::{ShortestPathFollower, face};

@@ -34,6 +34,7 @@ class EnvSettings(TypedDict, total=False):
     #: ``forward_m``, ``turn_deg``, ``look_deg``.
     stride: Mapping[str, float] | None
     world: Mapping[str, Any] | None
+    agent: int
     threads: int | None
     max_episode_steps: int | None
     render_mode: str | None
@@ -70,6 +71,15 @@ def step_limit(value: object) -> int | None:
             "for episodes without a limit"
         )
     return min(number, 2**63 - 1)
+
+
+def agent_number(agent: object) -> int:
+    """Which of a world's agents an environment is about; the engine knows how many there are.
+
+    Raises:
+        ConfigError: It is no whole number from 0.
+    """
+    return whole("agent", agent, high=2**32 - 1)
 
 
 class HouseCache:
@@ -159,6 +169,7 @@ def env_json(
     parameters: Mapping[str, float] | None = None,
     stride: Mapping[str, float] | None = None,
     world: Mapping[str, Any] | None = None,
+    agent: int = 0,
 ) -> str:
     """The native ``EnvConfig`` as JSON."""
     config: dict[str, Any] = {
@@ -171,6 +182,8 @@ def env_json(
         config["stride"] = fields("stride", stride, setting_checks("StepSizes"))
     if native.sensors is not None:
         config["sensors"] = _sensors(native.sensors)
+    if agent:
+        config["agents"] = [{"agent": agent}]
     return to_json(config)
 
 

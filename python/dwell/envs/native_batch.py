@@ -49,6 +49,10 @@ class NativeBatch:
         for house in houses:
             add_heads(house, heads)
         self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
+        if len(self.batch.agents()) != 1:
+            raise ConfigError(
+                f"agents: {len(self.batch.agents())} act; in an environment of Python one does"
+            )
         self.houses = [*houses]
         self.count = len(houses)
         self.specs = specs(self.batch)

@@ -131,6 +131,9 @@ class PythonEpisode:
         self._reward = None if custom.reward is None else custom.reward()
         self.sensors = [make() for make in custom.sensors]
         self._seed = 0
+        if agent := batch.agents()[0]:
+            for part in self._parts().values():
+                part.agent = agent
 
     def move(self, house: House) -> None:
         """Moves the environment into another house."""

@@ -19,7 +19,15 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, quoted, refuse_unknown, to_json, whole
 from dwell.camera import Camera, camera_settings
-from dwell.envs.config import KEPT, HouseCache, Houses, arguments_of, env_json, step_limit
+from dwell.envs.config import (
+    KEPT,
+    HouseCache,
+    Houses,
+    agent_number,
+    arguments_of,
+    env_json,
+    step_limit,
+)
 from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
@@ -58,6 +66,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         world: Mapping[str, Any] | None = None,
+        agent: int = 0,
         threads: int | None = None,
         max_episode_steps: int | None = None,
         render_mode: str | None = None,
@@ -78,6 +87,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             stride: How far movement actions go: ``forward_m``, ``turn_deg``, ``look_deg``.
             world: Further fields of the native WorldConfig; ``sound_head`` may be a
                 :class:`dwell.Head` or the path of its SOFA file.
+            agent: Which of the world's agents acts, observes and is judged, by its place in
+                ``world["agents"]``; the others stand still.
             threads: How many threads to use; results do not depend on it.
             max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
                 ``gymnasium.make`` takes an argument of this name for its own wrapper.
@@ -96,6 +107,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
             task_settings=task_settings,
             stride=stride,
             world=world,
+            agent=agent,
             threads=threads,
             max_episode_steps=max_episode_steps,
             render_mode=render_mode,
@@ -107,7 +119,12 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         world, self._heads = with_head(world)
         native, self._custom = split(task, task_settings, reward, sensors)
         self._config = env_json(
-            native, laws=laws, parameters=parameters, stride=stride, world=world
+            native,
+            laws=laws,
+            parameters=parameters,
+            stride=stride,
+            world=world,
+            agent=agent_number(agent),
         )
         self._shelf = HouseCache(houses)
         threads = None if threads is None else whole("threads", threads, low=1)

@@ -15,7 +15,15 @@ from numpy.typing import NDArray
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import mapping, quoted, refuse_unknown, some, to_json, whole
 from dwell.camera import camera_settings
-from dwell.envs.config import KEPT, HouseCache, Houses, arguments_of, env_json, step_limit
+from dwell.envs.config import (
+    KEPT,
+    HouseCache,
+    Houses,
+    agent_number,
+    arguments_of,
+    env_json,
+    step_limit,
+)
 from dwell.envs.env_pool import EnvPool
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.native_batch import INFO_KEYS, NativeBatch
@@ -82,6 +90,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         task_settings: Mapping[str, Any] | None = None,
         stride: Mapping[str, float] | None = None,
         world: Mapping[str, Any] | None = None,
+        agent: int = 0,
         threads: int | None = None,
         max_episode_steps: int | None = None,
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
@@ -104,6 +113,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             task_settings: The task's own settings.
             stride: How far movement actions go.
             world: Further fields of the native WorldConfig.
+            agent: Which of each world's agents acts.
             threads: How many threads to use; results do not depend on it.
             max_episode_steps: Steps after which an episode is truncated; ``None`` or -1: never.
             autoreset_mode: ``NextStep``: an environment whose episode has ended begins the next one
@@ -133,6 +143,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
             task_settings=task_settings,
             stride=stride,
             world=world,
+            agent=agent,
             threads=threads,
             max_episode_steps=max_episode_steps,
             autoreset_mode=autoreset_mode,
@@ -150,7 +161,14 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         load_ahead = whole("load_ahead", load_ahead)
         world, heads = with_head(world)
         native, custom = split(task, task_settings, reward, sensors)
-        config = env_json(native, laws=laws, parameters=parameters, stride=stride, world=world)
+        config = env_json(
+            native,
+            laws=laws,
+            parameters=parameters,
+            stride=stride,
+            world=world,
+            agent=agent_number(agent),
+        )
         shelf = HouseCache(houses)
         threads = None if threads is None else whole("threads", threads, low=1)
         if not isinstance(overlap, bool):

@@ -1,42 +1,85 @@
-//! A control step of one discrete action.
+//! A control step of discrete actions.
 
 use super::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::world::World;
 use dwell_physics::{ActionOutcome, AgentControl, OutcomeCode};
-use dwell_scene::AgentId;
+use dwell_scene::{AgentId, Id};
 use serde_json::Map;
+
+/// What one agent does in a control step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiscreteStep {
+    /// Who.
+    pub agent: AgentId,
+    /// What.
+    pub action: DiscreteAction,
+    /// How far its movement actions go.
+    pub stride: StepSizes,
+}
 
 impl World {
     /// Makes one control step of one agent's discrete action; all others stand still.
     ///
     /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not exist.
+    /// Those of [`World::act_together`].
     pub fn act_discrete(
         &mut self,
         agent: AgentId,
         action: DiscreteAction,
         stride: &StepSizes,
     ) -> Result<ActionOutcome, WorldError> {
-        let outcome = self.use_hand(agent, action)?;
-        let mut controls = vec![AgentControl::default(); self.state().agents.len()];
-        let Some(control) = controls.get_mut(agent.0 as usize) else {
-            return Err(WorldError::Usage(format!(
-                "no agent {}; there are {}",
-                agent.0,
-                controls.len()
-            )));
+        let stride = *stride;
+        let step = DiscreteStep {
+            agent,
+            action,
+            stride,
         };
-        *control = action.kind().control(stride, self.config().step_s());
+        let mut outcomes = self.act_together(&[step])?;
+        let none = || WorldError::Usage("no action was made".to_owned());
+        outcomes.pop().ok_or_else(none)
+    }
+
+    /// Makes one control step of several agents' discrete actions, at most one for each; all others stand still. Hands act
+    /// before the step, one after the other in the order of `steps`. Returns what became of each.
+    ///
+    /// # Errors
+    /// [`WorldError::Usage`] for an agent that does not exist; nothing has changed then.
+    pub fn act_together(
+        &mut self,
+        steps: &[DiscreteStep],
+    ) -> Result<Vec<ActionOutcome>, WorldError> {
+        let step_s = self.config().step_s();
+        let mut controls = vec![AgentControl::default(); self.state().agents.len()];
+        for step in steps {
+            let count = controls.len();
+            let Some(control) = controls.get_mut(step.agent.index()) else {
+                return Err(WorldError::Usage(format!(
+                    "no agent {}; there are {count}",
+                    step.agent.0
+                )));
+            };
+            *control = step.action.kind().control(&step.stride, step_s);
+        }
+        let hands = steps
+            .iter()
+            .map(|step| self.use_hand(step.agent, step.action))
+            .collect::<Result<Vec<_>, _>>()?;
         self.step(&controls)?;
-        Ok(outcome.unwrap_or_else(|| {
-            if self.state().agents[agent].collided {
-                let sentence = "Something is in the way. Turn or step aside.";
-                ActionOutcome::failed(OutcomeCode::Blocked, sentence, None)
-            } else {
-                ActionOutcome::done(OutcomeCode::Done, "", None)
-            }
-        }))
+        let outcomes = steps.iter().zip(hands);
+        Ok(outcomes
+            .map(|(step, hand)| hand.unwrap_or_else(|| self.moved(step.agent)))
+            .collect())
+    }
+
+    /// Returns what became of an action of the feet or neck in the step that has just been made.
+    fn moved(&self, agent: AgentId) -> ActionOutcome {
+        if self.state().agents[agent].collided {
+            let sentence = "Something is in the way. Turn or step aside.";
+            ActionOutcome::failed(OutcomeCode::Blocked, sentence, None)
+        } else {
+            ActionOutcome::done(OutcomeCode::Done, "", None)
+        }
     }
 
     /// Returns the hand's action on the thing that the agent looks at; `None` for an action of the feet or neck.

@@ -16,6 +16,7 @@ mod turn_left;
 mod turn_right;
 mod wait;
 
+pub use discrete::DiscreteStep;
 pub use kind::ActionKind;
 pub use request::ActionRequest;
 pub use step_sizes::StepSizes;

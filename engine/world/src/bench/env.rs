@@ -3,7 +3,8 @@
 use super::{BenchOptions, BenchProgress, open};
 use crate::actions::DiscreteAction;
 use crate::batch::Batch;
-use crate::env::{Env, EnvConfig};
+use crate::env::Env;
+use crate::env_config::EnvConfig;
 use crate::error::WorldError;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
 use dwell_scene::parallel::Threads;

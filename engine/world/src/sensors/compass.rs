@@ -46,11 +46,8 @@ impl Sensor for CompassSensor {
 
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
-            let start_yaw = yaw_from_forward(
-                seen.episode
-                    .start_of(self.0.agent)
-                    .transform_vector(Vec3::NEG_Z),
-            );
+            let start_yaw =
+                yaw_from_forward(seen.start_of(self.0.agent).transform_vector(Vec3::NEG_Z));
             out[0] = math::wrap_angle(agent.yaw_rad - start_yaw);
         }
     }

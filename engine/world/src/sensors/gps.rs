@@ -42,7 +42,6 @@ impl Sensor for GpsSensor {
     fn finish(&self, seen: SensorContext<'_>, out: ObservationBuffer<'_>) {
         if let (Some(agent), ObservationBuffer::Float32(out)) = (self.0.state(seen), out) {
             let moved = seen
-                .episode
                 .start_of(self.0.agent)
                 .inverse()
                 .transform_point(agent.position);

@@ -37,7 +37,7 @@ use crate::sensor_requests::{Requests, Results};
 use crate::world::World;
 use dwell_render::ClassSet;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, AgentState, Id};
+use dwell_scene::{AgentId, AgentState, Id, IdVec, Pose};
 use serde::Serialize;
 use std::fmt::Debug;
 
@@ -104,12 +104,21 @@ pub enum ObservationBuffer<'a> {
 pub struct SensorContext<'a> {
     /// The world after the step.
     pub world: &'a World,
-    /// The episode.
+    /// The episode of the agent whose sensor it is.
     pub episode: &'a Episode,
-    /// The results of the engines.
+    /// Where all agents of the world stood when it began. Shape (agent,).
+    pub starts: &'a IdVec<AgentId, Pose>,
+    /// What the engines computed.
     pub results: &'a Results,
     /// The sensor's random stream in this step.
     pub key: RandomKey,
+}
+
+impl SensorContext<'_> {
+    /// Returns where an agent started.
+    pub(crate) fn start_of(&self, agent: AgentId) -> Pose {
+        self.starts.get(agent).copied().unwrap_or(Pose::IDENTITY)
+    }
 }
 
 /// A sensor on one agent.
@@ -139,7 +148,7 @@ pub trait Sensor: Debug + Send + Sync {
 pub struct SensorSetup<'a> {
     /// The world's settings.
     pub config: &'a crate::config::WorldConfig,
-    /// The agent that the environment is about: that of sensors that name none.
+    /// Whose sensor it is: the agent of sensors that name none.
     pub agent: AgentId,
 }
 

@@ -4,7 +4,8 @@
 //! floor that it can walk, looking anywhere. Every reward is 0, and an episode ends with `stop`, without success.
 
 use super::door_leaves::DoorLeaves;
-use super::{Task, TaskKind, TaskSetup, starts};
+use super::standing_room::StandingRoom;
+use super::{Task, TaskKind, TaskSetup};
 use crate::actions::DiscreteAction;
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
@@ -80,7 +81,7 @@ impl FreeTask {
         &self,
         world: &World,
         body: &AgentBody,
-        key: RandomKey,
+        (placed, key): (&[AgentId], RandomKey),
     ) -> Result<(Vec3, f32), WorldError> {
         let unplayable = |why: String| WorldError::Unplayable {
             task: NAME,
@@ -99,8 +100,13 @@ impl FreeTask {
             return Ok((start.position, start.yaw_rad));
         }
         let leaves = DoorLeaves::of(world, &grid);
-        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
-        let start = grid.sample(key.child("start"), on_island);
+        let room = StandingRoom::beside(world, placed, body);
+        let is_free = |cell| {
+            grid.island(cell) == Some(0)
+                && !leaves.block(&grid, cell)
+                && room.holds(grid.position(cell))
+        };
+        let start = grid.sample(key.child("start"), is_free);
         let Some(cell) = start else {
             let why = "nobody of the agent's size can stand anywhere";
             return Err(unplayable(why.to_owned()));
@@ -112,7 +118,12 @@ impl FreeTask {
 }
 
 impl Task for FreeTask {
-    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
+    fn reset(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+    ) -> Result<Episode, WorldError> {
         let agent = self.agent;
         let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
             return Err(WorldError::Usage(format!(
@@ -120,13 +131,13 @@ impl Task for FreeTask {
                 agent.0
             )));
         };
-        let (position, yaw_rad) = self.start(world, &body, key)?;
+        let (position, yaw_rad) = self.start(world, &body, (placed, key))?;
         world.place_agent(agent, position, yaw_rad)?;
         Ok(Episode {
             agent,
             instruction: INSTRUCTION.to_owned(),
             tokens: vocabulary::tokenize(INSTRUCTION)?,
-            starts: starts(world, agent, Pose::from_position_yaw(position, yaw_rad)),
+            start: Pose::from_position_yaw(position, yaw_rad),
             progress: NavigationMetrics::new(position, None),
         })
     }

@@ -5,7 +5,8 @@
 
 use super::door_leaves::DoorLeaves;
 use super::goal_cells::GoalCells;
-use super::{Task, TaskKind, TaskSetup, starts};
+use super::standing_room::StandingRoom;
+use super::{Task, TaskKind, TaskSetup};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
@@ -17,7 +18,7 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::interrupt::{self, PollEvery};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Pose, State};
+use dwell_scene::{AgentBody, AgentId, Pose, State};
 use dwell_semantics::instruct::{self, Instruction, InstructionKind};
 use glam::{Vec2, Vec3};
 use schemars::JsonSchema;
@@ -149,7 +150,14 @@ struct InstructionFollowing {
 }
 
 impl InstructionFollowing {
-    /// All at once: a stopped search has found nothing.
+    fn body(&self, world: &World) -> Result<AgentBody, WorldError> {
+        let id = self.setup.agent;
+        let agent = world.state().agents.get(id);
+        let none = || WorldError::Usage(format!("{NAME} needs a world with agent {}", id.0));
+        Ok(agent.ok_or_else(none)?.body)
+    }
+
+    /// All at once: who is stopped on the way has found nothing.
     fn find_playable(&self, world: &World, grid: &NavGrid) -> Vec<PlayableInstruction> {
         let mut offers = Vec::new();
         let ground = GoalCells::of(grid);
@@ -215,24 +223,30 @@ fn goal_cells(
 }
 
 impl Task for InstructionFollowing {
-    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError> {
-        let agent = self.setup.agent;
-        let Some(body) = world.state().agents.get(agent).map(|agent| agent.body) else {
-            return Err(WorldError::Usage(format!(
-                "{NAME} needs a world with agent {}",
-                agent.0
-            )));
-        };
-        let grid = world.engines().navigation(&body)?;
+    fn prepare(&mut self, world: &World) -> Result<(), WorldError> {
         if self.offers.is_empty() {
+            let grid = world.engines().navigation(&self.body(world)?)?;
             self.offers = self.find_playable(world, &grid);
         }
+        Ok(())
+    }
+
+    fn reset(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+    ) -> Result<Episode, WorldError> {
+        let agent = self.setup.agent;
+        let body = self.body(world)?;
+        let grid = world.engines().navigation(&body)?;
         let unplayable = |why: &str| WorldError::Unplayable {
             task: NAME,
             house: world.house().name.clone(),
             why: why.to_owned(),
         };
         let leaves = DoorLeaves::of(world, &grid);
+        let room = StandingRoom::beside(world, placed, &body);
         let mut order: Vec<usize> = (0..self.offers.len()).collect();
         key.child("order").stream().shuffle(&mut order);
         let found = order.into_iter().find_map(|k| {
@@ -245,6 +259,7 @@ impl Task for InstructionFollowing {
                 grid.island(cell) == Some(0)
                     && guide.at(cell).is_some_and(|d| range.contains(&d))
                     && !leaves.block(&grid, cell)
+                    && room.holds(grid.position(cell))
             };
             let start = grid.sample(key.child("start"), allowed)?;
             Some((offer, guide, start))
@@ -267,7 +282,7 @@ impl Task for InstructionFollowing {
             agent,
             instruction: instruction.text.clone(),
             tokens: instruction.tokens()?,
-            starts: starts(world, agent, Pose::from_position_yaw(position, yaw_rad)),
+            start: Pose::from_position_yaw(position, yaw_rad),
             progress: NavigationMetrics::new(position, distance_m),
         };
         let (expert_path, goals) = (guide.clone(), offer.goals.clone());

@@ -4,26 +4,42 @@ mod door_leaves;
 mod free;
 mod goal_cells;
 mod instruction_following;
+mod standing_room;
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::episode::{Episode, Verdict};
 use crate::error::WorldError;
 use crate::schema::FieldSchema;
 use crate::world::World;
+use dwell_scene::AgentId;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, IdVec, Pose};
 use std::fmt::Debug;
 
-/// A task. One value plays one episode after another in one world.
+/// A task of one agent. One value plays one episode after another in one world.
 pub trait Task: Debug + Send + Sync {
-    /// Puts the agent at a start and sets the goal.
+    /// Finds out what the house offers at its start, before an episode begins and anybody is placed.
+    ///
+    /// # Errors
+    /// As [`Self::reset`].
+    fn prepare(&mut self, _world: &World) -> Result<(), WorldError> {
+        Ok(())
+    }
+
+    /// Puts the agent at a start and says what is asked.
+    ///
+    /// `placed`: those who have their starts already; a start that is drawn keeps clear of them.
     ///
     /// # Determinism
     /// Everything is drawn from `key`.
     ///
     /// # Errors
     /// [`WorldError::Unplayable`] when the house does not hold what the task needs.
-    fn reset(&mut self, world: &mut World, key: RandomKey) -> Result<Episode, WorldError>;
+    fn reset(
+        &mut self,
+        world: &mut World,
+        placed: &[AgentId],
+        key: RandomKey,
+    ) -> Result<Episode, WorldError>;
 
     /// Judges the step that has just been made with `action`.
     fn judge(&mut self, world: &World, episode: &mut Episode, action: DiscreteAction) -> Verdict;
@@ -63,20 +79,6 @@ pub struct TaskKind {
     pub settings: fn() -> Vec<FieldSchema>,
     /// Builds one.
     pub build: TaskBuilder,
-}
-
-/// Returns the poses of all agents, the one whom the task is about at `start`.
-pub(crate) fn starts(world: &World, agent: AgentId, start: Pose) -> IdVec<AgentId, Pose> {
-    let agents = world.state().agents.iter_ids();
-    agents
-        .map(|(id, state)| {
-            if id == agent {
-                start
-            } else {
-                Pose::from_position_yaw(state.position, state.yaw_rad)
-            }
-        })
-        .collect()
 }
 
 /// All tasks.

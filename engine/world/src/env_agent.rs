@@ -1,0 +1,143 @@
+//! One of the agents that act in an environment.
+
+use crate::actions::{DiscreteAction, StepSizes};
+use crate::config::WorldConfig;
+use crate::env_config::{AgentRole, SensorConfig};
+use crate::episode::{Episode, StepInfo, Verdict};
+use crate::error::WorldError;
+use crate::sensors::{self, Sensor, SensorSetup};
+use crate::tasks::{self, Task, TaskKind, TaskSetup};
+use crate::world::World;
+use dwell_physics::ActionOutcome;
+use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, Id};
+use serde_json::Value;
+
+/// What an agent is asked and senses, and how its episode stands.
+#[derive(Debug)]
+pub(crate) struct EnvAgent {
+    pub(crate) id: AgentId,
+    pub(crate) kind: &'static TaskKind,
+    pub(crate) task: Box<dyn Task>,
+    pub(crate) stride: StepSizes,
+    pub(crate) sensors: Vec<Box<dyn Sensor>>,
+    pub(crate) episode: Option<Episode>,
+    /// Whether its episode has ended.
+    pub(crate) done: bool,
+    /// Whether what was asked was done in the latest step.
+    pub(crate) success: bool,
+}
+
+impl EnvAgent {
+    /// Builds task and sensors.
+    ///
+    /// # Errors
+    /// [`WorldError`] names the setting.
+    pub(crate) fn new(role: &AgentRole<'_>, config: &WorldConfig) -> Result<Self, WorldError> {
+        let kind = tasks::find(role.task)?;
+        let setup = TaskSetup {
+            agent: role.agent,
+            stride: role.stride,
+        };
+        let task = (kind.build)(role.task_settings, setup)?;
+        let site = SensorSetup {
+            config,
+            agent: role.agent,
+        };
+        let own_choice = |name: &&str| SensorConfig {
+            kind: (*name).to_owned(),
+            settings: Value::Null,
+        };
+        let wanted = match role.sensors {
+            Some(wanted) => wanted.to_vec(),
+            None => kind.sensors.iter().map(own_choice).collect(),
+        };
+        let sensors: Vec<_> = wanted
+            .iter()
+            .map(|sensor| sensors::build(&sensor.kind, &sensor.settings, site))
+            .collect::<Result<_, _>>()?;
+        for (k, sensor) in sensors.iter().enumerate() {
+            let name = sensor.spec().name;
+            if sensors[..k].iter().any(|other| other.spec().name == name) {
+                return Err(WorldError::Config {
+                    field: "sensors",
+                    found: format!("{name:?} twice"),
+                    allowed: "each sensor once".to_owned(),
+                });
+            }
+        }
+        Ok(Self {
+            id: role.agent,
+            kind,
+            task,
+            stride: role.stride,
+            sensors,
+            episode: None,
+            done: false,
+            success: false,
+        })
+    }
+
+    /// The agent's own streams below a key of its environment.
+    pub(crate) fn key(&self, key: RandomKey) -> RandomKey {
+        match self.id.index() {
+            // Agent 0 has those of environments in which it is alone.
+            0 => key,
+            number => key.child("agent").child(number as u64),
+        }
+    }
+
+    /// Forgets the episode.
+    pub(crate) fn abandon_episode(&mut self) {
+        self.episode = None;
+        (self.done, self.success) = (false, false);
+    }
+
+    /// Judges the step that has just been made with `action`; `outcome`: what became of it.
+    pub(crate) fn judge(
+        &mut self,
+        world: &World,
+        action: DiscreteAction,
+        outcome: ActionOutcome,
+    ) -> Option<StepInfo> {
+        let episode = self.episode.as_mut()?;
+        let verdict = self.task.judge(world, episode, action);
+        let agent = world.state().agents.get(self.id);
+        let collision = agent.is_some_and(|agent| agent.collided);
+        let progress = episode.progress;
+        self.accept(verdict);
+        Some(StepInfo {
+            agent: self.id,
+            verdict,
+            action_success: outcome.success,
+            action_error: if outcome.success {
+                String::new()
+            } else {
+                outcome.sentence
+            },
+            progress,
+            collision,
+        })
+    }
+
+    /// Takes over how a step is judged.
+    pub(crate) fn accept(&mut self, verdict: Verdict) {
+        (self.done, self.success) = (verdict.terminated, verdict.success);
+    }
+
+    /// What a step reports of an agent whose episode had ended before.
+    pub(crate) fn rest(&self) -> Option<StepInfo> {
+        Some(StepInfo {
+            agent: self.id,
+            verdict: Verdict {
+                reward: 0.0,
+                terminated: true,
+                success: self.success,
+            },
+            action_success: false,
+            action_error: "Its episode has ended.".to_owned(),
+            progress: self.episode.as_ref()?.progress,
+            collision: false,
+        })
+    }
+}
