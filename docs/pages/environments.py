@@ -46,7 +46,7 @@ def _settings(fields: list[dict[str, Any]]) -> str:
 
 def page() -> str:
     """The page."""
-    tasks = json.loads(_native.tasks_json())
+    tasks = _native.tasks()
     sections = "\n".join(_section(task) for task in tasks)
     info = ", ".join(code(key) for key in (*INFO_KEYS, "action_error", "audio_clipped"))
     goal = ", ".join(code(key) for key in GOAL_KEYS)

@@ -61,7 +61,7 @@ def stale() -> list[str]:
 
 def _styles() -> dict[str, str | None]:
     """The names of all sensors, and how people are shown what they give."""
-    return {row["name"]: row["picture_style"] for row in json.loads(_native.sensors_json())}
+    return {row["name"]: row["picture_style"] for row in _native.sensors()}
 
 
 def _sensors() -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any
 
 import dwell
@@ -30,7 +29,7 @@ def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -
 
 
 def _sensors() -> dict[str, dict[str, Any]]:
-    return {row["name"]: row for row in json.loads(_native.sensors_json())}
+    return {row["name"]: row for row in _native.sensors()}
 
 
 def _by_settings() -> list[tuple[list[str], list[dict[str, Any]]]]:

@@ -34,32 +34,32 @@ __all__ = [
     "UsageError",
     "World",
     "__version__",
-    "action_table_json",
+    "action_table",
     "actions",
-    "bench_json",
+    "bench",
     "calibrate",
     "calibration_example",
     "charset",
     "check_measured",
-    "doctor_json",
+    "doctor",
     "dollhouse",
-    "ear_metrics_json",
-    "fixtures_json",
-    "floor_plan_json",
+    "ear_metrics",
+    "fixtures",
+    "floor_plan",
     "furniture_kinds",
     "json_extent",
-    "laws_json",
+    "laws",
     "map",
     "max_text_length",
-    "response_metrics_json",
+    "response_metrics",
     "seed_range",
-    "sensors_json",
-    "settings_json",
-    "signals_json",
+    "sensors",
+    "settings",
+    "signals",
     "spares",
     "surfaces",
     "synthesize",
-    "tasks_json",
+    "tasks",
     "texture",
     "vocabulary",
 ]
@@ -105,8 +105,8 @@ class Head:
         """Shapes (direction, 3), m in head space; (direction, 2, sample); (direction, 2), samples."""
     @property
     def id(self) -> int: ...
-    def about_json(self) -> str:
-        """``{directions, filled, radius_m, gain_db, removed_delay_s}``, or ``null`` for a sphere."""
+    def about(self) -> dict[str, Any] | None:
+        """``{directions, filled, radius_m, gain_db, removed_delay_s}``, or ``None`` for a sphere."""
 
 @final
 class House:
@@ -152,13 +152,13 @@ class House:
         """Returns whether the other holds the same in all tables, meshes and images."""
     def fingerprint(self) -> int:
         """The same number for houses that hold the same; 64 bits."""
-    def info_json(self) -> str:
+    def info(self) -> dict[str, Any]:
         """Counts, rooms, objects, categories, report of damage: one JSON object."""
     def describe(self, level: str, key: int | None = ...) -> list[str]:
         """Sentences, or JSON lines, of one level: object, room, house, graph, instructions."""
     def semantic_classes(self, table: str = ...) -> list[str]:
         """Names of semantic classes: ``coarse``, ``fine`` or ``nyu40``; 0 is void."""
-    def rooms_json(self) -> str:
+    def rooms(self) -> list[dict[str, Any]]:
         """For each room: name, kinds, area, centre of a good view: ``{name, kinds, area_m2, floor_y, eye, yaw_deg}``."""
     def write_into(self, root: str, name: str, form: str) -> tuple[Path, list[str]]: ...
     @staticmethod
@@ -170,7 +170,7 @@ class House:
 class Navigation:
     """The navigation grid of a house as it stands at one moment."""
 
-    def __new__(cls, house: House, config_json: str = ..., state: bytes | None = ...) -> Self: ...
+    def __new__(cls, house: House, walker: _Data, state: bytes | None = ...) -> Self: ...
     def state(self) -> bytes | None:
         """The state of the house, as the constructor takes it; ``None``: as the house starts."""
     def points(self, start: tuple[float, float, float] | None = ...) -> NDArray[np.float32]:
@@ -185,7 +185,7 @@ class Navigation:
         """Corners (n, 3), length in m, the shut doors on the way."""
     def occupancy(self, level: int) -> tuple[NDArray[np.uint8], float, float, float]:
         """Free cells (depth, width), x and z of the corner, edge of a cell in m."""
-    def doors_json(self) -> str: ...
+    def doors(self) -> list[dict[str, Any]]: ...
 
 @final
 class World:
@@ -203,19 +203,19 @@ class World:
         """``{"kind": "pick", "object": "mug_1"}`` and kin; answers ``{success, code, sentence, object, pointed}``."""
     def notices(self) -> list[dict[str, Any]]:
         """``[{agent, outcome}, ...]``: what became, in the last step, of actions that take time."""
-    def config_json(self) -> str:
+    def config(self) -> dict[str, Any]:
         """The settings, all of them, as the constructor reads them."""
     def place_agent(self, agent: int, place: _Data) -> None:
         """``{position, yaw_deg, pitch_deg, linear_m_s, yaw_rate_rad_s, crouched_by_m, wheel_rad_s}``."""
-    def agents_json(self) -> str: ...
-    def objects_json(self) -> str:
+    def agents(self) -> list[dict[str, Any]]: ...
+    def objects(self) -> list[dict[str, Any]]:
         """Id, name, category, position, room, held, on, openness of every object now."""
-    def object_json(self, named: str | int) -> str:
+    def object(self, named: str | int) -> dict[str, Any]:
         """The same of one object, by its name or id."""
-    def events_json(self) -> str: ...
-    def start_report_json(self) -> str: ...
-    def render(self, view_json: str, channels: Sequence[str]) -> dict[str, NDArray[Any]]:
-        """``view_json``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
+    def events(self) -> list[dict[str, Any]]: ...
+    def start_report(self) -> dict[str, Any]: ...
+    def render(self, view: _Data, channels: Sequence[str]) -> dict[str, NDArray[Any]]:
+        """``view``: ``{camera, position, yaw_deg, pitch_deg | forward}`` or ``{camera, agent}``."""
     def listen(self, agent: int, samples: int) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, shape (2, samples), Pa. Call once after each step, for each agent that listens."""
     def play(self, sound: _Data) -> int:
@@ -223,12 +223,12 @@ class World:
     def stop_sound(self, handle: int) -> None: ...
     def start_sound(self, handle: int) -> None: ...
     def set_sound_level(self, handle: int, level_db: float) -> None: ...
-    def sounds_json(self) -> str:
+    def sounds(self) -> list[dict[str, Any]]:
         """``[{handle, sound, position, level_db, loops, on, object}, ...]``."""
-    def navigation(self, config_json: str = ...) -> Navigation: ...
+    def navigation(self, walker: _Data) -> Navigation: ...
     def follow(self, navigation: Navigation) -> int:
         """Brings a grid up to date with what has moved; returns how many columns were looked at."""
-    def merged_events_json(self) -> str: ...
+    def merged_events(self) -> dict[str, Any]: ...
     def path(
         self, agent: int, goal: tuple[float, float, float]
     ) -> list[tuple[float, float, float]] | None: ...
@@ -239,16 +239,16 @@ class World:
     def face(self, agent: int, object: str) -> int | None:
         """The discrete turn or nod that brings an object into view; None when it is."""
     def gaze_target(self, agent: int) -> str | None: ...
-    def joints_json(self) -> str:
+    def joints(self) -> list[dict[str, Any]]:
         """Every joint: ``{id, name, object, kind, limits, motor, position, velocity, command}``."""
     def command_joint(self, joint: int, kind: str, value: float) -> None:
         """``kind``: off, position (rad or m), velocity, effort (N m or N)."""
     def set_joints(self, joints: Sequence[tuple[int, float, float]]) -> None:
         """Puts joints (id) to a position and a velocity at once."""
-    def body_json(self, object: str, part: str | None) -> str: ...
+    def body(self, object: str, part: str | None) -> dict[str, list[float]]: ...
     def set_bodies(self, bodies: _Data) -> None: ...
-    def parameter_json(self, address: str) -> str: ...
-    def parameters_json(self) -> str: ...
+    def parameter(self, address: str) -> dict[str, Any]: ...
+    def parameters(self) -> list[tuple[str, dict[str, Any]]]: ...
     def set_parameters(self, values: Sequence[tuple[str, float]]) -> None:
         """All of them, or none."""
     def describe(self, level: str) -> list[str]: ...
@@ -279,7 +279,7 @@ class Batch:
         """Who acts in every environment, by the number among the world's agents."""
     def sensor_agents(self) -> list[int]:
         """Whose each sensor is."""
-    def specs_json(self) -> str:
+    def specs(self) -> list[dict[str, Any]]:
         """``[{name, shape, dtype, unit, low, high, about}, ...]``, one for each sensor: those of the first agent, of the second, and so on."""
     def reset(self, seeds: Sequence[int | None]) -> None: ...
     def put(self, env: int, spare: PreparedEnv) -> None:
@@ -291,8 +291,8 @@ class Batch:
     def observe(self, which: NDArray[np.bool_], outs: Sequence[NDArray[Any] | None]) -> None:
         """``outs``: one C-contiguous array (n, *shape) for each sensor, None for text."""
     def texts(self, sensor: int) -> list[str]: ...
-    def render(self, env: int, view_json: str) -> NDArray[np.uint8]:
-        """What environment ``env``'s first agent sees, lit; ``view_json``: as :meth:`World.render`."""
+    def render(self, env: int, view: _Data) -> NDArray[np.uint8]:
+        """What environment ``env``'s first agent sees, lit; ``view``: as :meth:`World.render`."""
     def instruction(self, env: int, agent: int = ...) -> str: ...
     def ask(
         self,
@@ -302,8 +302,8 @@ class Batch:
         agent: int = ...,
     ) -> None:
         """Asks something else (``None``: the same) of the episode that has just begun; the agent starts where it stands."""
-    def rule(self, env: int, ruling_json: str, agent: int = ...) -> str:
-        """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``; null without a goal."""
+    def rule(self, env: int, ruling: _Data, agent: int = ...) -> dict[str, Any]:
+        """Judges the latest step anew: ``{reward, terminated, success, distance_m}``; gives ``{distance_to_goal, spl, soft_spl}``; ``None`` without a goal."""
     def expert_actions(self) -> NDArray[np.int64]:
         """For each environment and agent."""
     def expert_action(self, env: int, agent: int = ...) -> int: ...
@@ -313,7 +313,8 @@ class Batch:
     def restore(self, env: int, snapshot: bytes) -> None: ...
     def clipped(self) -> list[int]:
         """For each environment and agent, samples of sound that its latest observation cut off."""
-    def agents_json(self, env: int) -> str: ...
+    def agent_states(self, env: int) -> list[dict[str, Any]]:
+        """The states of all agents of a world, whether they act or not."""
     def __len__(self) -> int: ...
 
 @final
@@ -327,42 +328,42 @@ class AcousticScene:
     def __new__(
         cls,
         house: House,
-        config_json: str = ...,
-        laws_json: str = ...,
-        parameters_json: str = ...,
+        config: _Data,
+        laws: _Data,
+        parameters: _Data,
     ) -> Self: ...
     def impulse_responses(
         self,
-        source_json: str,
-        receivers_json: str,
+        source: _Data,
+        receivers: _Data,
         *,
         heads: Sequence[Head],
         seed: int = ...,
         threads: int | None = ...,
     ) -> list[NDArray[np.float32]]:
         """Shape (channels, samples) each: pressure in Pa for a source of 1 Pa at 1 m; the first sample is time zero."""
-    def metrics_json(
+    def metrics(
         self,
-        source_json: str,
-        receivers_json: str,
+        source: _Data,
+        receivers: _Data,
         *,
         seed: int = ...,
         threads: int | None = ...,
-    ) -> str:
+    ) -> list[list[dict[str, Any]]]:
         """For each receiver and band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR, LF."""
-    def echogram_json(
+    def echogram(
         self,
-        source_json: str,
-        receiver_json: str,
+        source: _Data,
+        receiver: _Data,
         *,
         seed: int = ...,
         threads: int | None = ...,
-    ) -> str:
+    ) -> dict[str, Any]:
         """``{paths, tail: {bin_s, bins, bins_per_direction, directions}, direct_length_m, speed_m_s, trace}``."""
-    def early_paths_json(self, source_json: str, mic: tuple[float, float, float]) -> str:
+    def early_paths(self, source: _Data, mic: tuple[float, float, float]) -> list[dict[str, Any]]:
         """``[{points, path: {planes, bends, length_m, energy, arrival, departure, walls}}, ...]``, by length."""
-    def explain_json(self) -> str: ...
-    def config_json(self) -> str:
+    def explain(self) -> dict[str, Any]: ...
+    def config(self) -> dict[str, Any]:
         """The fields of ``AcousticConfig``, with the air as laws make it."""
     @property
     def rate_hz(self) -> int: ...
@@ -376,32 +377,34 @@ def spares(
     """An environment over each house, with the episode of its seed begun where it has one."""
 
 def actions() -> list[str]: ...
-def action_table_json() -> str:
+def action_table() -> dict[str, list[dict[str, Any]]]:
     """``{kinds: [{name, about, is_of_hand, target, fields}], target: [{name, about, required, schema}], codes}``."""
 
-def tasks_json() -> str: ...
-def sensors_json() -> str: ...
-def settings_json() -> str:
+def tasks() -> list[dict[str, Any]]: ...
+def sensors() -> list[dict[str, Any]]: ...
+def settings() -> dict[str, list[dict[str, Any]]]:
     """``{type: [{name, about, required, schema}]}``: the fields of settings."""
 
-def laws_json() -> str: ...
+def laws() -> list[dict[str, Any]]: ...
 def vocabulary() -> list[str]: ...
 def charset() -> str: ...
 def furniture_kinds() -> dict[str, str]: ...
 def json_extent(text: bytes) -> tuple[int, int]: ...
 def max_text_length() -> int: ...
-def doctor_json() -> str: ...
+def doctor() -> dict[str, Any]: ...
 def seed_range(house: str) -> tuple[int, int, str] | None: ...
-def response_metrics_json(samples: NDArray[np.float32], rate_hz: float, width_json: str) -> str:
-    """For each band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR. ``width_json``: octave or third_octave."""
+def response_metrics(
+    samples: NDArray[np.float32], rate_hz: float, width: _Data
+) -> list[dict[str, float | None]]:
+    """For each band: centre_hz and EDT, T20, T30, C50, C80, D50, Ts, G, DRR. ``width``: octave or third_octave."""
 
-def ear_metrics_json(
-    left: NDArray[np.float32], right: NDArray[np.float32], rate_hz: float, width_json: str
-) -> str:
+def ear_metrics(
+    left: NDArray[np.float32], right: NDArray[np.float32], rate_hz: float, width: _Data
+) -> dict[str, Any]:
     """``{itd_s, ild_db, bands: [{centre_hz, iacc_early, iacc_late, iacc, itd_s, ild_db}, ...]}``."""
 
 def synthesize(signal: str, rate_hz: int, samples: int) -> NDArray[np.float32]: ...
-def signals_json() -> str:
+def signals() -> list[dict[str, Any]]:
     """``[{name, description, loop_s, usual_level_db, level_source}, ...]``."""
 
 def calibrate(
@@ -423,13 +426,13 @@ def map(
 ) -> tuple[NDArray[np.uint8], float, float, float]:
     """A storey from above (height, width, 3), with the x and z of the upper left corner and pixels a metre."""
 
-def dollhouse(world: World, level: int, config_json: str) -> NDArray[np.uint8]:
-    """A storey from outside, cut open (height, width, 3); ``config_json``: ``{width, yaw_deg, down_deg, cut_m}``."""
+def dollhouse(world: World, level: int, config: _Data) -> NDArray[np.uint8]:
+    """A storey from outside, cut open (height, width, 3); ``config``: ``{width, yaw_deg, down_deg, cut_m}``."""
 
-def floor_plan_json(world: World, level: int) -> str:
+def floor_plan(world: World, level: int) -> dict[str, Any]:
     """``{floor_y, rooms: [{name, kinds, area_m2, place}], doors: [{name, hinge, shut, half, open}]}``, points (x, z)."""
 
-def fixtures_json(world: World) -> str:
+def fixtures(world: World) -> dict[str, Any]:
     """``{lamps, sources, joints, boxes}`` as they stand."""
 
 def surfaces(world: World) -> list[dict[str, Any]]:
@@ -438,9 +441,9 @@ def surfaces(world: World) -> list[dict[str, Any]]:
 def texture(house: House, texture: int) -> NDArray[np.uint8]:
     """A texture's image, sRGB with opacity (height, width, 4)."""
 
-def bench_json(
+def bench(
     what: str,
     house: str,
-    options_json: str = ...,
+    options: _Data,
     progress: Any | None = ...,
-) -> str: ...
+) -> dict[str, Any]: ...

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import point, quoted, to_json, whole
+from dwell.arguments import plain, point, quoted, whole
 from dwell.configs import checked
 from dwell.echogram import Echogram
 from dwell.engine_types import AcousticSettings
@@ -52,7 +51,7 @@ class AcousticScene:
         rows, values = found(laws)
         settings = checked("AcousticConfig", config)
         self._native = _native.AcousticScene(
-            self.house.native, to_json(settings), to_json(rows), to_json(values)
+            self.house.native, plain(settings), plain(rows), plain(values)
         )
         self._config = settings
         self._laws = {"laws": rows, "parameters": values}
@@ -72,9 +71,8 @@ class AcousticScene:
 
     @property
     def config(self) -> dict[str, Any]:
-        """All settings, with the air under the laws."""
-        config: dict[str, Any] = json.loads(self._native.config_json())
-        return config
+        """All settings, with the air as laws make it."""
+        return self._native.config()
 
     def impulse_response(
         self,
@@ -127,8 +125,8 @@ class AcousticScene:
         given = _receivers("receivers", receivers)
         self._tell_outside(source, given)
         return self._native.impulse_responses(
-            to_json(source_of(source).to_json()),
-            to_json([receiver.to_json() for receiver in given]),
+            plain(source_of(source).to_json()),
+            plain([receiver.to_json() for receiver in given]),
             heads=[receiver.head.native for receiver in given if receiver.head is not None],
             seed=whole("seed", seed),
             threads=_threads(threads),
@@ -173,14 +171,12 @@ class AcousticScene:
         """As :meth:`metrics` at many places, which share the source's rays."""
         receivers = _receivers("mics", mics)
         self._tell_outside(source, receivers)
-        rows = self._native.metrics_json(
-            to_json(source_of(source).to_json()),
-            to_json([receiver.to_json() for receiver in receivers]),
+        return self._native.metrics(
+            plain(source_of(source).to_json()),
+            plain([receiver.to_json() for receiver in receivers]),
             seed=whole("seed", seed),
             threads=_threads(threads),
         )
-        metrics: list[list[dict[str, Any]]] = json.loads(rows)
-        return metrics
 
     def echogram(
         self,
@@ -193,13 +189,13 @@ class AcousticScene:
         """The echogram at the middle of a receiver, from which responses are made."""
         receiver = mic if isinstance(mic, Receiver) else Receiver.omni(mic)
         self._tell_outside(source, [receiver])
-        text = self._native.echogram_json(
-            to_json(source_of(source).to_json()),
-            to_json(receiver.to_json()),
+        found = self._native.echogram(
+            plain(source_of(source).to_json()),
+            plain(receiver.to_json()),
             seed=whole("seed", seed),
             threads=_threads(threads),
         )
-        return Echogram.from_json(json.loads(text))
+        return Echogram.from_json(found)
 
     def early_paths(
         self, source: Source | Sequence[float], mic: Sequence[float]
@@ -215,15 +211,11 @@ class AcousticScene:
         Raises:
             DwellError: A point is not finite.
         """
-        paths: list[dict[str, Any]] = json.loads(
-            self._native.early_paths_json(to_json(source_of(source).to_json()), point("mic", mic))
-        )
-        return paths
+        return self._native.early_paths(plain(source_of(source).to_json()), point("mic", mic))
 
     def explain(self) -> dict[str, Any]:
-        """The acoustic properties of the house: areas, mean absorption, and guessed materials."""
-        explained: dict[str, Any] = json.loads(self._native.explain_json())
-        return explained
+        """What sound meets: areas, mean absorption, which materials are guesses."""
+        return self._native.explain()
 
 
 def _receivers(name: str, given: object) -> list[Receiver]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -73,8 +72,8 @@ _NOT_OF_PIXELS = {"near_m", "far_m", "preset", "max_objects", "classes"}
 
 @functools.cache
 def action_table() -> dict[str, list[dict[str, Any]]]:
-    """The kinds of actions, and the fields that name an action's target."""
-    table: dict[str, list[dict[str, Any]]] = json.loads(_native.action_table_json())
+    """The kinds of actions, and the fields that name what an action is done to."""
+    table = _native.action_table()
     return table
 
 

@@ -283,6 +283,15 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
     raise ConfigError(f"{at} is {quoted(value)}; expected numbers, text, lists or mappings")
 
 
+def plain(settings: Mapping[str, object] | Sequence[object]) -> Any:  # noqa: ANN401 - of the settings
+    """Settings as the native side takes them: numbers, text, lists and mappings.
+
+    Raises:
+        ConfigError: They hold something else, or numbers that are not finite, told by its place.
+    """
+    return _plain("", settings)
+
+
 def to_json(settings: Mapping[str, object] | Sequence[object], at: str = "") -> str:
     """Settings as JSON text for the native side; what JSON cannot hold is refused by its place.
 

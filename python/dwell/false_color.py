@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -96,8 +95,8 @@ _SHOWN: dict[str, Callable[[NDArray[Any]], NDArray[np.uint8]]] = {
 
 @functools.cache
 def _styles() -> dict[str, str | None]:
-    """The picture style of each sensor."""
-    return {row["name"]: row["picture_style"] for row in json.loads(_native.sensors_json())}
+    """How people are shown what each sensor gives."""
+    return {row["name"]: row["picture_style"] for row in _native.sensors()}
 
 
 def has_picture(channel: str) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable
 from typing import Any
@@ -116,8 +115,7 @@ class Head:
         delays), ``gain_db`` (by which all responses were changed), ``removed_delay_s`` (which was
         taken off all).
         """
-        about: dict[str, Any] | None = json.loads(self._native.about_json())
-        return about
+        return self._native.about()
 
     def __repr__(self) -> str:
         """A sphere, or from how many directions it was measured."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 from collections.abc import Callable
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole
 from dwell.house_list import HouseList
-from dwell.navigation import Navigation, Walker, walker_json
+from dwell.navigation import Navigation, Walker, walker_settings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -45,7 +46,7 @@ class House:
         self._again = again
         self._hash: int | None = None
         #: Where somebody stands and looks best takes a while to find.
-        self._rooms_json: str | None = None
+        self._rooms: list[dict[str, Any]] | None = None
         #: Kinds of things of which it was told that they stand outside of every room.
         self._told_outside: set[str] = set()
 
@@ -225,16 +226,14 @@ class House:
         return self._native.name
 
     def info(self) -> dict[str, Any]:
-        """Counts, rooms, categories, the report of damage, and the unmapped names."""
-        info: dict[str, Any] = json.loads(self._native.info_json())
-        return info
+        """Counts, rooms, categories, the report of damage, and the names that stayed unmapped."""
+        return self._native.info()
 
     def rooms(self) -> list[dict[str, Any]]:
         """For each room: name, kinds, area_m2, floor_y, a view (eye, yaw_deg), a place to stand."""
-        if self._rooms_json is None:
-            self._rooms_json = self._native.rooms_json()
-        rooms: list[dict[str, Any]] = json.loads(self._rooms_json)
-        return rooms
+        if self._rooms is None:
+            self._rooms = self._native.rooms()
+        return copy.deepcopy(self._rooms)
 
     def describe(self, level: Level = "house", *, seed: int | None = None) -> list[str]:
         """Sentences about the house as it starts.
@@ -262,7 +261,7 @@ class House:
 
         The house keeps what it found for the latest eight walkers: asked again, it answers at once.
         """
-        walks = walker_json(walker)
+        walks = walker_settings(walker)
         return Navigation(self, walks, _native.Navigation(self._native, walks))
 
     def write(self, path: str | os.PathLike[str], form: Form) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import tempfile
 from typing import Any
@@ -27,5 +26,5 @@ def facts_of_machine() -> dict[str, Any]:
 
 
 def _facts() -> dict[str, Any]:
-    facts: dict[str, Any] = json.loads(_native.doctor_json())
+    facts = _native.doctor()
     return facts

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import Any, Literal
 
 import numpy as np
@@ -45,9 +44,7 @@ def of_response(
     given = np.asarray(response)
     samples = _channel("response", given[0] if given.ndim == 2 and len(given) == 1 else given)
     rate = _rate(rate_hz)
-    rows: list[dict[str, float | None]] = json.loads(
-        _native.response_metrics_json(samples, rate, json.dumps(_width(bands)))
-    )
+    rows = _native.response_metrics(samples, rate, _width(bands))
     return [{key: row[key] for key in row if key != "lf"} for row in rows]
 
 
@@ -72,10 +69,7 @@ def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> d
     if rows.ndim != 2 or rows.shape[0] != 2:
         raise ConfigError(f"ears: expected shape (2, samples), found {rows.shape}")
     left, right = _channel("ears[0]", rows[0]), _channel("ears[1]", rows[1])
-    found: dict[str, Any] = json.loads(
-        _native.ear_metrics_json(left, right, _rate(rate_hz), json.dumps(_width(bands)))
-    )
-    return found
+    return _native.ear_metrics(left, right, _rate(rate_hz), _width(bands))
 
 
 def _channel(name: str, samples: object) -> NDArray[np.float32]:

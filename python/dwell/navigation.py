@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal, cast
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +41,10 @@ class Walker:
     door_price_m: float = 2.0
 
 
-def walker_json(walker: Walker | None) -> str:
+def walker_settings(walker: Walker | None) -> dict[str, Any]:
     """A walker, the default one for ``None``, as the native half reads it."""
     doors = {"doors": ("as_they_stand", "open", "priced")}
-    return json.dumps(record("walker", Walker() if walker is None else walker, Walker, doors))
+    return record("walker", Walker() if walker is None else walker, Walker, doors)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -84,21 +83,21 @@ class Navigation:
     A pickle holds the house, the walker and where everything stands.
     """
 
-    def __init__(self, house: House, walker_json: str, native: _native.Navigation) -> None:
+    def __init__(self, house: House, walks: Mapping[str, Any], native: _native.Navigation) -> None:
         """Wraps a native grid; use ``House.navigation`` or ``World.navigation``."""
         self._house = house
-        self._walker_json = walker_json
+        self._walks = walks
         self._native = native
 
     @classmethod
-    def _again(cls, house: House, walker_json: str, state: bytes | None) -> Navigation:
-        """Restores a pickle."""
-        native = _native.Navigation(house.native, walker_json, state)
-        return cls(house, walker_json, native)
+    def _again(cls, house: House, walks: Mapping[str, Any], state: bytes | None) -> Navigation:
+        """What was pickled."""
+        native = _native.Navigation(house.native, walks, state)
+        return cls(house, walks, native)
 
-    def __reduce__(self) -> tuple[Any, tuple[House, str, bytes | None]]:
+    def __reduce__(self) -> tuple[Any, tuple[House, Mapping[str, Any], bytes | None]]:
         """House, walker and state."""
-        return Navigation._again, (self._house, self._walker_json, self._native.state())
+        return Navigation._again, (self._house, self._walks, self._native.state())
 
     def __repr__(self) -> str:
         """The number of walkable places."""
@@ -138,7 +137,7 @@ class Navigation:
 
     def doors(self) -> list[dict[str, Any]]:
         """For each door in the way: name, openness, is_open, cells, islands beside it."""
-        return cast("list[dict[str, Any]]", json.loads(self._native.doors_json()))
+        return self._native.doors()
 
     def update(self, world: World) -> int:
         """Follows what has moved in a world over the same house.

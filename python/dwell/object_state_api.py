@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
@@ -29,7 +28,7 @@ class StateApi:
             :meth:`set_parameters` set. ``base``: its wheels, as ``wheel_rad_s``,
             ``wheel_turned_rad`` (left, right), ``twist`` and ``odometry``.
         """
-        return agent_states(self._native.agents_json())
+        return agent_states(self._native.agents())
 
     def objects(self) -> list[dict[str, Any]]:
         """The states of all objects: a mapping for each.
@@ -54,7 +53,7 @@ class StateApi:
             >>> [row["name"] for row in world.objects() if row["sounds"]][:3]
             ['clock_1', 'laptop_1', 'radio_1']
         """
-        objects: list[dict[str, Any]] = json.loads(self._native.objects_json())
+        objects = self._native.objects()
         return objects
 
     def object(self, name: str | int) -> dict[str, Any]:
@@ -74,13 +73,12 @@ class StateApi:
             (False, 'child_room', True)
         """
         named = text("name", name) if isinstance(name, str) else whole("name", name, high=2**31 - 1)
-        found: dict[str, Any] = json.loads(self._native.object_json(named))
+        found = self._native.object(named)
         return found
 
 
-def agent_states(agents_json: str) -> list[dict[str, Any]]:
+def agent_states(agents: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The engine's states of agents, with their angles in degrees, too."""
-    agents: list[dict[str, Any]] = json.loads(agents_json)
     for agent in agents:
         for angle in ("yaw", "pitch"):
             agent[f"{angle}_deg"] = math.degrees(agent[f"{angle}_rad"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -53,7 +52,7 @@ def floor_plan(
     """
     edge = whole("longest_edge", longest_edge, low=16, high=_MOST_PIXELS)
     picture, (left, top), scale = world.map(_FINER * edge, level=level)
-    plan = json.loads(_native.floor_plan_json(world.native, whole("level", level)))
+    plan = _native.floor_plan(world.native, whole("level", level))
     foot = round(max(_FINER * edge * 0.05, 40.0))
     canvas = Image.new("RGB", (picture.shape[1], picture.shape[0] + foot), _PAPER)
     canvas.paste(Image.fromarray(picture))
@@ -109,7 +108,7 @@ def dollhouse(
         "cut_m": finite("cut_m", cut_m),
     }
     storeys = [
-        Image.fromarray(_native.dollhouse(world.native, level, json.dumps(config)))
+        Image.fromarray(_native.dollhouse(world.native, level, config))
         for level in range(levels_of(world.house))
     ]
     joined = _joined(storeys)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import json
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -29,7 +28,7 @@ _LISTS: dict[int, Check] = {2: pair, 3: point}
 @functools.cache
 def settings() -> dict[str, list[dict[str, Any]]]:
     """The fields of settings by the engine's name of their type."""
-    found: dict[str, list[dict[str, Any]]] = json.loads(_native.settings_json())
+    found = _native.settings()
     return found
 
 

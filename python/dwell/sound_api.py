@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Sequence
 from typing import Any
@@ -64,7 +63,7 @@ def emitter_sound(
         found = "neither" if signal is None else "both"
         raise ConfigError(f"signal, sound: found {found}; expected one of them")
     if signal is not None:
-        rows = {row["name"]: row for row in json.loads(_native.signals_json())}
+        rows = {row["name"]: row for row in _native.signals()}
         told["signal"] = choice("signal", signal, list(rows))
         level_db = rows[signal]["usual_level_db"] if level_db is None else level_db
     elif sound is not None:
@@ -160,5 +159,5 @@ class SoundApi(StateApi):
         Each has handle, sound (``{"signal": name}`` or ``{"file": path}``), position, level_db,
         loops, on and object (whose own sound it is, or None).
         """
-        sounds: list[dict[str, Any]] = json.loads(self._native.sounds_json())
+        sounds = self._native.sounds()
         return sounds

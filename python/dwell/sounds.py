@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import struct
 from typing import Any
@@ -120,5 +119,4 @@ def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
 
 def signals() -> list[dict[str, Any]]:
     """The built-in signals: name, description, loop_s, usual_level_db (at 1 m), level_source."""
-    rows: list[dict[str, Any]] = json.loads(_native.signals_json())
-    return rows
+    return _native.signals()

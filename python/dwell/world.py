@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -31,7 +30,7 @@ from dwell.engine_types import Channel
 from dwell.guide_api import GuideApi
 from dwell.heads import Head
 from dwell.house import House
-from dwell.navigation import Navigation, Walker, walker_json
+from dwell.navigation import Navigation, Walker, walker_settings
 from dwell.outside_rooms import warn_outside_rooms
 from dwell.sound_api import SoundApi
 from dwell.world_settings import Laws, with_head, world_settings
@@ -119,7 +118,7 @@ class World(ActionApi, GuideApi, SoundApi):
         """The world of an environment, which goes on stepping it; tasks in Python are given it."""
         world = cls.__new__(cls)
         world.house, world._native, world._heads = house, native, ()
-        world._config, world._seed = native.config_json(), 0
+        world._config, world._seed = to_json(native.config()), 0
         return world
 
     def __reduce__(self) -> tuple[Any, tuple[House, str, int, tuple[Head, ...], bytes]]:
@@ -144,13 +143,13 @@ class World(ActionApi, GuideApi, SoundApi):
 
     @property
     def sound_rate_hz(self) -> int:
-        """Sample rate of sound, Hz."""
-        return int(json.loads(self._native.config_json())["sound_rate_hz"])
+        """Samples a second of what is heard."""
+        return int(self._native.config()["sound_rate_hz"])
 
     @property
     def samples_a_step(self) -> int:
         """Samples of sound in a control step."""
-        config = json.loads(self._native.config_json())
+        config = self._native.config()
         return int(config["sound_rate_hz"] // config["control_rate_hz"])
 
     def step(
@@ -253,8 +252,7 @@ class World(ActionApi, GuideApi, SoundApi):
         impulse_n_s, tangential_impulse_n_s, relative_normal_speed_m_s,
         relative_tangential_speed_m_s, rolling_speed_m_s.
         """
-        events: list[dict[str, Any]] = json.loads(self._native.events_json())
-        return events
+        return self._native.events()
 
     def render(
         self,
@@ -311,7 +309,7 @@ class World(ActionApi, GuideApi, SoundApi):
             warn_outside_rooms(self.house, "a camera", view["position"])
             view["yaw_deg"] = finite("yaw_deg", yaw_deg)
             view["pitch_deg"] = finite("pitch_deg", pitch_deg)
-        return self._native.render(to_json(view), texts("channels", channels))
+        return self._native.render(view, texts("channels", channels))
 
     def map(
         self, longest_edge: int = 512, *, level: int = 0
@@ -327,14 +325,13 @@ class World(ActionApi, GuideApi, SoundApi):
         return image, (x, z), scale
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
-        """The navigation grid of the house as it stands now."""
-        walks = walker_json(walker)
+        """Where one can walk in the house as it stands now."""
+        walks = walker_settings(walker)
         return Navigation(self.house, walks, self._native.navigation(walks))
 
     def merged_events(self) -> dict[str, Any]:
         """The events of the last step beyond its limit: count and impulse_n_s."""
-        merged: dict[str, Any] = json.loads(self._native.merged_events_json())
-        return merged
+        return self._native.merged_events()
 
     def listen(self, samples: int = 800, *, agent: int = 0) -> NDArray[np.float32]:
         """The newest samples at an agent's ears, (2, samples), Pa.
@@ -356,8 +353,7 @@ class World(ActionApi, GuideApi, SoundApi):
 
     def joints(self) -> list[dict[str, Any]]:
         """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
-        joints: list[dict[str, Any]] = json.loads(self._native.joints_json())
-        return joints
+        return self._native.joints()
 
     def command_joint(self, joint: int, kind: JointCommand, value: float = 0.0) -> None:
         """Commands a joint's motor, until the next command.
@@ -406,10 +402,8 @@ class World(ActionApi, GuideApi, SoundApi):
             ``position`` (m) and ``rotation`` (x, y, z, w) of the part's origin, ``linear_m_s`` and
             ``angular_rad_s``.
         """
-        body: dict[str, list[float]] = json.loads(
-            self._native.body_json(
-                text("object", object), None if part is None else text("part", part)
-            )
+        body = self._native.body(
+            text("object", object), None if part is None else text("part", part)
         )
         return {name: tuple(values) for name, values in body.items()}
 
@@ -462,11 +456,8 @@ class World(ActionApi, GuideApi, SoundApi):
         self._native.set_bodies([row])
 
     def parameter(self, address: str) -> dict[str, Any]:
-        """The parameter at an address: value, unit, low, high."""
-        parameter: dict[str, Any] = json.loads(
-            self._native.parameter_json(text("address", address))
-        )
-        return parameter
+        """What stands at an address: value, unit, low, high."""
+        return self._native.parameter(text("address", address))
 
     def parameters(self, prefix: str = "") -> dict[str, dict[str, Any]]:
         """Every parameter by its address: value, unit, low, high.
@@ -474,7 +465,7 @@ class World(ActionApi, GuideApi, SoundApi):
         Args:
             prefix: What the addresses begin with, such as ``"law/"`` or ``"joint/"``.
         """
-        rows: list[tuple[str, dict[str, Any]]] = json.loads(self._native.parameters_json())
+        rows = self._native.parameters()
         return {address: row for address, row in rows if address.startswith(text("prefix", prefix))}
 
     def set_parameter(self, address: str, value: float) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import functools
-import json
 import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -32,8 +31,8 @@ _EXPECTED = (
 
 @functools.cache
 def _laws() -> dict[str, dict[str, Any]]:
-    """The table of laws, by id."""
-    return {law["id"]: law for law in json.loads(_native.laws_json())}
+    """What is known of each law, by id."""
+    return {law["id"]: law for law in _native.laws()}
 
 
 def _read(path: str | os.PathLike[str]) -> Any:  # noqa: ANN401 - any JSON value

@@ -1,10 +1,12 @@
 //! Impulse responses for Python.
 
+use crate::answers::Answer;
 use crate::arrays;
 use crate::engine_call::EngineCall;
 use crate::errors::{PyFault, to_python};
 use crate::house::PyHouse;
 use crate::hrtf::PyHead;
+use crate::values::Data;
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::metrics::BandWidth;
 use dwell_acoustics::{
@@ -29,20 +31,19 @@ pub(crate) struct PyAcousticScene {
 #[pymethods]
 impl PyAcousticScene {
     #[new]
-    #[pyo3(signature = (house, config_json="{}", laws_json="[]", parameters_json="{}"))]
     fn new(
         py: Python<'_>,
         house: &Bound<'_, PyHouse>,
-        config_json: &str,
-        laws_json: &str,
-        parameters_json: &str,
+        config: Data,
+        laws: Data,
+        parameters: Data,
     ) -> PyResult<Self> {
         arrays::ready(py)?;
         let house = house.get().engines.house().clone();
         py.engine(|| -> Result<_, PyFault> {
-            let config: AcousticConfig = serde_json::from_str(config_json)?;
-            let laws: Vec<LawSpec> = serde_json::from_str(laws_json)?;
-            let parameters: BTreeMap<String, f64> = serde_json::from_str(parameters_json)?;
+            let config: AcousticConfig = config.read()?;
+            let laws: Vec<LawSpec> = laws.read()?;
+            let parameters: BTreeMap<String, f64> = parameters.read()?;
             let state = dwell::laws::start(&house, &laws, &parameters)?;
             let mut scene = AcousticScene::new(house.clone(), config)?;
             scene.update(&state);
@@ -53,33 +54,28 @@ impl PyAcousticScene {
         })
     }
 
-    fn early_paths_json(
-        &self,
-        py: Python<'_>,
-        source_json: &str,
-        mic: [f32; 3],
-    ) -> PyResult<String> {
+    fn early_paths(&self, py: Python<'_>, source: Data, mic: [f32; 3]) -> PyResult<Answer> {
         py.engine(|| -> Result<_, PyFault> {
-            let source: SoundSourcePose = serde_json::from_str(source_json)?;
+            let source: SoundSourcePose = source.read()?;
             let mic = Vec3::from_array(mic);
             let paths = self.scene.early_paths(&self.rays, &source, mic)?;
-            Ok(serde_json::to_string(&paths)?)
+            Answer::of(&paths)
         })
     }
 
-    #[pyo3(signature = (source_json, receivers_json, *, heads, seed=0, threads=None))]
+    #[pyo3(signature = (source, receivers, *, heads, seed=0, threads=None))]
     fn impulse_responses<'py>(
         &self,
         py: Python<'py>,
-        source_json: &str,
-        receivers_json: &str,
+        source: Data,
+        receivers: Data,
         heads: Vec<Py<PyHead>>,
         seed: u64,
         threads: Option<usize>,
     ) -> PyResult<Vec<Bound<'py, PyArray2<f32>>>> {
         let responses = py.engine(|| {
-            let source: SoundSourcePose = serde_json::from_str(source_json)?;
-            let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
+            let source: SoundSourcePose = source.read()?;
+            let receivers: Vec<Receiver> = receivers.read()?;
             let (key, threads) = (RandomKey::root(seed), Threads::requested(threads)?);
             let mut scene = self.scene.clone();
             for head in &heads {
@@ -96,18 +92,18 @@ impl PyAcousticScene {
         arrays.collect()
     }
 
-    #[pyo3(signature = (source_json, receivers_json, *, seed=0, threads=None))]
-    fn metrics_json(
+    #[pyo3(signature = (source, receivers, *, seed=0, threads=None))]
+    fn metrics(
         &self,
         py: Python<'_>,
-        source_json: &str,
-        receivers_json: &str,
+        source: Data,
+        receivers: Data,
         seed: u64,
         threads: Option<usize>,
-    ) -> PyResult<String> {
+    ) -> PyResult<Answer> {
         py.engine(|| -> Result<_, PyFault> {
-            let source: SoundSourcePose = serde_json::from_str(source_json)?;
-            let receivers: Vec<Receiver> = serde_json::from_str(receivers_json)?;
+            let source: SoundSourcePose = source.read()?;
+            let receivers: Vec<Receiver> = receivers.read()?;
             let mut all = Vec::with_capacity(receivers.len());
             for (echogram, receiver) in self
                 .echograms(&source, &receivers, seed, threads)?
@@ -124,33 +120,33 @@ impl PyAcousticScene {
                 }
                 all.push(rows);
             }
-            Ok(serde_json::to_string(&all)?)
+            Answer::of(&all)
         })
     }
 
-    #[pyo3(signature = (source_json, receiver_json, *, seed=0, threads=None))]
-    fn echogram_json(
+    #[pyo3(signature = (source, receiver, *, seed=0, threads=None))]
+    fn echogram(
         &self,
         py: Python<'_>,
-        source_json: &str,
-        receiver_json: &str,
+        source: Data,
+        receiver: Data,
         seed: u64,
         threads: Option<usize>,
-    ) -> PyResult<String> {
+    ) -> PyResult<Answer> {
         py.engine(|| -> Result<_, PyFault> {
-            let source: SoundSourcePose = serde_json::from_str(source_json)?;
-            let receiver: Receiver = serde_json::from_str(receiver_json)?;
+            let source: SoundSourcePose = source.read()?;
+            let receiver: Receiver = receiver.read()?;
             let found = self.echograms(&source, &[receiver], seed, threads)?;
-            Ok(serde_json::to_string(&found[0])?)
+            Answer::of(&found[0])
         })
     }
 
-    fn explain_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&self.scene.explain())?))
+    fn explain(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(&self.scene.explain()))
     }
 
-    fn config_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(self.scene.config())?))
+    fn config(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(self.scene.config()))
     }
 
     #[getter]
@@ -177,38 +173,38 @@ impl PyAcousticScene {
     }
 }
 
-/// The measures of an impulse response: one JSON row for each octave, or third octave.
+/// The measures of an impulse response: one row for each octave, or third octave.
 #[pyfunction]
-pub(crate) fn response_metrics_json(
+pub(crate) fn response_metrics(
     py: Python<'_>,
     samples: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
-    width_json: &str,
-) -> PyResult<String> {
+    width: Data,
+) -> PyResult<Answer> {
     let samples = arrays::row("samples", &samples)?;
     py.engine(|| -> Result<_, PyFault> {
-        let width: BandWidth = serde_json::from_str(width_json)?;
+        let width: BandWidth = width.read()?;
         let found = metrics::of_impulse_response(samples, rate_hz, width);
-        Ok(named_bands(serde_json::to_value(found)?, width).to_string())
+        Answer::of(&named_bands(serde_json::to_value(found)?, width))
     })
 }
 
-/// Returns the interaural measures of the two ears' impulse responses: one JSON object.
+/// Returns what two ears make of their impulse responses.
 #[pyfunction]
-pub(crate) fn ear_metrics_json(
+pub(crate) fn ear_metrics(
     py: Python<'_>,
     left: PyReadonlyArray1<'_, f32>,
     right: PyReadonlyArray1<'_, f32>,
     rate_hz: f64,
-    width_json: &str,
-) -> PyResult<String> {
+    width: Data,
+) -> PyResult<Answer> {
     let (left, right) = (arrays::row("left", &left)?, arrays::row("right", &right)?);
     py.engine(|| -> Result<_, PyFault> {
-        let width: BandWidth = serde_json::from_str(width_json)?;
+        let width: BandWidth = width.read()?;
         let found = metrics::of_ears(left, right, rate_hz, width);
         let mut found = serde_json::to_value(found)?;
         found["bands"] = named_bands(found["bands"].take(), width);
-        Ok(found.to_string())
+        Answer::of(&found)
     })
 }
 
@@ -240,7 +236,7 @@ pub(crate) fn synthesize<'py>(
 
 /// The built-in signals: `[{name, description, loop_s, usual_level_db, level_source}, ...]`.
 #[pyfunction]
-pub(crate) fn signals_json() -> String {
+pub(crate) fn signals() -> PyResult<Answer> {
     let rows = dwell_acoustics::signals::list().iter().map(|signal| {
         serde_json::json!({
             "name": signal.name,
@@ -250,5 +246,5 @@ pub(crate) fn signals_json() -> String {
             "level_source": signal.level_source,
         })
     });
-    serde_json::Value::from(rows.collect::<Vec<_>>()).to_string()
+    Answer::of(&rows.collect::<Vec<_>>()).map_err(to_python)
 }

@@ -1,5 +1,6 @@
 //! Authoring of houses for Python: plans and edits come as JSON.
 
+use crate::answers::Answer;
 use crate::errors::PyFault;
 use dwell::Engines;
 use dwell_acoustics::{Recording, signals};
@@ -64,11 +65,11 @@ fn unmapped(house: &House, report: &Value) -> UnmappedNames {
     authoring::unmapped(house, &report_of(report))
 }
 
-/// Counts, rooms and categories, with the unmapped names, as JSON.
-pub(crate) fn info(engines: &Engines, report: &Value) -> Result<String, PyFault> {
+/// Counts, rooms and categories, with what stayed unmapped.
+pub(crate) fn info(engines: &Engines, report: &Value) -> Result<Answer, PyFault> {
     let mut info = dwell::info(engines, report);
     info["unmapped"] = serde_json::to_value(unmapped(engines.house(), report))?;
-    Ok(info.to_string())
+    Answer::of(&info)
 }
 
 /// A map file for the unmapped names.

@@ -1,11 +1,13 @@
 //! Environments stepped together.
 
+use crate::answers::Answer;
 use crate::arrays;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
 use crate::picture;
 use crate::prepared_env::PyPreparedEnv;
+use crate::values::Data;
 use dwell::sensors::{Dtype, ObservationBuffer};
 use dwell::{Batch, DiscreteAction, Engines, Env, EnvConfig, StepInfo, Verdict};
 use dwell_scene::interrupt;
@@ -166,8 +168,8 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.sensor_agents()))
     }
 
-    fn specs_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |batch| Ok(serde_json::to_string(&batch.specs())?))
+    fn specs(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.with(py, |batch| Answer::of(&batch.specs()))
     }
 
     fn reset(&self, py: Python<'_>, seeds: Vec<Option<u64>>) -> PyResult<()> {
@@ -309,16 +311,10 @@ impl PyBatch {
     }
 
     /// Gives back `{distance_to_goal, spl, soft_spl}`; a task without a goal has no distance.
-    #[pyo3(signature = (env, ruling_json, agent=0))]
-    fn rule(
-        &self,
-        py: Python<'_>,
-        env: usize,
-        ruling_json: &str,
-        agent: usize,
-    ) -> PyResult<String> {
+    #[pyo3(signature = (env, ruling, agent=0))]
+    fn rule(&self, py: Python<'_>, env: usize, ruling: Data, agent: usize) -> PyResult<Answer> {
         self.with(py, |batch| {
-            let ruling: ExternalVerdict = serde_json::from_str(ruling_json)?;
+            let ruling: ExternalVerdict = ruling.read()?;
             let verdict = Verdict {
                 reward: ruling.reward,
                 terminated: ruling.terminated,
@@ -327,12 +323,11 @@ impl PyBatch {
             let progress = batch
                 .env_mut(env)?
                 .set_verdict(agent, verdict, ruling.distance_m)?;
-            Ok(serde_json::json!({
+            Answer::of(&serde_json::json!({
                 "distance_to_goal": progress.distance_m,
                 "spl": progress.spl(verdict.success),
                 "soft_spl": progress.soft_spl(),
-            })
-            .to_string())
+            }))
         })
     }
 
@@ -340,19 +335,14 @@ impl PyBatch {
         self.with(py, |batch| Ok(batch.texts(sensor)))
     }
 
-    fn render<'py>(
-        &self,
-        py: Python<'py>,
-        env: usize,
-        view_json: &str,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn render<'py>(&self, py: Python<'py>, env: usize, view: Data) -> PyResult<Bound<'py, PyAny>> {
         let mut seen = self.with(py, |batch| {
-            let mut view: serde_json::Value = serde_json::from_str(view_json)?;
             let env = batch.env(env)?;
-            if let (Some(view), Some(first)) = (view.as_object_mut(), env.agents().next()) {
-                view.entry("agent").or_insert_with(|| first.0.into());
-            }
-            picture::render(env.world(), &view.to_string(), &["rgb".to_owned()])
+            let view = match env.agents().next() {
+                Some(first) => view.with_default("agent", first.0),
+                None => view,
+            };
+            picture::render(env.world(), view, &["rgb".to_owned()])
         })?;
         let rgb = seen.pop().ok_or_else(|| {
             crate::errors::to_python(PyFault::Usage("no picture was taken".to_owned()))
@@ -396,10 +386,10 @@ impl PyBatch {
         })
     }
 
-    fn agents_json(&self, py: Python<'_>, env: usize) -> PyResult<String> {
+    /// Returns the states of all agents of a world, whether they act or not.
+    fn agent_states(&self, py: Python<'_>, env: usize) -> PyResult<Answer> {
         self.with(py, |batch| {
-            let agents = dwell::effective_agents(batch.env(env)?.world());
-            Ok(serde_json::to_string(&agents)?)
+            Answer::of(&dwell::effective_agents(batch.env(env)?.world()))
         })
     }
 }

@@ -1,12 +1,18 @@
 //! Contents of this build: actions, tasks, sensors, laws, words, and the machine it runs on.
 
+use crate::answers::Answer;
 use crate::engine_call::EngineCall;
-use crate::errors::PyFault;
+use crate::errors::{PyFault, to_python};
 use dwell::{DiscreteAction, schema};
 use dwell_scene::parallel::{self, Threads};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 use std::sync::Arc;
+
+/// A table of constants.
+fn table(rows: &Value) -> PyResult<Answer> {
+    Answer::of(rows).map_err(to_python)
+}
 
 /// The discrete actions, in the order of their numbers.
 #[pyfunction]
@@ -18,7 +24,7 @@ pub(crate) fn actions() -> Vec<&'static str> {
 /// in the order of their numbers. A field is `{name, about, required, schema}`; a kind's `target` describes its target, and is null
 /// without one; the fields that name a target are listed once.
 #[pyfunction]
-pub(crate) fn action_table_json() -> String {
+pub(crate) fn action_table() -> PyResult<Answer> {
     let kinds = dwell::actions::all().iter().map(|kind| {
         json!({
             "name": kind.name,
@@ -31,12 +37,12 @@ pub(crate) fn action_table_json() -> String {
     let kinds: Value = kinds.collect();
     let target = schema::fields::<dwell::actions::TargetRequest>();
     let codes = schema::variants::<dwell_physics::OutcomeCode>();
-    json!({"kinds": kinds, "target": target, "codes": codes}).to_string()
+    table(&json!({"kinds": kinds, "target": target, "codes": codes}))
 }
 
 /// The tasks: `[{name, version, about, asks, max_steps, sensors, settings}]`.
 #[pyfunction]
-pub(crate) fn tasks_json() -> String {
+pub(crate) fn tasks() -> PyResult<Answer> {
     let tasks = dwell::tasks::all().iter().map(|kind| {
         json!({
             "name": kind.name,
@@ -48,12 +54,12 @@ pub(crate) fn tasks_json() -> String {
             "settings": (kind.settings)(),
         })
     });
-    tasks.collect::<Value>().to_string()
+    table(&tasks.collect::<Value>())
 }
 
 /// The sensors: `[{name, about, settings, picture_style}]`; the style is null where a sensor is not one of pictures.
 #[pyfunction]
-pub(crate) fn sensors_json() -> String {
+pub(crate) fn sensors() -> PyResult<Answer> {
     let sensors = dwell::sensors::all().iter();
     let rows = sensors.map(|kind| {
         json!({
@@ -63,13 +69,13 @@ pub(crate) fn sensors_json() -> String {
             "picture_style": kind.picture_style(),
         })
     });
-    rows.collect::<Value>().to_string()
+    table(&rows.collect::<Value>())
 }
 
 /// The fields of other settings by the name of their type: `{type: [{name, about, required, schema}]}`.
 #[pyfunction]
-pub(crate) fn settings_json() -> String {
-    json!({
+pub(crate) fn settings() -> PyResult<Answer> {
+    table(&json!({
         "AcousticConfig": schema::fields::<dwell_acoustics::AcousticConfig>(),
         "AgentBody": schema::fields::<dwell_scene::AgentBody>(),
         "AgentControl": schema::fields::<dwell_physics::AgentControl>(),
@@ -77,13 +83,12 @@ pub(crate) fn settings_json() -> String {
         "HouseSpec": schema::fields::<dwell_houses::generate::HouseSpec>(),
         "StepSizes": schema::fields::<dwell::StepSizes>(),
         "WorldConfig": schema::fields::<dwell::WorldConfig>(),
-    })
-    .to_string()
+    }))
 }
 
 /// The laws with their equations, units, bounds and rivals, and as `usual` the numbers of those installed by name alone.
 #[pyfunction]
-pub(crate) fn laws_json() -> PyResult<String> {
+pub(crate) fn laws() -> PyResult<Answer> {
     let row = |info| -> Result<Value, serde_json::Error> {
         let mut row = serde_json::to_value(info)?;
         let usual = dwell::laws::USUAL
@@ -98,8 +103,7 @@ pub(crate) fn laws_json() -> PyResult<String> {
         Ok(row)
     };
     let laws: Result<Value, _> = dwell::laws::all().map(row).collect();
-    let laws = laws.map_err(|error| crate::errors::to_python(error.into()))?;
-    Ok(laws.to_string())
+    table(&laws.map_err(|error| to_python(error.into()))?)
 }
 
 /// The kinds of furniture with their categories: `{kind: category}`.
@@ -137,13 +141,13 @@ pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u
 
 /// Versions, threads and features: what `dwell doctor` prints.
 #[pyfunction]
-pub(crate) fn doctor_json(py: Python<'_>) -> PyResult<String> {
-    py.engine(doctor)
+pub(crate) fn doctor(py: Python<'_>) -> PyResult<Answer> {
+    py.engine(machine)
 }
 
-fn doctor() -> Result<String, PyFault> {
+fn machine() -> Result<Answer, PyFault> {
     let threads = Threads::requested(None)?.count();
-    Ok(json!({
+    Answer::of(&json!({
         "version": env!("CARGO_PKG_VERSION"),
         "target": format!("{}-{}", std::env::consts::ARCH, std::env::consts::OS),
         "threads": threads,
@@ -154,8 +158,7 @@ fn doctor() -> Result<String, PyFault> {
         "render_back_ends": ["cpu", "gpu"],
         "graphics_adapters": graphics_adapters(),
         "houses": dwell_houses::builtin::names(),
-    })
-    .to_string())
+    }))
 }
 
 /// The adapters that `gpu` and `gpu:NAME` may choose, with the path that each takes and the speeds on which that rests.

@@ -1,5 +1,6 @@
 //! Houses for Python.
 
+use crate::answers::Answer;
 use crate::authoring;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
@@ -181,12 +182,12 @@ impl PyHouse {
         &self.house().name
     }
 
-    fn info_json(&self, py: Python<'_>) -> PyResult<String> {
+    fn info(&self, py: Python<'_>) -> PyResult<Answer> {
         py.engine(|| authoring::info(&self.engines, &self.report))
     }
 
-    fn rooms_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&dwell::viewpoints(&self.engines)?)?))
+    fn rooms(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(&dwell::viewpoints(&self.engines)?))
     }
 
     #[pyo3(signature = (level, key=None))]

@@ -1,5 +1,6 @@
 //! Heads for Python.
 
+use crate::answers::Answer;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use dwell_acoustics::Head;
@@ -74,8 +75,8 @@ impl PyHead {
         self.head.id().0
     }
 
-    /// Returns the facts about the measurement, as a JSON object; `null` for a sphere.
-    fn about_json(&self, py: Python<'_>) -> PyResult<String> {
-        py.engine(|| Ok::<_, PyFault>(serde_json::to_string(&self.head.about())?))
+    /// Returns what was found in the measurement, a mapping; `None` for a sphere.
+    fn about(&self, py: Python<'_>) -> PyResult<Answer> {
+        py.engine(|| Answer::of(&self.head.about()))
     }
 }

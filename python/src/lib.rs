@@ -6,6 +6,7 @@
 )]
 
 mod acoustics;
+mod answers;
 mod arrays;
 mod authoring;
 mod batch;
@@ -50,21 +51,21 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<hrtf::PyHead>()?;
     module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::action_table_json, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::tasks_json, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::settings_json, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::sensors_json, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::laws_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::action_table, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::tasks, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::settings, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::sensors, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::laws, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::furniture_kinds, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::vocabulary, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::charset, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::max_text_length, module)?)?;
-    module.add_function(wrap_pyfunction!(build_info::doctor_json, module)?)?;
+    module.add_function(wrap_pyfunction!(build_info::doctor, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::seed_range, module)?)?;
-    module.add_function(wrap_pyfunction!(acoustics::response_metrics_json, module)?)?;
-    module.add_function(wrap_pyfunction!(acoustics::ear_metrics_json, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::response_metrics, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::ear_metrics, module)?)?;
     module.add_function(wrap_pyfunction!(acoustics::synthesize, module)?)?;
-    module.add_function(wrap_pyfunction!(acoustics::signals_json, module)?)?;
+    module.add_function(wrap_pyfunction!(acoustics::signals, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibrate, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::calibration_example, module)?)?;
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
@@ -72,17 +73,11 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(prepared_env::spares, module)?)?;
     module.add_function(wrap_pyfunction!(pictures_for_people::map, module)?)?;
     module.add_function(wrap_pyfunction!(pictures_for_people::dollhouse, module)?)?;
-    module.add_function(wrap_pyfunction!(
-        pictures_for_people::floor_plan_json,
-        module
-    )?)?;
-    module.add_function(wrap_pyfunction!(
-        pictures_for_people::fixtures_json,
-        module
-    )?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::floor_plan, module)?)?;
+    module.add_function(wrap_pyfunction!(pictures_for_people::fixtures, module)?)?;
     module.add_function(wrap_pyfunction!(pictures_for_people::surfaces, module)?)?;
     module.add_function(wrap_pyfunction!(pictures_for_people::texture, module)?)?;
-    module.add_function(wrap_pyfunction!(bench::bench_json, module)?)?;
+    module.add_function(wrap_pyfunction!(bench::bench, module)?)?;
     // Beside what `__all__` names: the stubs are those of the wheel.
     #[cfg(feature = "panic-for-tests")]
     module.setattr(

@@ -1,8 +1,10 @@
 //! Navigation for Python.
 
+use crate::answers::Answer;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
+use crate::values::Data;
 use dwell::Engines;
 use dwell_scene::interrupt;
 use dwell_scene::navigation::{NavCell, NavConfig, NavGrid};
@@ -35,19 +37,15 @@ struct GridAtState {
 }
 
 impl PyNavigation {
-    /// The grid of a house as it starts: every house keeps the grids of its latest walkers.
-    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, PyFault> {
-        let grid = engines.grid(&serde_json::from_str(config_json)?)?;
+    /// Of a house as it starts: every house keeps the grids of its latest walkers.
+    fn of_start(engines: &Engines, walker: Data) -> Result<Self, PyFault> {
+        let grid = engines.grid(&walker.read()?)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
-    /// The grid of a house in a state.
-    pub(crate) fn build(
-        house: &Arc<House>,
-        state: &State,
-        config_json: &str,
-    ) -> Result<Self, PyFault> {
-        let config: NavConfig = serde_json::from_str(config_json)?;
+    /// Of a house as it stands in a state.
+    pub(crate) fn build(house: &Arc<House>, state: &State, walker: Data) -> Result<Self, PyFault> {
+        let config: NavConfig = walker.read()?;
         let grid = Arc::new(NavGrid::build(house, state, &config)?);
         Ok(Self::at(house, grid, Some(state.clone())))
     }
@@ -96,19 +94,19 @@ fn positions(py: Python<'_>, points: Vec<Vec3>) -> PyResult<Bound<'_, PyArray2<f
 #[pymethods]
 impl PyNavigation {
     #[new]
-    #[pyo3(signature = (house, config_json="{}", state=None))]
+    #[pyo3(signature = (house, walker, state=None))]
     fn new(
         py: Python<'_>,
         house: &Bound<'_, PyHouse>,
-        config_json: &str,
+        walker: Data,
         state: Option<&[u8]>,
     ) -> PyResult<Self> {
         let engines = &house.get().engines;
         py.engine(|| match state {
-            None => Self::of_start(engines, config_json),
+            None => Self::of_start(engines, walker),
             Some(bytes) => {
                 let house = engines.house();
-                Self::build(house, &State::from_bytes(house, bytes)?, config_json)
+                Self::build(house, &State::from_bytes(house, bytes)?, walker)
             }
         })
     }
@@ -217,7 +215,7 @@ impl PyNavigation {
         Ok((free, x, z, map.cell_m))
     }
 
-    fn doors_json(&self, py: Python<'_>) -> PyResult<String> {
+    fn doors(&self, py: Python<'_>) -> PyResult<Answer> {
         py.engine(|| {
             let doors = self.with(NavGrid::doors)?;
             let doors = doors.into_iter().map(|door| {
@@ -226,7 +224,7 @@ impl PyNavigation {
                 json!({"name": self.house.objects[object].name, "openness": door.openness,
                     "is_open": door.is_open, "cells": cells, "islands": door.islands})
             });
-            Ok::<_, PyFault>(serde_json::to_string(&doors.collect::<Vec<_>>())?)
+            Answer::of(&doors.collect::<Vec<_>>())
         })
     }
 }

@@ -1,6 +1,7 @@
 //! One picture of a world, as Python requests it.
 
 use crate::errors::PyFault;
+use crate::values::Data;
 use dwell::sensors::{ImageSettings, Observation, ObservationData};
 use dwell::{CameraMount, PictureRequest, World, camera_mount};
 use dwell_render::{Camera, ClassSet, Preset, Projection};
@@ -76,13 +77,13 @@ impl Default for PictureSettings {
     }
 }
 
-/// Returns the observations of the sensors called `channels` for the view that `view_json` describes.
+/// Returns what the sensors called `channels` give for the view that `view` describes.
 pub(crate) fn render(
     world: &World,
-    view_json: &str,
+    view: Data,
     channels: &[String],
 ) -> Result<Vec<Observation>, PyFault> {
-    let settings: PictureSettings = serde_json::from_str(view_json)?;
+    let settings: PictureSettings = view.read()?;
     let own = &settings.camera;
     let camera = match (own.projection, own.fov_deg) {
         (Some(_), Some(fov_deg)) => {

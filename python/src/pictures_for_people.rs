@@ -1,8 +1,10 @@
 //! Pictures and shapes of worlds for people: maps, doll's houses, meshes for viewers.
 
+use crate::answers::Answer;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::house::PyHouse;
+use crate::values::Data;
 use crate::world::PyWorld;
 use dwell_render::{Dollhouse, DollhouseConfig, StoreyMap};
 use dwell_scene::parallel::Threads;
@@ -36,17 +38,17 @@ pub(crate) fn map<'py>(
     Ok((picture, map.corner.x, map.corner.y, map.pixels_per_m))
 }
 
-/// A storey from outside, cut open. `config_json`: the fields of the native `DollhouseConfig`.
+/// A storey from outside, cut open. `config`: the fields of the native `DollhouseConfig`.
 #[pyfunction]
 pub(crate) fn dollhouse<'py>(
     py: Python<'py>,
     world: &Bound<'py, PyWorld>,
     level: u32,
-    config_json: &str,
+    config: Data,
 ) -> PyResult<RgbArray<'py>> {
     let (rgb, size) = world.get().look(py, |running| {
         let world = &running.world;
-        let config: DollhouseConfig = serde_json::from_str(config_json)?;
+        let config: DollhouseConfig = config.read()?;
         let doll = Dollhouse::new(world.house(), LevelId(level), &config)?;
         let (renderer, threads) = (world.engines().renderer(), Threads::requested(None)?);
         let rgb = doll.picture(renderer, world.rays(), world.state(), threads)?;
@@ -60,25 +62,24 @@ fn picture(py: Python<'_>, rgb: Vec<u8>, (height, width): (u32, u32)) -> PyResul
         .reshape([height as usize, width as usize, 3])
 }
 
-/// Names and doors of a storey's plan: one JSON object.
+/// Names and doors of a storey's plan.
 #[pyfunction]
-pub(crate) fn floor_plan_json(
+pub(crate) fn floor_plan(
     py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     level: u32,
-) -> PyResult<String> {
+) -> PyResult<Answer> {
     world.get().look(py, |running| {
-        let plan = dwell::floor_plan(running.world, LevelId(level));
-        Ok(serde_json::to_string(&plan)?)
+        Answer::of(&dwell::floor_plan(running.world, LevelId(level)))
     })
 }
 
-/// Lamps, sources of sound, joints and boxes as they stand: one JSON object.
+/// Lamps, sources of sound, joints and boxes as they stand.
 #[pyfunction]
-pub(crate) fn fixtures_json(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<String> {
-    world.get().look(py, |running| {
-        Ok(serde_json::to_string(&dwell::fixtures(running.world))?)
-    })
+pub(crate) fn fixtures(py: Python<'_>, world: &Bound<'_, PyWorld>) -> PyResult<Answer> {
+    world
+        .get()
+        .look(py, |running| Answer::of(&dwell::fixtures(running.world)))
 }
 
 /// The triangles of each room and material as they stand, a mapping each.

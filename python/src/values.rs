@@ -1,8 +1,8 @@
-//! Values of Python for the engines, and back: mappings, lists, text and numbers, without JSON text in between.
+//! Values of Python as the engines read them: mappings, lists, text and numbers, without JSON text in between.
 
 use crate::errors::{PyFault, to_python};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
+use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Number, Value};
 
@@ -21,7 +21,15 @@ impl<'py> FromPyObject<'_, 'py> for Data {
 }
 
 impl Data {
-    /// Reads the engine's type.
+    /// With a field that a mapping has where it does not state it.
+    pub(crate) fn with_default(mut self, field: &str, value: u32) -> Self {
+        if let Value::Object(fields) = &mut self.0 {
+            fields.entry(field).or_insert_with(|| value.into());
+        }
+        self
+    }
+
+    /// Reads what the engine takes.
     pub(crate) fn read<T: DeserializeOwned>(self) -> Result<T, PyFault> {
         Ok(serde_json::from_value(self.0)?)
     }
@@ -29,6 +37,11 @@ impl Data {
 
 fn refused(what: &str) -> PyErr {
     to_python(PyFault::Config(what.to_owned()))
+}
+
+fn words(text: &Bound<'_, PyString>) -> PyResult<String> {
+    let refuse = |_| refused("text that is no Unicode: half of a surrogate pair");
+    Ok(text.to_str().map_err(refuse)?.to_owned())
 }
 
 fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
@@ -44,7 +57,7 @@ fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
         return Ok(Value::Bool(flag.is_true()));
     }
     if let Ok(text) = object.cast::<PyString>() {
-        return Ok(Value::String(text.to_str()?.to_owned()));
+        return words(text).map(Value::String);
     }
     if object.is_instance_of::<PyInt>() {
         let number: Option<Number> = match object.extract::<i64>() {
@@ -71,38 +84,10 @@ fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
     if let Ok(rows) = object.cast::<PyMapping>() {
         let mut map = Map::new();
         for row in rows.items()?.iter() {
-            let (name, part): (String, Bound<'_, PyAny>) = row.extract()?;
-            map.insert(name, value(&part, depth + 1)?);
+            let (name, part): (Bound<'_, PyString>, Bound<'_, PyAny>) = row.extract()?;
+            map.insert(words(&name)?, value(&part, depth + 1)?);
         }
         return Ok(Value::Object(map));
     }
     Err(refused("expected numbers, text, lists or mappings"))
-}
-
-/// A value as Python's own.
-pub(crate) fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
-    Ok(match value {
-        Value::Null => py.None().into_bound(py),
-        Value::Bool(flag) => PyBool::new(py, *flag).to_owned().into_any(),
-        Value::String(text) => PyString::new(py, text).into_any(),
-        Value::Number(number) => match (number.as_i64(), number.as_u64()) {
-            (Some(number), _) => number.into_pyobject(py)?.into_any(),
-            (_, Some(number)) => number.into_pyobject(py)?.into_any(),
-            _ => PyFloat::new(py, number.as_f64().unwrap_or(f64::NAN)).into_any(),
-        },
-        Value::Array(rows) => {
-            let list = PyList::empty(py);
-            for row in rows {
-                list.append(object(py, row)?)?;
-            }
-            list.into_any()
-        }
-        Value::Object(rows) => {
-            let dict = PyDict::new(py);
-            for (name, part) in rows {
-                dict.set_item(name, object(py, part)?)?;
-            }
-            dict.into_any()
-        }
-    })
 }

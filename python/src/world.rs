@@ -1,5 +1,6 @@
 //! Worlds for Python.
 
+use crate::answers::Answer;
 use crate::arrays;
 use crate::batch::PyBatch;
 use crate::engine_call::EngineCall;
@@ -8,7 +9,7 @@ use crate::house::{PyHouse, describe_level};
 use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
-use crate::values::{self, Data};
+use crate::values::Data;
 use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{ActionRequest, DiscreteAction, ShortestPathFollower, World, WorldConfig};
 use dwell::{PlayRequest, SoundPlace};
@@ -168,23 +169,17 @@ impl PyWorld {
         })
     }
 
-    fn act<'py>(&self, py: Python<'py>, agent: usize, action: Data) -> PyResult<Bound<'py, PyAny>> {
-        let outcome = self.with(py, |running| {
+    fn act(&self, py: Python<'_>, agent: usize, action: Data) -> PyResult<Answer> {
+        self.with(py, |running| {
             let agent = running.agent(agent)?;
             let request: ActionRequest = action.read()?;
             let outcome = running.world.act_on(agent, &request)?;
-            running.outcome(&outcome)
-        })?;
-        values::object(py, &outcome)
+            Answer::of(&running.outcome(&outcome)?)
+        })
     }
 
-    fn act_discrete<'py>(
-        &self,
-        py: Python<'py>,
-        agent: usize,
-        action: usize,
-    ) -> PyResult<Bound<'py, PyAny>> {
-        let outcome = self.with(py, |running| {
+    fn act_discrete(&self, py: Python<'_>, agent: usize, action: usize) -> PyResult<Answer> {
+        self.with(py, |running| {
             let agent = running.agent(agent)?;
             let last = DiscreteAction::ALL.len() - 1;
             let known = DiscreteAction::ALL.get(action).copied();
@@ -193,22 +188,20 @@ impl PyWorld {
             })?;
             let stride = running.stride(agent);
             let outcome = running.world.act_discrete(agent, action, &stride)?;
-            running.outcome(&outcome)
-        })?;
-        values::object(py, &outcome)
+            Answer::of(&running.outcome(&outcome)?)
+        })
     }
 
-    fn notices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let notices = self.look(py, |running| {
+    fn notices(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {
                 let outcome = running.outcome(&notice.outcome)?;
                 let agent = notice.agent.map(|agent| agent.0);
                 notices.push(json!({"agent": agent, "outcome": outcome}));
             }
-            Ok(serde_json::Value::from(notices))
-        })?;
-        values::object(py, &notices)
+            Answer::of(&notices)
+        })
     }
 
     fn place_agent(&self, py: Python<'_>, agent: usize, place: Data) -> PyResult<()> {
@@ -228,51 +221,42 @@ impl PyWorld {
         })
     }
 
-    fn agents_json(&self, py: Python<'_>) -> PyResult<String> {
+    fn agents(&self, py: Python<'_>) -> PyResult<Answer> {
         self.look(py, |running| {
-            Ok(serde_json::to_string(&dwell::effective_agents(
-                running.world,
-            ))?)
+            Answer::of(&dwell::effective_agents(running.world))
         })
     }
 
-    fn objects_json(&self, py: Python<'_>) -> PyResult<String> {
+    fn objects(&self, py: Python<'_>) -> PyResult<Answer> {
         self.look(py, |running| {
-            Ok(serde_json::to_string(&dwell::object_states(running.world))?)
+            Answer::of(&dwell::object_states(running.world))
         })
     }
 
     /// One object, by its name or the sensors' id.
-    fn object_json(&self, py: Python<'_>, named: Data) -> PyResult<String> {
+    fn object(&self, py: Python<'_>, named: Data) -> PyResult<Answer> {
         self.look(py, |running| {
             let id = running.object(&named.read()?)?;
-            Ok(serde_json::to_string(&dwell::object_state(
-                running.world,
-                id,
-            ))?)
+            Answer::of(&dwell::object_state(running.world, id))
         })
     }
 
-    fn events_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
-            Ok(serde_json::to_string(running.world.events())?)
-        })
+    fn events(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| Answer::of(running.world.events()))
     }
 
-    fn start_report_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
-            Ok(serde_json::to_string(running.world.start_report())?)
-        })
+    fn start_report(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| Answer::of(running.world.start_report()))
     }
 
     fn render<'py>(
         &self,
         py: Python<'py>,
-        view_json: &str,
+        view: Data,
         channels: Vec<String>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let seen = self.look(py, |running| {
-            picture::render(running.world, view_json, &channels)
+            picture::render(running.world, view, &channels)
         })?;
         let images = PyDict::new(py);
         for (channel, observation) in channels.iter().zip(seen) {
@@ -340,17 +324,14 @@ impl PyWorld {
         })
     }
 
-    fn sounds_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
-            Ok(serde_json::to_string(&running.world.sounds())?)
-        })
+    fn sounds(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| Answer::of(&running.world.sounds()))
     }
 
-    #[pyo3(signature = (config_json="{}"))]
-    fn navigation(&self, py: Python<'_>, config_json: &str) -> PyResult<PyNavigation> {
+    fn navigation(&self, py: Python<'_>, walker: Data) -> PyResult<PyNavigation> {
         self.look(py, |running| {
             let world = &running.world;
-            PyNavigation::build(world.house(), world.state(), config_json)
+            PyNavigation::build(world.house(), world.state(), walker)
         })
     }
 
@@ -359,10 +340,8 @@ impl PyWorld {
         self.look(py, |running| navigation.follow(running.world.state()))
     }
 
-    fn merged_events_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
-            Ok(serde_json::to_string(&running.world.merged_events())?)
-        })
+    fn merged_events(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| Answer::of(&running.world.merged_events()))
     }
 
     fn path(
@@ -438,7 +417,7 @@ impl PyWorld {
         })
     }
 
-    fn joints_json(&self, py: Python<'_>) -> PyResult<String> {
+    fn joints(&self, py: Python<'_>) -> PyResult<Answer> {
         self.look(py, |running| {
             let (house, state) = (running.world.house(), running.world.state());
             let rows: Vec<_> = house
@@ -458,7 +437,7 @@ impl PyWorld {
                     })
                 })
                 .collect();
-            Ok(serde_json::to_string(&rows)?)
+            Answer::of(&rows)
         })
     }
 
@@ -489,18 +468,17 @@ impl PyWorld {
         })
     }
 
-    fn body_json(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<String> {
+    fn body(&self, py: Python<'_>, object: &str, part: Option<&str>) -> PyResult<Answer> {
         self.look(py, |running| {
             let id = running.part(object, part)?;
             let state = running.world.state();
             let (pose, velocity) = (state.part_pose[id], state.part_velocity[id]);
-            Ok(json!({
+            Answer::of(&json!({
                 "position": pose.position.to_array(),
                 "rotation": pose.rotation.to_array(),
                 "linear_m_s": velocity.linear.to_array(),
                 "angular_rad_s": velocity.angular.to_array(),
-            })
-            .to_string())
+            }))
         })
     }
 
@@ -524,18 +502,15 @@ impl PyWorld {
         })
     }
 
-    fn parameter_json(&self, py: Python<'_>, address: &str) -> PyResult<String> {
+    fn parameter(&self, py: Python<'_>, address: &str) -> PyResult<Answer> {
         self.look(py, |running| {
             let address: Address = address.parse()?;
-            Ok(serde_json::to_string(&running.world.parameter(&address)?)?)
+            Answer::of(&running.world.parameter(&address)?)
         })
     }
 
-    fn parameters_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.look(py, |running| {
-            let rows = running.world.parameters();
-            Ok(serde_json::to_string(&rows)?)
-        })
+    fn parameters(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.look(py, |running| Answer::of(&running.world.parameters()))
     }
 
     fn set_parameters(&self, py: Python<'_>, values: Vec<(String, f64)>) -> PyResult<()> {
@@ -577,10 +552,8 @@ impl PyWorld {
         self.with(py, |running| Ok(running.world.restore(snapshot)?))
     }
 
-    fn config_json(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |running| {
-            Ok(serde_json::to_string(running.world.config())?)
-        })
+    fn config(&self, py: Python<'_>) -> PyResult<Answer> {
+        self.with(py, |running| Answer::of(running.world.config()))
     }
 
     fn hash(&self, py: Python<'_>) -> PyResult<u64> {

@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import itertools
-import json
 import logging
 import os
 import signal
@@ -216,8 +215,8 @@ def calibrate(folder: Path) -> Call:
 
 def bench() -> Call:
     """A bench in the engines."""
-    options = json.dumps({"worlds": 8, "repeats": 1000, "steps": 100_000})
-    return lambda: _native.bench_json("physics", "builtin:studio", options)
+    options = {"worlds": 8, "repeats": 1000, "steps": 100_000}
+    return lambda: _native.bench("physics", "builtin:studio", options)
 
 
 def step_batch() -> Call:

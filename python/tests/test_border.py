@@ -332,3 +332,19 @@ def test_a_wrong_argument_is_named(names: dict[str, Any], call: str, said: str) 
         eval(call, names)
     assert said in str(caught.value)
     assert names["W"].state_hash() == before
+
+
+def test_answers_have_the_digits_and_the_order_that_the_engine_writes() -> None:
+    world = dwell.World("builtin:apartment")
+    body = world.agents()[0]["body"]
+    # 32 bits have no 0.2; nearest in 64 bits is 0.20000000298023224.
+    assert (repr(body["radius_m"]), repr(body["step_height_m"])) == ("0.2", "0.2")
+    assert [*body][:3] == ["radius_m", "height_m", "eye_height_m"]
+    assert type(world.agents()[0]["grounded"]) is bool
+    assert world.object("radio_1")["id"] == int(world.object("radio_1")["id"])
+    address, parameter = next(iter(world.parameters().items()))
+    assert world.parameter(address) == parameter
+    assert [*parameter] == ["value", "unit", "low", "high"]
+    rooms = world.house.rooms()
+    rooms[0]["name"] = "changed"
+    assert world.house.rooms()[0]["name"] != "changed"

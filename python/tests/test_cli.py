@@ -126,8 +126,8 @@ def test_bench_gives_its_figure(stage: str, figure: str, small: tuple[str, ...])
 
 def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
     told: list[tuple[float, str]] = []
-    options = json.dumps({"repeats": 1, "steps": 5, "worlds": 2})
-    _native.bench_json("physics", HOUSE, options, lambda *part: told.append(part))
+    options = {"repeats": 1, "steps": 5, "worlds": 2}
+    _native.bench("physics", HOUSE, options, lambda *part: told.append(part))
     fractions = [fraction for fraction, _ in told]
     assert (fractions[0], fractions[-1]) == (0.0, 1.0)
     assert fractions == sorted(set(fractions))
@@ -136,7 +136,7 @@ def test_bench_tells_how_far_it_is_and_ends_where_its_listener_raises() -> None:
         raise KeyboardInterrupt(what)
 
     with pytest.raises(KeyboardInterrupt, match="coming to rest"):
-        _native.bench_json("physics", HOUSE, options, stop)
+        _native.bench("physics", HOUSE, options, stop)
 
 
 def test_bench_measures_batches_by_size_and_path() -> None:

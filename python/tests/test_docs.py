@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
-import json
 import os
 import posixpath
 import re
@@ -113,7 +112,7 @@ def test_links_of_the_site_lead_to_its_pages(pages: ModuleType) -> None:
 
 def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> None:
     rows = {row[0]: row for row in rows_of(pages.observations.page(), "# Observations")}
-    sensors = {sensor["name"]: sensor["about"] for sensor in json.loads(_native.sensors_json())}
+    sensors = {sensor["name"]: sensor["about"] for sensor in _native.sensors()}
     assert list(rows) == list(sensors)
     env = gymnasium.make("dwell/InstructionFollowing-v0", sensors=list(sensors))
     spaces = env.observation_space
@@ -175,7 +174,7 @@ def test_the_tables_of_limits_are_those_of_a_world(pages: ModuleType) -> None:
 
 def test_every_environment_has_its_section(pages: ModuleType) -> None:
     page = pages.environments.page()
-    for task in json.loads(_native.tasks_json()):
+    for task in _native.tasks():
         assert f"## dwell/{task['name']}-v{task['version']}\n" in page
         rows = rows_of(page, f"### Observations of {task['name']}")
         assert [row[0] for row in rows] == task["sensors"]
@@ -255,7 +254,7 @@ def test_the_page_for_who_begins_says_what_the_engine_does() -> None:
     actions = rows_of(text, "## Actions")
     assert [row[:2] for row in actions] == [[str(k), a] for k, a in enumerate(_native.actions())]
     assert "the episode ends" in actions[0][2]
-    tasks = json.loads(_native.tasks_json())
+    tasks = _native.tasks()
     assert [(row[0], row[1], named(row[2])) for row in rows_of(text, "## Environments")] == [
         (f"dwell/{task['name']}-v{task['version']}", task["about"], task["sensors"])
         for task in tasks

@@ -166,7 +166,7 @@ def test_pictures_and_sounds_belong_to_whoever_asked_and_are_no_views_of_the_eng
 
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 #: The same question in a process whose affinity mask is narrowed first.
-DOCTOR = "import json; from dwell import _native; print(_native.doctor_json())"
+DOCTOR = "import json; from dwell import _native; print(json.dumps(_native.doctor()))"
 NARROW = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))}); "
 
 
@@ -213,7 +213,7 @@ def test_a_variable_that_makes_no_sense_is_refused(
         lambda: dwell.House.open("builtin:studio"),
         lambda: DwellVectorEnv(1, houses=house),
         lambda: dwell.World(house).render(agent=0),
-        _native.doctor_json,
+        _native.doctor,
     ):
         with pytest.raises(dwell.ConfigError) as caught:
             call()

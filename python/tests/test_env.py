@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 
 import dwell
-from dwell.envs import DwellEnv
+from dwell.envs import DwellEnv, DwellVectorEnv
 
 ENV_ID = "dwell/InstructionFollowing-v0"
 SMALL = {
@@ -180,3 +181,62 @@ def test_vector_environments_truncate_at_the_limit() -> None:
     ended = [env.step(np.array([2, 2]))[3].tolist() for _ in range(3)]
     assert ended == [[False, False], [False, False], [True, True]]
     env.close()
+
+
+def about(agent: int, apartment: dwell.House) -> dict[str, Any]:
+    """Arguments of environments that are about one of two agents."""
+    return {
+        "task": "Free",
+        "houses": apartment,
+        "task_settings": {"start": "anywhere"},
+        "world": {"agents": [{}, {"eye_height_m": 1.0}]},
+        "agent": agent,
+        "sensors": {
+            "compass": {},
+            "others": {"kind": "compass", "agent": 1 - agent},
+            "rgb": {"width": 16, "height": 12, "preset": "flat"},
+        },
+    }
+
+
+@pytest.mark.parametrize("agent", [0, 1])
+def test_an_environment_is_about_the_agent_that_it_names(
+    agent: int, apartment: dwell.House
+) -> None:
+    env = DwellEnv(**about(agent, apartment))
+    env.reset(seed=3)
+    before = env.agents()[1 - agent]["position"]
+    turn = env.actions().index("turn_left")
+    observation, *_ = env.step(turn)
+    assert observation["compass"][0] == pytest.approx(np.radians(9.0), abs=1e-3)
+    assert observation["others"][0] == pytest.approx(0.0, abs=1e-6)
+    assert env.agents()[1 - agent]["position"] == pytest.approx(before, abs=1e-3)
+    many = DwellVectorEnv(1, **about(agent, apartment))
+    many.reset(seed=3)
+    observations, *_ = many.step(np.array([turn]))
+    assert np.array_equal(observations["rgb"][0], observation["rgb"])
+    saved = env.snapshot()
+    env.step(1)
+    assert np.array_equal(env.restore(saved)[0]["rgb"], observation["rgb"])
+    other = DwellEnv(**about(1 - agent, apartment))
+    with pytest.raises(dwell.DwellError, match=f"agent {agent} acts in it"):
+        other.restore(saved)
+
+
+def test_an_agent_that_does_not_exist_is_refused(apartment: dwell.House) -> None:
+    for wrong, told in ((2, "below the number of agents, 2"), (-1, "whole"), (True, "whole")):
+        with pytest.raises(dwell.ConfigError, match=told):
+            DwellEnv(**{**about(0, apartment), "agent": wrong})
+
+
+def test_a_picture_for_people_is_what_the_agent_sees(apartment: dwell.House) -> None:
+    """Agent 1 has its own eyes: the same place and seed give another picture by another height."""
+    pictures = []
+    for eye_height_m in (1.0, 1.0, 1.4):
+        arguments = about(1, apartment)
+        arguments["world"] = {"agents": [{}, {"eye_height_m": eye_height_m}]}
+        env = DwellEnv(**arguments, render_mode="rgb_array")
+        env.reset(seed=3)
+        pictures.append(env.render())
+    assert np.array_equal(pictures[0], pictures[1])
+    assert not np.array_equal(pictures[0], pictures[2])

@@ -117,8 +117,8 @@ warned = []
 handler = logging.Handler()
 handler.emit = lambda record: warned.append(record.getMessage())
 logging.getLogger("dwell").addHandler(handler)
-endless = json.dumps({"worlds": 1, "repeats": 100, "steps": 10**6})
-work = lambda: _native.bench_json("physics", "builtin:studio", endless)
+endless = {"worlds": 1, "repeats": 100, "steps": 10**6}
+work = lambda: _native.bench("physics", "builtin:studio", endless)
 thread = threading.Thread(target=work, daemon=True)
 thread.start()
 while thread.is_alive() and not warned:

@@ -37,7 +37,7 @@ def size(path: Path) -> tuple[int, int]:
 
 def test_channels_are_the_sensors_of_pictures(shoebox: dwell.House) -> None:
     world = dwell.World(shoebox)
-    sensors = [row["name"] for row in json.loads(_native.sensors_json())]
+    sensors = [row["name"] for row in _native.sensors()]
 
     def shows(name: str) -> bool:
         try:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import multiprocessing
 import os
 from multiprocessing.connection import Connection
@@ -18,7 +17,7 @@ from dwell.envs import DwellVectorEnv
 
 
 def _first() -> dict[str, Any]:
-    adapters = json.loads(_native.doctor_json())["graphics_adapters"]
+    adapters = _native.doctor()["graphics_adapters"]
     if not adapters:
         pytest.skip("no graphics adapter, not even of software")
     first: dict[str, Any] = adapters[0]

@@ -58,7 +58,7 @@ def test_a_recording_holds_the_whole_house(tmp_path: Path) -> None:
 
     house = dwell.House.open(HOUSE)
     info, rooms = house.info(), house.rooms()
-    fixtures = json.loads(_native.fixtures_json(dwell.World(house, agents=0).native))
+    fixtures = _native.fixtures(dwell.World(house, agents=0).native)
     assert count("Mesh3D:triangle_indices", "/world/") == info["triangles"]
     assert 0 < count("Mesh3D:triangle_indices", "/world/ceilings") < info["triangles"]
     assert count("Boxes3D:labels", "/world/boxes") == len(fixtures["boxes"]) == info["objects"]

@@ -333,9 +333,7 @@ def test_observations_are_written_in_place() -> None:
 
 
 def test_laws_list_what_docs_and_calibration_need() -> None:
-    import json
-
-    laws = {law["id"]: law for law in json.loads(_native.laws_json())}
+    laws = {law["id"]: law for law in _native.laws()}
     assert {"drag", "backlash"} <= set(laws)
     for law in laws.values():
         assert law["equation"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -117,8 +116,7 @@ def run(args: argparse.Namespace) -> int:
             raise ValueError(
                 f"{args.boxes}: {', '.join(missing)} missing; expected are {', '.join(_BOXES)}"
             )
-    told = _native.bench_json(args.stage, args.house, json.dumps(options), ProgressBar())
-    figures = json.loads(told)
+    figures = _native.bench(args.stage, args.house, options, ProgressBar())
     if args.json:
         print_json(figures)
         return 0

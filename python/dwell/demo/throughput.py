@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from typing import Any
 
@@ -22,7 +21,7 @@ def measure(house: str, progress: Callable[[float], None]) -> dict[str, Any]:
     figures: dict[str, Any] = {}
     for k, (stage, options) in enumerate(_RUNS.items()):
         try:
-            figures[stage] = json.loads(_native.bench_json(stage, house, json.dumps(options)))
+            figures[stage] = _native.bench(stage, house, options)
         except DwellError as error:
             figures[stage] = {"failed": str(error)}
         progress((k + 1) / len(_RUNS))

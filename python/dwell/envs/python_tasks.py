@@ -203,7 +203,7 @@ class PythonEpisode:
             "success": verdict.success,
             "distance_m": verdict.distance_m,
         }
-        ruled = {**ruling, **json.loads(self._batch.rule(k, to_json(ruling)))}
+        ruled = {**ruling, **self._batch.rule(k, ruling)}
         for key, value in ruled.items():
             if key in answer:
                 answer[key][k] = math.nan if value is None else value
@@ -338,8 +338,8 @@ def _checked(task: str, verdict: object) -> Verdict:
 
 @functools.cache
 def _asks(base: str) -> bool:
-    """Returns whether a task of the engine has a goal, so that its expert knows what to do."""
-    return any(row["name"] == base and row["asks"] for row in json.loads(_native.tasks_json()))
+    """Whether a task of the engine asks for something, so that its expert knows what to do."""
+    return any(row["name"] == base and row["asks"] for row in _native.tasks())
 
 
 def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: ANN401 - of the space

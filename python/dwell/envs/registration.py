@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING
 
 import gymnasium
@@ -20,12 +19,12 @@ if TYPE_CHECKING:
 
 def env_ids() -> list[str]:
     """The ids of all environments."""
-    return [f"dwell/{task['name']}-v{task['version']}" for task in json.loads(_native.tasks_json())]
+    return [f"dwell/{task['name']}-v{task['version']}" for task in _native.tasks()]
 
 
 def register_envs() -> None:
     """Registers every task; again does nothing."""
-    for task in json.loads(_native.tasks_json()):
+    for task in _native.tasks():
         name = f"dwell/{task['name']}-v{task['version']}"
         if name in gymnasium.registry:
             continue

@@ -17,7 +17,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, to_json, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, whole
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
     KEPT,
@@ -232,7 +232,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         if self.render_mode is None:
             return None
         view = {"camera": camera_settings("camera", RENDER_CAMERA)}
-        image: NDArray[np.uint8] = self._runner.batch.render(0, to_json(view))
+        image: NDArray[np.uint8] = self._runner.batch.render(0, view)
         return image
 
     def close(self) -> None:
@@ -295,8 +295,8 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         return self._runner.batch.instruction(0)
 
     def agents(self) -> list[dict[str, Any]]:
-        """The agents' states, as those of :meth:`dwell.World.agents`."""
-        return agent_states(self._runner.batch.agents_json(0))
+        """The agents' states, as :meth:`dwell.World.agents` tells them."""
+        return agent_states(self._runner.batch.agent_states(0))
 
     def describe(self, level: str = "house") -> list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import multiprocessing
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -126,8 +125,7 @@ class SensorSpace:
 
 def specs(batch: _native.Batch) -> list[SensorSpace]:
     """The specifications of a batch's sensors, in order."""
-    rows = json.loads(batch.specs_json())
-    return [SensorSpace(**{**row, "shape": tuple(row["shape"])}) for row in rows]
+    return [SensorSpace(**{**row, "shape": tuple(row["shape"])}) for row in batch.specs()]
 
 
 def action_space() -> spaces.Discrete:

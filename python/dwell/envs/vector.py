@@ -13,7 +13,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, some, to_json, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, some, whole
 from dwell.camera import camera_settings
 from dwell.envs.config import (
     KEPT,
@@ -508,7 +508,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         self._refuse_closed()
         if self.render_mode is None:
             return None
-        view = to_json({"camera": camera_settings("camera", RENDER_CAMERA)})
+        view = {"camera": camera_settings("camera", RENDER_CAMERA)}
         return tuple(self._runner.batch.render(k, view) for k in range(self.num_envs))
 
     def close_extras(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -29,7 +28,7 @@ def record_house(recording: Recording, world: World) -> None:
     rooms = world.house.rooms()
     for room in rooms:
         recording.view(world, room["name"], room["eye"], room["yaw_deg"])
-    sources = json.loads(_native.fixtures_json(world.native))["sources"]
+    sources = _native.fixtures(world.native)["sources"]
     sounding = [source for source in sources if source["on"]]
     if not sounding or not rooms:
         return

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -106,7 +105,7 @@ class Recording:
                     albedo_factor=[*map(int, color), round(255 * opacity)],
                 ),
             )
-        fixtures = json.loads(_native.fixtures_json(world.native))
+        fixtures = _native.fixtures(world.native)
         if fixtures["boxes"]:
             centers = np.array([row["center"] for row in fixtures["boxes"]])
             self._corners = centers.min(0), centers.max(0)

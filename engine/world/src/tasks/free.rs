@@ -100,13 +100,9 @@ impl FreeTask {
             return Ok((start.position, start.yaw_rad));
         }
         let leaves = DoorLeaves::of(world, &grid);
+        let on_island = |cell| grid.island(cell) == Some(0) && !leaves.block(&grid, cell);
         let room = StandingRoom::beside(world, placed, body);
-        let is_free = |cell| {
-            grid.island(cell) == Some(0)
-                && !leaves.block(&grid, cell)
-                && room.holds(grid.position(cell))
-        };
-        let start = grid.sample(key.child("start"), is_free);
+        let start = room.sample(&grid, key.child("start"), on_island);
         let Some(cell) = start else {
             let why = "nobody of the agent's size can stand anywhere";
             return Err(unplayable(why.to_owned()));

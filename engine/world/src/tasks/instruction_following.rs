@@ -259,9 +259,8 @@ impl Task for InstructionFollowing {
                 grid.island(cell) == Some(0)
                     && guide.at(cell).is_some_and(|d| range.contains(&d))
                     && !leaves.block(&grid, cell)
-                    && room.holds(grid.position(cell))
             };
-            let start = grid.sample(key.child("start"), allowed)?;
+            let start = room.sample(&grid, key.child("start"), allowed)?;
             Some((offer, guide, start))
         });
         let Some((offer, guide, start)) = found else {

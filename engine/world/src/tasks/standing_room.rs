@@ -1,6 +1,8 @@
 //! Where agents have room to start beside those who have their starts already.
 
 use crate::world::World;
+use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId};
 use glam::Vec3;
 
@@ -26,8 +28,25 @@ impl StandingRoom {
         Self { taken }
     }
 
+    /// A cell of those that are allowed, drawn from `key` as if nobody had a start yet; drawn anew among those that are left only
+    /// where it is taken, so that company that is out of the way changes nothing.
+    pub(super) fn sample(
+        &self,
+        grid: &NavGrid,
+        key: RandomKey,
+        allowed: impl Fn(NavCell) -> bool,
+    ) -> Option<NavCell> {
+        let first = grid.sample(key, &allowed)?;
+        if self.holds(grid.position(first)) {
+            return Some(first);
+        }
+        grid.sample(key.child("beside"), |cell| {
+            self.holds(grid.position(cell)) && allowed(cell)
+        })
+    }
+
     /// Returns whether the agent can stand at `feet`, m.
-    pub(super) fn holds(&self, feet: Vec3) -> bool {
+    fn holds(&self, feet: Vec3) -> bool {
         let mut taken = self.taken.iter();
         taken.all(|(position, apart_m)| position.distance(feet) >= *apart_m)
     }

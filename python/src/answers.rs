@@ -1,0 +1,356 @@
+//! What engines answer, as values of Python: mappings, lists, text and numbers, without JSON text in between.
+
+use crate::errors::PyFault;
+use pyo3::IntoPyObject;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde::ser::{
+    Error as _, Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant,
+    SerializeTuple, SerializeTupleStruct, SerializeTupleVariant, Serializer,
+};
+use serde_json::Error;
+use std::borrow::Cow;
+
+/// The name of a field.
+type Name = Cow<'static, str>;
+
+/// An answer that is put together without Python, and becomes Python's own when the call returns. Fields keep their order;
+/// numbers that are not finite become `None`.
+#[derive(Debug, PartialEq)]
+pub(crate) enum Answer {
+    Nothing,
+    Flag(bool),
+    Signed(i64),
+    Unsigned(u64),
+    Number(f64),
+    Text(String),
+    Rows(Vec<Self>),
+    Fields(Vec<(Name, Self)>),
+}
+
+impl Answer {
+    /// An answer of what the engine says.
+    pub(crate) fn of(value: &(impl Serialize + ?Sized)) -> Result<Self, PyFault> {
+        Ok(value.serialize(AnswerSerializer)?)
+    }
+
+    fn number(number: f64) -> Self {
+        if number.is_finite() {
+            Self::Number(number)
+        } else {
+            Self::Nothing
+        }
+    }
+
+    /// As the content of an enum's variant, where it is of one.
+    fn of_variant(self, variant: Option<&'static str>) -> Self {
+        match variant {
+            Some(name) => Self::Fields(vec![(name.into(), self)]),
+            None => self,
+        }
+    }
+}
+
+impl<'py> IntoPyObject<'py> for Answer {
+    type Target = PyAny;
+    type Output = Bound<'py, PyAny>;
+    type Error = PyErr;
+
+    fn into_pyobject(self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        Ok(match self {
+            Self::Nothing => py.None().into_bound(py),
+            Self::Flag(flag) => flag.into_pyobject(py)?.to_owned().into_any(),
+            Self::Signed(number) => number.into_pyobject(py)?.into_any(),
+            Self::Unsigned(number) => number.into_pyobject(py)?.into_any(),
+            Self::Number(number) => number.into_pyobject(py)?.into_any(),
+            Self::Text(text) => text.into_pyobject(py)?.into_any(),
+            Self::Rows(rows) => {
+                let list = PyList::empty(py);
+                for row in rows {
+                    list.append(row)?;
+                }
+                list.into_any()
+            }
+            Self::Fields(fields) => {
+                let dict = PyDict::new(py);
+                for (name, field) in fields {
+                    dict.set_item(name, field)?;
+                }
+                dict.into_any()
+            }
+        })
+    }
+}
+
+/// Makes answers of what can be serialized.
+struct AnswerSerializer;
+
+/// Rows that are being put together, of an enum's variant where they have one.
+struct RowsSerializer {
+    variant: Option<&'static str>,
+    rows: Vec<Answer>,
+}
+
+/// Fields that are being put together, of an enum's variant where they have one.
+struct FieldsSerializer {
+    variant: Option<&'static str>,
+    /// Of the value that comes next.
+    name: Option<Name>,
+    fields: Vec<(Name, Answer)>,
+}
+
+fn rows(variant: Option<&'static str>, count: usize) -> RowsSerializer {
+    RowsSerializer {
+        variant,
+        rows: Vec::with_capacity(count),
+    }
+}
+
+fn fields(variant: Option<&'static str>, count: usize) -> FieldsSerializer {
+    FieldsSerializer {
+        variant,
+        name: None,
+        fields: Vec::with_capacity(count),
+    }
+}
+
+impl RowsSerializer {
+    fn push(&mut self, value: &(impl Serialize + ?Sized)) -> Result<(), Error> {
+        self.rows.push(value.serialize(AnswerSerializer)?);
+        Ok(())
+    }
+
+    fn finish(self) -> Answer {
+        Answer::Rows(self.rows).of_variant(self.variant)
+    }
+}
+
+impl FieldsSerializer {
+    fn push(
+        &mut self,
+        name: impl Into<Name>,
+        value: &(impl Serialize + ?Sized),
+    ) -> Result<(), Error> {
+        let value = value.serialize(AnswerSerializer)?;
+        self.fields.push((name.into(), value));
+        Ok(())
+    }
+
+    fn finish(self) -> Answer {
+        Answer::Fields(self.fields).of_variant(self.variant)
+    }
+}
+
+/// Whole numbers of all lengths are kept as the longest.
+macro_rules! whole_numbers {
+    ($($serialize:ident: $Number:ty = $Kind:ident,)+) => {$(
+        fn $serialize(self, value: $Number) -> Result<Answer, Error> {
+            Ok(Answer::$Kind(value.into()))
+        }
+    )+};
+}
+
+impl Serializer for AnswerSerializer {
+    type Ok = Answer;
+    type Error = Error;
+    type SerializeSeq = RowsSerializer;
+    type SerializeTuple = RowsSerializer;
+    type SerializeTupleStruct = RowsSerializer;
+    type SerializeTupleVariant = RowsSerializer;
+    type SerializeMap = FieldsSerializer;
+    type SerializeStruct = FieldsSerializer;
+    type SerializeStructVariant = FieldsSerializer;
+
+    fn serialize_bool(self, value: bool) -> Result<Answer, Error> {
+        Ok(Answer::Flag(value))
+    }
+
+    whole_numbers! {
+        serialize_i8: i8 = Signed, serialize_i16: i16 = Signed, serialize_i32: i32 = Signed, serialize_i64: i64 = Signed,
+        serialize_u8: u8 = Unsigned, serialize_u16: u16 = Unsigned, serialize_u32: u32 = Unsigned, serialize_u64: u64 = Unsigned,
+    }
+
+    fn serialize_f32(self, value: f32) -> Result<Answer, Error> {
+        // 0.1, not 0.10000000149011612: of all numbers that are this one in 32 bits the one with the fewest digits.
+        let shortest = value.to_string().parse().map_err(Error::custom)?;
+        Ok(Answer::number(shortest))
+    }
+
+    fn serialize_f64(self, value: f64) -> Result<Answer, Error> {
+        Ok(Answer::number(value))
+    }
+
+    fn serialize_char(self, value: char) -> Result<Answer, Error> {
+        Ok(Answer::Text(value.to_string()))
+    }
+
+    fn serialize_str(self, value: &str) -> Result<Answer, Error> {
+        Ok(Answer::Text(value.to_owned()))
+    }
+
+    fn serialize_bytes(self, value: &[u8]) -> Result<Answer, Error> {
+        let bytes = value.iter().map(|byte| Answer::Unsigned((*byte).into()));
+        Ok(Answer::Rows(bytes.collect()))
+    }
+
+    fn serialize_none(self) -> Result<Answer, Error> {
+        Ok(Answer::Nothing)
+    }
+
+    fn serialize_some<T: Serialize + ?Sized>(self, value: &T) -> Result<Answer, Error> {
+        value.serialize(self)
+    }
+
+    fn serialize_unit(self) -> Result<Answer, Error> {
+        Ok(Answer::Nothing)
+    }
+
+    fn serialize_unit_struct(self, _: &'static str) -> Result<Answer, Error> {
+        Ok(Answer::Nothing)
+    }
+
+    fn serialize_unit_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        variant: &'static str,
+    ) -> Result<Answer, Error> {
+        Ok(Answer::Text(variant.to_owned()))
+    }
+
+    fn serialize_newtype_struct<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        value: &T,
+    ) -> Result<Answer, Error> {
+        value.serialize(self)
+    }
+
+    fn serialize_newtype_variant<T: Serialize + ?Sized>(
+        self,
+        _: &'static str,
+        _: u32,
+        variant: &'static str,
+        value: &T,
+    ) -> Result<Answer, Error> {
+        Ok(value.serialize(self)?.of_variant(Some(variant)))
+    }
+
+    fn serialize_seq(self, count: Option<usize>) -> Result<RowsSerializer, Error> {
+        Ok(rows(None, count.unwrap_or(0)))
+    }
+
+    fn serialize_tuple(self, count: usize) -> Result<RowsSerializer, Error> {
+        Ok(rows(None, count))
+    }
+
+    fn serialize_tuple_struct(
+        self,
+        _: &'static str,
+        count: usize,
+    ) -> Result<RowsSerializer, Error> {
+        Ok(rows(None, count))
+    }
+
+    fn serialize_tuple_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        variant: &'static str,
+        count: usize,
+    ) -> Result<RowsSerializer, Error> {
+        Ok(rows(Some(variant), count))
+    }
+
+    fn serialize_map(self, count: Option<usize>) -> Result<FieldsSerializer, Error> {
+        Ok(fields(None, count.unwrap_or(0)))
+    }
+
+    fn serialize_struct(self, _: &'static str, count: usize) -> Result<FieldsSerializer, Error> {
+        Ok(fields(None, count))
+    }
+
+    fn serialize_struct_variant(
+        self,
+        _: &'static str,
+        _: u32,
+        variant: &'static str,
+        count: usize,
+    ) -> Result<FieldsSerializer, Error> {
+        Ok(fields(Some(variant), count))
+    }
+}
+
+/// Rows are all alike, whatever they are called.
+macro_rules! rows_are_pushed {
+    ($($Kind:ident::$push:ident,)+) => {$(
+        impl $Kind for RowsSerializer {
+            type Ok = Answer;
+            type Error = Error;
+
+            fn $push<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+                self.push(value)
+            }
+
+            fn end(self) -> Result<Answer, Error> {
+                Ok(self.finish())
+            }
+        }
+    )+};
+}
+
+rows_are_pushed! {
+    SerializeSeq::serialize_element,
+    SerializeTuple::serialize_element,
+    SerializeTupleStruct::serialize_field,
+    SerializeTupleVariant::serialize_field,
+}
+
+/// So are fields.
+macro_rules! fields_are_pushed {
+    ($($Kind:ident,)+) => {$(
+        impl $Kind for FieldsSerializer {
+            type Ok = Answer;
+            type Error = Error;
+
+            fn serialize_field<T: Serialize + ?Sized>(
+                &mut self,
+                name: &'static str,
+                value: &T,
+            ) -> Result<(), Error> {
+                self.push(name, value)
+            }
+
+            fn end(self) -> Result<Answer, Error> {
+                Ok(self.finish())
+            }
+        }
+    )+};
+}
+
+fields_are_pushed! { SerializeStruct, SerializeStructVariant, }
+
+impl SerializeMap for FieldsSerializer {
+    type Ok = Answer;
+    type Error = Error;
+
+    fn serialize_key<T: Serialize + ?Sized>(&mut self, key: &T) -> Result<(), Error> {
+        self.name = Some(match key.serialize(AnswerSerializer)? {
+            Answer::Text(name) => name.into(),
+            Answer::Signed(number) => number.to_string().into(),
+            Answer::Unsigned(number) => number.to_string().into(),
+            _ => return Err(Error::custom("a name must be text or a whole number")),
+        });
+        Ok(())
+    }
+
+    fn serialize_value<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), Error> {
+        let name = self.name.take();
+        let name = name.ok_or_else(|| Error::custom("a value without a name"))?;
+        self.push(name, value)
+    }
+
+    fn end(self) -> Result<Answer, Error> {
+        Ok(self.finish())
+    }
+}
