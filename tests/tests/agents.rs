@@ -126,7 +126,14 @@ fn the_order_of_agents_permutes_what_they_get_and_nothing_else() {
         infos.reverse();
         seen.reverse();
     }
-    assert!(forth_moments == back_moments);
+    for (step, (forth, back)) in forth_moments.iter().zip(&back_moments).enumerate() {
+        assert_eq!(forth.0, back.0, "step {step}");
+        for (agent, (forth, back)) in forth.1.iter().zip(&back.1).enumerate() {
+            for (sensor, (forth, back)) in forth.iter().zip(back).enumerate() {
+                assert!(forth == back, "step {step}, agent {agent}, sensor {sensor}");
+            }
+        }
+    }
     assert_eq!(
         forth.envs()[0].world().hash(),
         back.envs()[0].world().hash()

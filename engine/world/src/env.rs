@@ -1,17 +1,13 @@
 //! The agents of a world, each with a task and sensors, who act at once.
 
-use crate::actions::{DiscreteAction, DiscreteStep, StepSizes};
-use crate::camera_capture::PictureRequest;
+use crate::actions::StepSizes;
 use crate::engines::Engines;
 use crate::env_agent::EnvAgent;
 use crate::env_config::EnvConfig;
-use crate::episode::{Episode, StepInfo};
+use crate::episode::Episode;
 use crate::error::WorldError;
 use crate::sensor_requests::{Requests, Results};
-use crate::sensors::{ObservationBuffer, Sensor, SensorContext, SensorSpec};
 use crate::world::World;
-use dwell_render::{Camera, Preset};
-use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, IdVec, Pose};
 use std::sync::Arc;
@@ -30,13 +26,13 @@ pub struct Env {
     pub(crate) world: World,
     /// Those who act, in the order of actions. Shape (agent,).
     pub(crate) agents: Vec<EnvAgent>,
-    requests: Requests,
+    pub(crate) requests: Requests,
     pub(crate) results: Results,
     /// Where all agents of the world stood when the episodes began. Shape (agent of the world,).
     pub(crate) starts: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
-    episode_key: RandomKey,
-    /// True while the world is as it was made.
+    pub(crate) episode_key: RandomKey,
+    /// Whether the world is as it was made.
     is_new: bool,
     /// Steps of the episodes.
     pub(crate) steps: u64,
@@ -94,25 +90,6 @@ impl Env {
             }
         }
         strides
-    }
-
-    /// Returns what the sensors give: those of the first agent in order, of the second, and so on. Shape (sensor,).
-    pub fn specs(&self) -> Vec<SensorSpec> {
-        self.sensors().map(|(_, sensor)| sensor.spec()).collect()
-    }
-
-    /// Returns whose each sensor is, by the agent's place. Shape (sensor,).
-    pub fn sensor_agents(&self) -> Vec<usize> {
-        let agents = self.agents.iter().enumerate();
-        agents
-            .flat_map(|(place, agent)| std::iter::repeat_n(place, agent.sensors.len()))
-            .collect()
-    }
-
-    fn sensors(&self) -> impl Iterator<Item = (&EnvAgent, &dyn Sensor)> {
-        self.agents
-            .iter()
-            .flat_map(|agent| agent.sensors.iter().map(move |sensor| (agent, &**sensor)))
     }
 
     /// The world.
@@ -212,213 +189,23 @@ impl Env {
         self.listen()
     }
 
-    /// Makes what the first pictures in a house wait for, such as textures and the light of the house, by small pictures of
-    /// all views.
-    ///
-    /// # Errors
-    /// [`WorldError::Render`] for a graphics adapter that fails.
-    pub fn warm_up(&self, threads: Threads) -> Result<(), WorldError> {
-        for view in &self.requests.views {
-            let own = view.eye.request(self.world.state());
-            let small = PictureRequest {
-                camera: Camera::from_fov(8, 8, 90.0)?,
-                preset: match own.preset {
-                    Preset::Flat => Preset::Flat,
-                    Preset::Lit | Preset::Full => Preset::Lit,
-                },
-                ..own
-            };
-            self.world.picture(&small, view.channels, threads)?;
-        }
-        Ok(())
-    }
-
     /// Ends the episodes: what happens to the world from here on belongs to none.
     pub(crate) fn abandon_episode(&mut self) {
         self.agents.iter_mut().for_each(EnvAgent::abandon_episode);
         self.steps = 0;
     }
 
-    /// Returns whether a step can be made by these actions.
-    ///
-    /// # Errors
-    /// [`WorldError::Usage`] before the first reset, when all episodes have ended, and where the actions are not one for each
-    /// agent whose episode goes on.
-    pub fn check_can_step(&self, actions: &[Option<DiscreteAction>]) -> Result<(), WorldError> {
-        if !self.has_episode() {
-            return Err(no_episode("step"));
-        }
-        if self.agents.iter().all(|agent| agent.done) {
-            let what = "step: the episode has ended; call reset first";
-            return Err(WorldError::Usage(what.to_owned()));
-        }
-        if actions.len() != self.agents.len() {
-            return Err(WorldError::Usage(format!(
-                "step: expected one action for each of {} agents, found {}",
-                self.agents.len(),
-                actions.len()
-            )));
-        }
-        let mut idle = self.agents.iter().zip(actions);
-        match idle.find(|(agent, action)| !agent.done && action.is_none()) {
-            None => Ok(()),
-            Some((agent, _)) => Err(WorldError::Usage(format!(
-                "step: no action for agent {}, whose episode goes on",
-                agent.id.0
-            ))),
-        }
-    }
-
-    /// Samples of sound that were cut off in each agent's latest observation, because they were louder than it can hold. Shape
-    /// (agent,).
-    pub fn clipped(&self) -> Vec<u64> {
-        let of = |agent: &EnvAgent| agent.sensors.iter().map(|sensor| sensor.clipped()).sum();
-        self.agents.iter().map(of).collect()
-    }
-
-    /// Makes one control step of all agents together, without looking: a [`Batch`](crate::Batch) observes afterwards.
-    ///
-    /// `actions`: shape (agent,). Of an agent whose episode has ended none is looked at; it stands still, is paid nothing and
-    /// reports how it ended.
-    ///
-    /// Hands act before the step, in the order of the agents.
-    ///
-    /// # Errors
-    /// Those of [`Self::check_can_step`]; nothing has changed then.
-    pub fn step(
-        &mut self,
-        actions: &[Option<DiscreteAction>],
-    ) -> Result<Vec<StepInfo>, WorldError> {
-        self.check_can_step(actions)?;
-        let acting = self.agents.iter().zip(actions);
-        let acting = acting.filter(|(agent, _)| !agent.done);
-        let steps: Vec<DiscreteStep> = acting
-            .filter_map(|(agent, action)| {
-                Some(DiscreteStep {
-                    agent: agent.id,
-                    action: (*action)?,
-                    stride: agent.stride,
-                })
-            })
-            .collect();
-        let outcomes = self.world.act_together(&steps)?;
-        self.steps += 1;
-        let mut done = steps.into_iter().zip(outcomes);
-        let mut infos = Vec::with_capacity(self.agents.len());
-        for agent in &mut self.agents {
-            let info = if agent.done {
-                agent.rest()
-            } else {
-                done.next()
-                    .and_then(|(step, outcome)| agent.judge(&self.world, step.action, outcome))
-            };
-            infos.push(info.ok_or_else(|| no_episode("step"))?);
-        }
-        Ok(infos)
-    }
-
-    /// Returns what each agent's scripted expert would do now. Shape (agent,).
-    ///
-    /// # Errors
-    /// [`WorldError::Usage`] before the first reset.
-    pub fn expert_actions(&mut self) -> Result<Vec<DiscreteAction>, WorldError> {
-        (0..self.agents.len())
-            .map(|agent| self.expert_action(agent))
-            .collect()
-    }
-
-    /// Returns what the scripted expert of one agent would do now.
-    ///
-    /// # Errors
-    /// [`WorldError::Usage`] for an agent that does not act, and before the first reset.
-    pub fn expert_action(&mut self, agent: usize) -> Result<DiscreteAction, WorldError> {
-        let count = self.agents.len();
-        let own = self.agents.get_mut(agent);
-        let own = own.ok_or_else(|| no_agent(agent, count))?;
-        let episode = own.episode.as_ref().ok_or_else(|| no_episode("expert"))?;
-        Ok(own.task.expert(&mut self.world, episode))
-    }
-
-    /// Opens the ears that the sensors need, where they are not open yet.
+    /// Opens the ears that the sensors ask for, where they are not open yet.
     pub(crate) fn listen(&mut self) -> Result<(), WorldError> {
         self.world.listen(&self.requests.ears)
     }
-
-    /// Returns the sensors' requests to the engines.
-    pub(crate) fn requests(&self) -> &Requests {
-        &self.requests
-    }
-
-    /// The signals that will be heard once an agent listens, and their rate; none where no sensor listens.
-    pub(crate) fn signals(&self) -> (Vec<String>, u32) {
-        if self.requests.ears.is_empty() {
-            return (Vec::new(), 0);
-        }
-        self.world.signals()
-    }
-
-    /// The world, and the buffers for its pictures, at the same time.
-    pub(crate) fn picture_work(&mut self) -> (&World, &Requests, &mut Results) {
-        self.results.prepare(&self.requests, &self.world);
-        (&self.world, &self.requests, &mut self.results)
-    }
-
-    /// Writes the observation of a sensor, by its place among [`Self::specs`].
-    ///
-    /// # Errors
-    /// [`WorldError::Usage`] for a wrong index or length, or before the first reset.
-    pub(crate) fn observe(
-        &self,
-        index: usize,
-        out: ObservationBuffer<'_>,
-    ) -> Result<(), WorldError> {
-        let found = self.sensors().nth(index);
-        let found =
-            found.and_then(|(agent, sensor)| Some((agent, sensor, agent.episode.as_ref()?)));
-        let Some((agent, sensor, episode)) = found else {
-            return Err(WorldError::Usage(format!(
-                "observe: no sensor {index}, or no episode has begun"
-            )));
-        };
-        let spec = sensor.spec();
-        let length = match &out {
-            ObservationBuffer::Uint8(out) => out.len(),
-            ObservationBuffer::Float32(out) => out.len(),
-            ObservationBuffer::Int32(out) => out.len(),
-            ObservationBuffer::Text(_) => spec.len(),
-        };
-        if length != spec.len() {
-            return Err(WorldError::Usage(format!(
-                "observe: {} needs a buffer of {} elements, shape {:?}; found {length}",
-                spec.name,
-                spec.len(),
-                spec.shape
-            )));
-        }
-        let key = agent
-            .key(self.episode_key)
-            .child("sensor")
-            .child(spec.name.as_str())
-            .child(self.world.state().step);
-        sensor.finish(
-            SensorContext {
-                world: &self.world,
-                episode,
-                starts: &self.starts,
-                results: &self.results,
-                key,
-            },
-            out,
-        );
-        Ok(())
-    }
 }
 
-fn no_episode(call: &str) -> WorldError {
+pub(crate) fn no_episode(call: &str) -> WorldError {
     WorldError::Usage(format!("{call}: no episode has begun; call reset first"))
 }
 
-fn no_agent(agent: usize, count: usize) -> WorldError {
+pub(crate) fn no_agent(agent: usize, count: usize) -> WorldError {
     WorldError::Usage(format!(
         "no agent {agent} acts; there are {count}, counted from 0"
     ))
@@ -435,11 +222,13 @@ fn fov_deg(agents: &[EnvAgent], whose: AgentId) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::batch::Batch;
+    use crate::Batch;
+    use crate::actions::DiscreteAction;
     use crate::config::WorldConfig;
     use crate::env_config::SensorConfig;
     use crate::episode::Verdict;
     use crate::tasks::Task;
+    use dwell_scene::parallel::Threads;
 
     fn env() -> Env {
         let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
