@@ -25,6 +25,7 @@ mod external_task;
 mod eye_camera;
 mod fixtures;
 mod floor_plan;
+mod free_memory;
 mod info;
 mod initial_state;
 pub mod laws;

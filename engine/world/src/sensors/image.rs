@@ -1,11 +1,11 @@
 //! Image sensors: the parts common to all of them.
 
 use super::camera::CameraConfig;
+use super::picture_memory;
 use super::{Dtype, ObservationBuffer, Sensor, SensorContext, SensorSetup, SensorSpec, settings};
 use crate::camera_capture::PictureRequest;
 use crate::error::WorldError;
 use crate::eye_camera::EyeCamera;
-use crate::memory_estimate;
 use crate::sensor_requests::Requests;
 use crate::world::World;
 use dwell_render::{Camera, ClassSet, Frame, ImageChannels, Optics, View};
@@ -249,7 +249,7 @@ impl World {
         let channels = wanted.fold(ImageChannels::NONE, ImageChannels::and);
         let specs = kinds.iter();
         let specs = specs.map(|kind| kind.spec(kind.name, &request.camera, max_objects));
-        memory_estimate::check_picture(&request.camera, channels, &specs.collect::<Vec<_>>())?;
+        picture_memory::check_picture(&request.camera, channels, &specs.collect::<Vec<_>>())?;
         let (camera, frame) = self.picture(request, channels, threads)?;
         let key = self.key.child("picture").child(self.state().step);
         let observe = |kind: &&ImageSensorKind| {

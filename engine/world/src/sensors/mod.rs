@@ -19,6 +19,7 @@ mod instruction;
 mod instruction_tokens;
 mod normals;
 mod object_list;
+mod picture_memory;
 mod rgb;
 mod semantic;
 mod surfels;
@@ -29,6 +30,7 @@ pub use crate::eye_camera::EyeCamera;
 pub use camera::CameraConfig;
 pub(crate) use camera::mount;
 pub use image::{ImageSettings, Observation, ObservationData, PictureStyle};
+pub(crate) use picture_memory::{observation_bytes, picture_bytes};
 
 use crate::episode::Episode;
 use crate::error::WorldError;
