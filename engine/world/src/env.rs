@@ -19,7 +19,8 @@ const SETTLE_S: f64 = 2.0;
 /// A world in which some agents act at once, at one clock; the others stand still. Alone or not, each has a task, sensors and an
 /// episode of its own.
 ///
-/// An agent is told by its place among those who act, as [`EnvConfig::agents`] lists them. An episode that ends before the
+/// An agent is told by its place among those who act, as [`EnvConfig::agents`] lists them; nothing else depends on that order. An
+/// episode that ends before the
 /// others leaves its agent where it stands: its actions are not looked at, and it goes on observing.
 #[derive(Debug)]
 pub struct Env {
@@ -134,8 +135,8 @@ impl Env {
         self.steps
     }
 
-    /// Starts new episodes; everything random in them comes from `seed`. Agents that come first have first choice of where to
-    /// start, and the others keep clear of them.
+    /// Starts new episodes; everything random in them comes from `seed`. Of the world's agents the lowest number has first choice of
+    /// where to start, and the others keep clear of it.
     ///
     /// # Errors
     /// [`WorldError::Unplayable`] when the house does not hold what a task needs.
@@ -152,14 +153,16 @@ impl Env {
         for agent in &mut self.agents {
             agent.task.prepare(&self.world)?;
         }
-        let mut begun = Vec::with_capacity(self.agents.len());
-        let mut placed = Vec::with_capacity(self.agents.len());
-        for agent in &mut self.agents {
+        let mut order: Vec<&mut EnvAgent> = self.agents.iter_mut().collect();
+        order.sort_unstable_by_key(|agent| agent.id);
+        let mut begun = Vec::with_capacity(order.len());
+        let mut placed = Vec::with_capacity(order.len());
+        for agent in &mut order {
             let own = agent.key(key).child("task");
             begun.push(agent.task.reset(&mut self.world, &placed, own)?);
             placed.push(agent.id);
         }
-        for (agent, episode) in self.agents.iter_mut().zip(begun) {
+        for (agent, episode) in order.into_iter().zip(begun) {
             agent.episode = Some(episode);
         }
         (self.seed, self.episode_key) = (seed, key);

@@ -23,7 +23,7 @@ pub struct EnvConfig {
     pub stride: StepSizes,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
-    /// Those who act, each once, in the order of actions, rewards and observations; default agent 0 alone. All others stand
+    /// Those who act, each once, in the order of actions, infos and observations; default agent 0 alone. All others stand
     /// still.
     pub agents: Vec<AgentConfig>,
 }

@@ -41,7 +41,7 @@ impl Env {
     /// `actions`: shape (agent,). Of an agent whose episode has ended none is looked at; it stands still, is paid nothing and
     /// reports how it ended.
     ///
-    /// Hands act before the step, in the order of the agents.
+    /// Hands act before the step, in the order of the agents' numbers.
     ///
     /// # Errors
     /// Those of [`Self::check_can_step`]; nothing has changed then.

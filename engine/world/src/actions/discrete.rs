@@ -41,7 +41,7 @@ impl World {
     }
 
     /// Makes one control step of several agents' discrete actions, at most one for each; all others stand still. Hands act
-    /// before the step, one after the other in the order of `steps`. Returns what became of each.
+    /// before the step, one after the other in the order of the agents' numbers. Returns what became of each.
     ///
     /// # Errors
     /// [`WorldError::Usage`] for an agent that does not exist; nothing has changed then.
@@ -61,10 +61,12 @@ impl World {
             };
             *control = step.action.kind().control(&step.stride, step_s);
         }
-        let hands = steps
-            .iter()
-            .map(|step| self.use_hand(step.agent, step.action))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut order: Vec<usize> = (0..steps.len()).collect();
+        order.sort_unstable_by_key(|place| steps[*place].agent);
+        let mut hands = vec![None; steps.len()];
+        for place in order {
+            hands[place] = self.use_hand(steps[place].agent, steps[place].action)?;
+        }
         self.step(&controls)?;
         let outcomes = steps.iter().zip(hands);
         Ok(outcomes
