@@ -122,7 +122,7 @@ impl MicrophoneChain {
         for (link, predecessor) in self.chain.iter_mut().zip(predecessors) {
             if let Some(predecessor) = predecessor {
                 link.stage.recall(&memories[predecessor]);
-            } else if link.stage.starts_softly() {
+            } else if link.stage.needs_fade_in() {
                 samples.chunks_exact_mut(size.max(1)).for_each(rise);
             }
             link.hear(listener, false, samples);

@@ -32,5 +32,5 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
 };
 
 fn apply_temperature_error(values: LawValues<'_>, effects: &mut PathEffects) {
-    effects.warmer_k += values.get("offset_k");
+    effects.temperature_error_k += values.get("offset_k");
 }

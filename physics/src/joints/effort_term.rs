@@ -138,7 +138,8 @@ impl JointDof {
         let wanted = multiplier * leader.position + offset;
         let off = self.position - wanted.max(stops[0]).min(stops[1]);
         // Baumgarte: the velocity of what is off is -beta / h times it.
-        let mended = (LINKED * off / self.dt_s).clamp(-LINKED_SPEED, LINKED_SPEED);
+        let mended = (MIMIC_CORRECTION * off / self.dt_s)
+            .clamp(-MIMIC_CORRECTION_SPEED, MIMIC_CORRECTION_SPEED);
         EffortTerm {
             follows: Some((leader.index, multiplier)),
             ..self.element(-slope * mended, slope, [f64::NEG_INFINITY, f64::INFINITY])

@@ -141,7 +141,7 @@ impl TreeSolver<'_> {
                 answer: of_root,
             } = self.part(&chain.at(&q, &v, at(false)), &q, &v, part_s);
             answer = of_root;
-            for _ in 0..if moves { SWEEPS } else { 0 } {
+            for _ in 0..if moves { MIDPOINT_ITERATIONS } else { 0 } {
                 // The implicit midpoint rule, by fixed-point iteration: a = a(q + h/2 v_m, v_m) with v_m = v + h/2 a.
                 let between = plus(&v, &gained, 0.5 * part_s);
                 let middle = chain.at(&plus(&q, &between, 0.5 * part_s), &between, at(true));
