@@ -286,21 +286,6 @@ def test_the_world_of_an_environment_is_that_of_dwell() -> None:
     assert np.allclose(env.reset(seed=2)[0]["gps"], 0.0)
 
 
-def test_parts_know_the_agent_that_they_are_about() -> None:
-    class Turned(dwell.Task):
-        sensors = ("compass",)
-
-        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
-            del action, verdict
-            return dwell.Verdict(reward=float(world.agents()[self.agent]["yaw_rad"]))
-
-    for agent in (0, 1):
-        env = DwellEnv(Turned, world={"agents": [{}, {}]}, agent=agent)
-        env.reset(seed=1)
-        _, reward, *_ = env.step(env.actions().index("turn_left"))
-        assert reward == env.agents()[agent]["yaw_rad"] != env.agents()[1 - agent]["yaw_rad"]
-
-
 def test_parts_are_found_by_name() -> None:
     here = __name__
     env = DwellEnv(f"{here}:GoThere", sensors=["gps", f"{here}:Noisy"], reward=f"{here}:Doubled")

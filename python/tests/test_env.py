@@ -240,3 +240,18 @@ def test_a_picture_for_people_is_what_the_agent_sees(apartment: dwell.House) -> 
         pictures.append(env.render())
     assert np.array_equal(pictures[0], pictures[1])
     assert not np.array_equal(pictures[0], pictures[2])
+
+
+def test_parts_know_the_agent_that_they_are_about() -> None:
+    class Turned(dwell.Task):
+        sensors = ("compass",)
+
+        def judge(self, world: dwell.World, action: str, verdict: dwell.Verdict) -> dwell.Verdict:
+            del action, verdict
+            return dwell.Verdict(reward=float(world.agents()[self.agent]["yaw_rad"]))
+
+    for agent in (0, 1):
+        env = DwellEnv(Turned, world={"agents": [{}, {}]}, agent=agent)
+        env.reset(seed=1)
+        _, reward, *_ = env.step(env.actions().index("turn_left"))
+        assert reward == env.agents()[agent]["yaw_rad"] != env.agents()[1 - agent]["yaw_rad"]
