@@ -25,6 +25,8 @@ pub struct SemanticCategory {
     pub nyu40_id: u8,
     /// Name of the NYU-40 class.
     pub nyu40_name: &'static str,
+    /// Name of the synset of `WordNet` 3.0, such as `"chair.n.01"`; empty where none is right.
+    pub synset: &'static str,
     /// Part of the building.
     pub structure: bool,
     /// A person can push or pick it up.
@@ -41,6 +43,8 @@ pub struct SemanticCategory {
     pub supports: bool,
     /// Things go into it.
     pub contains: bool,
+    /// It has a front of its own: the side that is used or looked at.
+    pub front: bool,
     /// Usual substances, most usual first.
     pub substances: Vec<&'static str>,
     /// Fraction of the bounding box that the first substance fills.
@@ -79,6 +83,7 @@ impl Categories {
                 synonyms: row.list("synonyms")?,
                 nyu40_id: row.number("nyu40_id")?,
                 nyu40_name: row.text("nyu40_name")?,
+                synset: row.text("synset")?,
                 structure: row.flag("structure")?,
                 movable: row.flag("movable")?,
                 openable: row.flag("openable")?,
@@ -87,6 +92,7 @@ impl Categories {
                 mounted: row.flag("mounted")?,
                 supports: row.flag("supports")?,
                 contains: row.flag("contains")?,
+                front: row.flag("front")?,
                 substances: row.list("substances")?,
                 fill: row.number("fill")?,
                 mass_kg: row.number("mass_kg")?,

@@ -12,7 +12,15 @@ pub enum SemanticsError {
         /// The known names.
         known: Vec<&'static str>,
     },
-    /// A house that offers nothing of the wanted kind.
+    /// A name that no order has.
+    #[error("no selection {name:?}; there are {known:?}")]
+    UnknownSelection {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: Vec<&'static str>,
+    },
+    /// A house in which nothing of the wanted kind can be asked for.
     #[error("house {house:?} offers no instruction of kind {kind}: {why}")]
     NoInstruction {
         /// The house's name.

@@ -1,9 +1,10 @@
-//! The scene graph: rooms, objects with their properties, and every relation that holds.
+//! The scene graph: storeys, rooms, agents, objects with their properties, and the relations that hold.
 
-use crate::predicates;
+use crate::attributes::object_attributes;
+use crate::predicates::{self, Predicate};
 use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
+use dwell_scene::{AgentId, House, LevelId, ObjectId};
 use serde::{Deserialize, Serialize};
 
 /// Largest number of things with relations of left and right: each has a side of each other.
@@ -12,12 +13,48 @@ const MOST_IN_FRONT: usize = 1000;
 /// A scene graph. Ids are those of sensors; rooms are counted from 0.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SceneGraph {
+    /// Storeys in order, from the lowest.
+    #[serde(default)]
+    pub storeys: Vec<StoreyNode>,
     /// Rooms in order.
     pub rooms: Vec<RoomNode>,
     /// Objects in order.
     pub objects: Vec<ObjectNode>,
+    /// Agents in order.
+    #[serde(default)]
+    pub agents: Vec<AgentNode>,
     /// Relations, sorted by subject, then predicate, then object.
     pub relations: Vec<RelationEdge>,
+}
+
+/// A storey.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StoreyNode {
+    /// Counted from 0.
+    pub storey: u32,
+    /// The house's name for it.
+    pub name: String,
+    /// The height of its lowest room's floor, m; nothing without rooms.
+    pub floor_m: Option<f32>,
+}
+
+/// An agent.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AgentNode {
+    /// The sensors' id.
+    pub id: i32,
+    /// Counted from 0.
+    pub agent: u32,
+    /// The point between its feet, m.
+    pub position: [f32; 3],
+    /// Where it faces, rad to the left of -Z.
+    pub yaw_rad: f32,
+    /// The room it is in.
+    pub room: Option<u32>,
+    /// The storey it is on.
+    pub storey: Option<u32>,
+    /// The sensors' id of what it holds.
+    pub holding: Option<i32>,
 }
 
 /// A room.
@@ -27,6 +64,9 @@ pub struct RoomNode {
     pub room: u32,
     /// Spoken name of its own in the house: "kitchen", "second bedroom".
     pub name: String,
+    /// Its storey.
+    #[serde(default)]
+    pub storey: u32,
     /// Floor area, m².
     pub area_m2: f32,
     /// The rooms that it is open to without a door between, rising.
@@ -43,6 +83,15 @@ pub struct ObjectNode {
     pub name: String,
     /// Spoken noun.
     pub noun: String,
+    /// Its row in the table of categories; empty where that has none.
+    #[serde(default)]
+    pub category: String,
+    /// Name of its synset of `WordNet` 3.0; empty where none is known.
+    #[serde(default)]
+    pub synset: String,
+    /// Number of its NYU-40 class; 0 where none is known.
+    #[serde(default)]
+    pub nyu40_id: u8,
     /// Plain colour words, largest share first.
     pub colors: Vec<String>,
     /// Substances by name, largest share first.
@@ -51,6 +100,9 @@ pub struct ObjectNode {
     pub size: crate::SizeClass,
     /// The room it is in.
     pub room: Option<u32>,
+    /// The storey it is on.
+    #[serde(default)]
+    pub storey: Option<u32>,
     /// The middle of its box, m.
     pub center: [f32; 3],
     /// The edges of its box, m.
@@ -66,40 +118,68 @@ pub struct ObjectNode {
 /// One relation that holds.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RelationEdge {
-    /// The sensors' id of an object.
+    /// The sensors' id of an object or an agent.
     pub subject: i32,
     /// The predicate's name.
     pub predicate: String,
-    /// The sensors' id of an object or structure piece; for `in_room` the room.
+    /// The sensors' id of an object, a structure piece or an agent; for predicates that lead to rooms or storeys alone
+    /// (`in_room`, `on_storey`, `in_corner_of`, `in_middle_of`) the number of that, counted from 0.
     pub object: i32,
 }
 
 fn node(scene: &SemanticScene<'_>, id: ObjectId) -> ObjectNode {
-    let (house, facts) = (scene.house(), scene.facts(id));
-    let bounds = scene.extent(id).bounds;
+    let of = object_attributes(scene, id);
     ObjectNode {
-        id: house.entity_of_object(id).0,
-        name: house.objects[id].name.clone(),
-        noun: facts.noun.clone(),
-        colors: facts
-            .colors
-            .iter()
-            .map(|(word, _)| (*word).to_owned())
-            .collect(),
-        substances: facts
-            .substances
-            .iter()
-            .map(|(substance, _)| substance.name.clone())
-            .collect(),
-        size: facts.size,
-        room: scene.room_of(id).map(|room| room.0),
-        center: bounds.center().into(),
-        extents: bounds.size().into(),
-        openness: scene.state.openness(house, id),
-        switched_on: house.objects[id]
-            .switch
-            .map(|_| scene.state.switched_on[id]),
-        held_by: scene.holder(id).map(|agent| agent.0),
+        id: of.id,
+        name: of.name,
+        noun: of.noun,
+        category: of.category,
+        synset: of.synset,
+        nyu40_id: of.nyu40_id,
+        colors: of.colors.into_iter().map(|(word, _)| word).collect(),
+        substances: of.substances.into_iter().map(|(name, _)| name).collect(),
+        size: of.size,
+        room: of.room,
+        storey: of.storey,
+        center: of.center,
+        extents: of.extents,
+        openness: of.openness,
+        switched_on: of.switched_on,
+        held_by: of.held_by,
+    }
+}
+
+fn agent_node(scene: &SemanticScene<'_>, id: AgentId) -> AgentNode {
+    let (house, agent) = (scene.house(), &scene.state.agents[id]);
+    AgentNode {
+        id: house.entity_of_agent(id).0,
+        agent: id.0,
+        position: agent.position.into(),
+        yaw_rad: agent.yaw_rad,
+        room: scene.room_of_agent(id).map(|room| room.0),
+        storey: scene.storey_of(Term::Agent(id)).map(|storey| storey.0),
+        holding: agent.holding.map(|held| house.entity_of_object(held).0),
+    }
+}
+
+fn storey_node(house: &House, id: LevelId) -> StoreyNode {
+    let rooms = house.rooms.iter().filter(|room| room.level == id);
+    StoreyNode {
+        storey: id.0,
+        name: house.levels[id].name.clone(),
+        floor_m: rooms.map(|room| room.floor_y).reduce(f32::min),
+    }
+}
+
+/// The number that stands for a term in a graph: the sensors' id of a thing, the number of a room or a storey.
+pub fn number_of(house: &House, term: Term) -> i32 {
+    match term {
+        Term::Object(id) => house.entity_of_object(id).0,
+        Term::Structure(id) => house.entity_of_structure(id).0,
+        Term::Agent(id) => house.entity_of_agent(id).0,
+        Term::Room(id) => id.0 as i32,
+        Term::Storey(id) => id.0 as i32,
+        Term::Part(id) => id.0 as i32,
     }
 }
 
@@ -120,54 +200,96 @@ fn in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
     front
 }
 
-/// The whole scene as data; with a viewer, left and right too, of the 1,000 things nearest before
-/// it.
-///
-/// Relations are those between objects, between an object and a structure piece it rests or hangs on, and `in_room`.
-pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
-    let house = scene.house();
-    let rooms = house.rooms.ids().map(|id| {
-        let facts = scene.semantics.room(id);
-        RoomNode {
-            room: id.0,
-            name: facts.label.clone(),
-            area_m2: facts.area_m2,
-            passages: facts.passages.iter().map(|room| room.0).collect(),
-        }
-    });
+/// One relation that holds: subject, predicate by its place in [`predicates::all`], object.
+pub type Related = (Term, usize, Term);
+
+/// The relations of objects and agents by the predicates at `codes` of [`predicates::all`], those with two places; by subject, then
+/// by predicate. A relation that needs a viewer is told of the 1,000 things nearest before it, and not at all without one.
+pub fn relations(
+    scene: &SemanticScene<'_>,
+    codes: &[usize],
+    viewer: Option<&Viewer>,
+) -> Vec<Related> {
+    let all = predicates::all();
+    let known = codes
+        .iter()
+        .filter_map(|code| Some((*code, *all.get(*code)?)));
+    let known: Vec<(usize, &dyn Predicate)> = known.filter(|(_, p)| p.arity() == 2).collect();
+    let viewed = known.iter().any(|(_, predicate)| predicate.needs_viewer());
+    let viewer = viewer.filter(|_| viewed);
     let front = viewer.map_or_else(Vec::new, |viewer| in_front(scene, viewer));
-    let mut relations = Vec::new();
-    for subject in house.objects.ids() {
+    let objects = scene.house().objects.ids().map(Term::Object);
+    let subjects = objects.chain(scene.state.agents.ids().map(Term::Agent));
+    let mut found: Vec<Related> = Vec::new();
+    for subject in subjects {
         interrupt::check();
-        let own = Term::Object(subject);
-        for predicate in predicates::all() {
-            let found = if !predicate.needs_viewer() {
+        for (code, predicate) in &known {
+            let mut terms = if !predicate.needs_viewer() {
                 predicate.related(scene, subject)
-            } else if front.binary_search(&own).is_ok() {
-                let holds =
-                    |term: &&Term| **term != own && predicate.holds(scene, own, **term, viewer);
+            } else if front.binary_search(&subject).is_ok() {
+                let holds = |term: &&Term| {
+                    **term != subject
+                        && predicate.holds(scene, &[subject, **term], viewer).is_true()
+                };
                 front.iter().filter(holds).copied().collect()
             } else {
                 Vec::new()
             };
-            relations.extend(found.into_iter().map(|term| RelationEdge {
-                subject: house.entity_of_object(subject).0,
-                predicate: predicate.name().to_owned(),
-                object: match term {
-                    Term::Object(id) => house.entity_of_object(id).0,
-                    Term::Structure(id) => house.entity_of_structure(id).0,
-                    Term::Room(id) => id.0 as i32,
-                    Term::Agent(id) => house.entity_of_agent(id).0,
-                },
-            }));
+            terms.sort_unstable();
+            found.extend(terms.into_iter().map(|term| (subject, *code, term)));
         }
     }
+    found
+}
+
+/// The places in [`predicates::all`] of the predicates that tables list unasked; with a viewer also of those that need one and
+/// lead to few.
+pub fn listed(with_viewer: bool) -> Vec<usize> {
+    let all = predicates::all().iter().enumerate();
+    let listed = all.filter(|(_, predicate)| {
+        predicate.arity() == 2
+            && (predicate.is_listed() || (with_viewer && predicate.needs_viewer()))
+    });
+    listed.map(|(code, _)| code).collect()
+}
+
+/// Everything that can be said about the scene, as data; with a viewer, sides too, of the 1,000 things nearest before it.
+///
+/// Relations are those of objects and agents that [`listed`] has.
+pub fn scene_graph(scene: &SemanticScene<'_>, viewer: Option<&Viewer>) -> SceneGraph {
+    let house = scene.house();
+    let rooms = house.rooms.iter_ids().map(|(id, room)| {
+        let facts = scene.semantics.room(id);
+        RoomNode {
+            room: id.0,
+            name: facts.label.clone(),
+            storey: room.level.0,
+            area_m2: facts.area_m2,
+            passages: facts.passages.iter().map(|room| room.0).collect(),
+        }
+    });
+    let found = relations(scene, &listed(viewer.is_some()), viewer);
+    let edges = found
+        .into_iter()
+        .map(|(subject, code, object)| RelationEdge {
+            subject: number_of(house, subject),
+            predicate: predicates::all()[code].name().to_owned(),
+            object: number_of(house, object),
+        });
+    let mut relations: Vec<RelationEdge> = edges.collect();
     relations.sort_by(|p, q| {
         (p.subject, &p.predicate, p.object).cmp(&(q.subject, &q.predicate, q.object))
     });
+    let agents = scene.state.agents.ids();
     SceneGraph {
+        storeys: house
+            .levels
+            .ids()
+            .map(|id| storey_node(house, id))
+            .collect(),
         rooms: rooms.collect(),
         objects: house.objects.ids().map(|id| node(scene, id)).collect(),
+        agents: agents.map(|id| agent_node(scene, id)).collect(),
         relations,
     }
 }
@@ -178,9 +300,9 @@ impl SceneGraph {
         self.relations.iter().filter(move |edge| edge.subject == id)
     }
 
-    /// The number of rooms and objects.
+    /// The number of storeys, rooms, objects and agents.
     pub fn node_count(&self) -> usize {
-        self.rooms.len() + self.objects.len()
+        self.storeys.len() + self.rooms.len() + self.objects.len() + self.agents.len()
     }
 
     /// The object with a sensors' id.

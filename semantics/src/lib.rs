@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod attributes;
 pub mod category;
 pub mod color;
 mod csv_table;
@@ -15,20 +16,26 @@ mod line_of_sight;
 mod noun_index;
 mod open_passages;
 pub mod predicates;
+mod reachable_area;
 pub mod refer;
 pub mod room_kind;
+mod room_outline;
 mod rooms;
 mod scene;
+pub mod selections;
 mod semantics;
 mod size;
+mod truth;
 mod visible_area;
 pub mod vocabulary;
 
+pub use attributes::{ObjectAttributes, object_attributes};
 pub use doorways::RoomDoorway;
 pub use error::SemanticsError;
 pub use facts::ObjectFacts;
 pub use line_of_sight::is_in_line_of_sight;
 pub use rooms::RoomProperties;
-pub use scene::{SemanticScene, Term, Viewer};
+pub use scene::{SemanticScene, Term, TermKind, Viewer};
 pub use semantics::Semantics;
 pub use size::SizeClass;
+pub use truth::{Truth, UndecidedReason};

@@ -1,8 +1,9 @@
 //! Passages between rooms that no door closes.
 
+use crate::room_outline::borders;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, House, IdVec, RoomId};
+use dwell_scene::{Aabb, IdVec, RoomId};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
@@ -44,7 +45,7 @@ pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<Roo
 fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32> {
     let house = rays.house();
     let mut open = BTreeMap::new();
-    for [a, b] in border(house, room) {
+    for [a, b] in borders(&house.rooms[room]) {
         let length_m = a.distance(b);
         let steps = (length_m / STEP_M).ceil().max(1.0);
         let Some(along) = (b - a).try_normalize() else {
@@ -85,19 +86,4 @@ fn beyond(rays: &RayScene, doors: &[Aabb], room: RoomId, at: Vec2, out: Vec2) ->
         !rays.occluded(&ray, RayMask::EYE)
     };
     HEIGHTS_M.iter().all(free).then_some(other)
-}
-
-/// The edges of a room's footprint that only one of its triangles has.
-fn border(house: &House, room: RoomId) -> Vec<[Vec2; 2]> {
-    let key = |p: Vec2| (p + Vec2::ZERO).to_array().map(f32::to_bits);
-    let mut edges: BTreeMap<[[u32; 2]; 2], ([Vec2; 2], usize)> = BTreeMap::new();
-    for [a, b, c] in &house.rooms[room].footprint {
-        for [p, q] in [[*a, *b], [*b, *c], [*c, *a]] {
-            let mut ends = [key(p), key(q)];
-            ends.sort_unstable();
-            edges.entry(ends).or_insert(([p, q], 0)).1 += 1;
-        }
-    }
-    let once = edges.into_values().filter(|(_, count)| *count == 1);
-    once.map(|(edge, _)| edge).collect()
 }

@@ -5,12 +5,16 @@ use crate::doorways::RoomDoorway;
 use crate::facts::ObjectFacts;
 use crate::geometry::{Extent, Hull};
 use crate::noun_index::NounIndex;
+use crate::reachable_area::{NavGridPool, ReachableArea};
+use crate::room_outline::RoomOutline;
 use crate::rooms::RoomProperties;
 use crate::visible_area::visible_surface_areas;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, House, Id, IdVec, MaterialId, ObjectId, RoomId, State, StructureId};
+use dwell_scene::{
+    Aabb, AgentId, House, Id, IdVec, MaterialId, ObjectId, RoomId, State, StructureId,
+};
 use glam::Vec2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,6 +29,8 @@ pub struct Semantics {
     structure: IdVec<StructureId, (Aabb, Hull)>,
     structure_boxes: BoxTree,
     rooms: IdVec<RoomId, RoomProperties>,
+    outlines: IdVec<RoomId, RoomOutline>,
+    walkers: NavGridPool,
     doorways: BTreeMap<ObjectId, RoomDoorway>,
     paints: IdVec<MaterialId, MaterialColors>,
 }
@@ -68,6 +74,8 @@ impl Semantics {
             structure,
             kinds: NounIndex::gather(&facts),
             rooms: RoomProperties::gather(&rays, &paints, &doors),
+            outlines: house.rooms.iter().map(RoomOutline::gather).collect(),
+            walkers: NavGridPool::default(),
             doorways,
             facts,
             rest_extents,
@@ -81,7 +89,22 @@ impl Semantics {
         &self.house
     }
 
-    /// Returns the state-independent facts about an object.
+    pub(crate) fn shared_house(&self) -> &Arc<House> {
+        &self.house
+    }
+
+    /// Returns where an agent can get to as things stand; `None` where nobody can walk, and for an unknown agent.
+    pub(crate) fn reachable_area(&self, state: &State, agent: AgentId) -> Option<ReachableArea> {
+        let agent = state.agents.get(agent)?;
+        self.walkers.reachable_area(&self.house, state, agent)
+    }
+
+    /// A room seen from above.
+    pub(crate) fn room_outline(&self, room: RoomId) -> &RoomOutline {
+        &self.outlines[room]
+    }
+
+    /// Returns what is always true of an object.
     pub fn facts(&self, object: ObjectId) -> &ObjectFacts {
         &self.facts[object]
     }

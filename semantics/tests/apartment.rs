@@ -217,7 +217,8 @@ fn things_in_marked_places_rest_on_their_furniture() {
                 for other in house.objects.ids().filter(|other| *other != lower) {
                     let carries = ["in", "on"].iter().any(|name| {
                         let predicate = predicates::find(name).expect("it exists");
-                        predicate.holds(&scene, Term::Object(lower), Term::Object(other), None)
+                        let pair = [Term::Object(lower), Term::Object(other)];
+                        predicate.holds(&scene, &pair, None).is_true()
                     });
                     if carries && !reached.contains(&other) {
                         reached.push(other);
@@ -282,7 +283,8 @@ fn most_things_can_be_asked_for_and_found() {
     let shut_away: Vec<ObjectId> = {
         let scene = semantics.scene(&state);
         let holds = |thing: ObjectId, other: ObjectId| {
-            inside.holds(&scene, Term::Object(thing), Term::Object(other), None)
+            let pair = [Term::Object(thing), Term::Object(other)];
+            inside.holds(&scene, &pair, None).is_true()
         };
         let away = |thing: &ObjectId| shut.iter().any(|other| holds(*thing, *other));
         house.objects.ids().filter(away).collect()

@@ -7,14 +7,14 @@ use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{House, ObjectId, Pose, State};
-use dwell_semantics::predicates::{all, find};
+use dwell_semantics::predicates::find;
 use dwell_semantics::{SemanticScene, Semantics, Term, Viewer};
 use glam::{Quat, Vec3};
 
 fn holds(scene: &SemanticScene<'_>, name: &str, a: ObjectId, b: impl Into<TermOf>) -> bool {
-    find(name)
-        .expect("the predicate exists")
-        .holds(scene, Term::Object(a), b.into().0, None)
+    let predicate = find(name).expect("the predicate exists");
+    let args = [Term::Object(a), b.into().0];
+    predicate.holds(scene, &args, None).is_true()
 }
 
 struct TermOf(Term);
@@ -27,18 +27,6 @@ impl From<Term> for TermOf {
     fn from(term: Term) -> Self {
         Self(term)
     }
-}
-
-fn terms(house: &House) -> Vec<Term> {
-    let objects = house.objects.ids().map(Term::Object);
-    let pieces = house.structure.ids().map(Term::Structure);
-    house
-        .rooms
-        .ids()
-        .map(Term::Room)
-        .chain(objects)
-        .chain(pieces)
-        .collect()
 }
 
 /// Throws every object somewhere, turned about the vertical.
@@ -54,65 +42,6 @@ fn shaken(house: &House, seed: u64) -> State {
 }
 
 #[test]
-fn every_relation_keeps_its_laws_in_every_arrangement() {
-    let small = small_house();
-    let house = &small.house;
-    let semantics = Semantics::new(house);
-    let terms = terms(house);
-    let viewer = Viewer {
-        world_from_camera: Pose::from_position_yaw(Vec3::new(3.0, 1.2, 7.5), 0.3),
-    };
-    let (mut checked, mut held) = (0, 0);
-    for seed in 0..6 {
-        let state = if seed == 0 {
-            State::new(house)
-        } else {
-            shaken(house, seed)
-        };
-        let scene = semantics.scene(&state);
-        for predicate in all() {
-            let laws = predicate.properties();
-            let holds = |a, b| predicate.holds(&scene, a, b, Some(&viewer));
-            assert!(!predicate.words().is_empty() && !predicate.name().is_empty());
-            for a in &terms {
-                let mut images = 0;
-                for b in &terms {
-                    checked += 1;
-                    if laws.irreflexive && a == b {
-                        assert!(!holds(*a, *b), "{} {a:?}", predicate.name());
-                    }
-                    let forward = holds(*a, *b);
-                    held += usize::from(forward);
-                    images += usize::from(forward);
-                    if laws.symmetric {
-                        assert_eq!(forward, holds(*b, *a), "{} {a:?} {b:?}", predicate.name());
-                    }
-                    if laws.antisymmetric && forward {
-                        assert!(!holds(*b, *a), "{} {a:?} {b:?}", predicate.name());
-                    }
-                    if let Some(converse) = laws.converse {
-                        let converse = find(converse).unwrap();
-                        assert_eq!(forward, converse.holds(&scene, *b, *a, Some(&viewer)));
-                    }
-                    if predicate.needs_viewer() {
-                        assert!(!predicate.holds(&scene, *a, *b, None));
-                    }
-                }
-                assert!(
-                    !laws.functional || images <= 1,
-                    "{} {a:?}",
-                    predicate.name()
-                );
-            }
-        }
-    }
-    assert!(
-        held > 200,
-        "{held} of {checked} hold: the laws were hardly tried"
-    );
-}
-
-#[test]
 fn the_small_house_is_as_it_was_built() {
     let s = small_house();
     let semantics = Semantics::new(&s.house);
@@ -122,8 +51,8 @@ fn the_small_house_is_as_it_was_built() {
     assert!(!holds(&scene, "on", s.table, s.cup) && !holds(&scene, "on", s.red_chair, s.table));
     assert!(holds(&scene, "in", s.apple, s.bowl) && !holds(&scene, "in", s.apple, s.table));
     assert!(!holds(&scene, "in", s.cup, s.bowl));
-    // The apple lies on the bowl's floor, not on the table under it.
-    assert!(holds(&scene, "on", s.apple, s.bowl) && !holds(&scene, "on", s.apple, s.table));
+    // What is in a bowl is not on it, nor on the table under it.
+    assert!(!holds(&scene, "on", s.apple, s.bowl) && !holds(&scene, "on", s.apple, s.table));
     // The stool stands on the rug, not on the floor under it.
     assert!(holds(&scene, "on", s.stool, s.rug));
     let floors: Vec<_> = s
@@ -154,7 +83,7 @@ fn the_small_house_is_as_it_was_built() {
         .ids()
         .filter(|id| holds(&scene, "hangs_on", s.picture, Term::Structure(*id)))
         .count();
-    assert!(walls >= 1);
+    assert_eq!(walls, 1);
     for (object, room) in [
         (s.cup, s.kitchen),
         (s.bed_a, s.bedroom_a),
@@ -232,7 +161,7 @@ fn on_agrees_with_rays_from_above() {
                     }
                 }
             }
-            for other in terms(&s.house) {
+            for other in scene.terms() {
                 let entity = match other {
                     Term::Object(id) => s.house.entity_of_object(id),
                     Term::Structure(id) => s.house.entity_of_structure(id),
@@ -297,7 +226,8 @@ fn left_and_right_agree_with_a_projected_picture() {
         };
         for a in [s.cup, s.red_chair, s.blue_chair, s.fridge, s.bed_a] {
             for b in [s.table, s.picture, s.bed_b, s.stool] {
-                let says = left.holds(&scene, Term::Object(a), Term::Object(b), Some(&viewer));
+                let pair = [Term::Object(a), Term::Object(b)];
+                let says = left.holds(&scene, &pair, Some(&viewer)).is_true();
                 match (picture(a), picture(b)) {
                     (Some(p), Some(q)) if (p - q).abs() > 0.04 => {
                         told += 1;
@@ -330,8 +260,7 @@ fn the_smallest_room_wins_where_floors_overlap() {
     let unknown = semantics.evaluate(
         &state,
         "beside",
-        Term::Object(inner),
-        Term::Object(outer),
+        &[Term::Object(inner), Term::Object(outer)],
         None,
     );
     let message = unknown.unwrap_err().to_string();
@@ -354,31 +283,4 @@ fn a_thing_in_a_wall_keeps_the_room_of_its_file_until_it_moves() {
     assert_eq!(semantics.scene(&state).room_of(window), Some(room));
     state.part_pose[house.objects[window].first_part].position.z -= 3.0;
     assert_eq!(semantics.scene(&state).room_of(window), None);
-}
-
-/// The things that a relation leads to are found without asking for each pair, and are those that asking for each pair finds.
-#[test]
-fn what_is_related_is_what_holds() {
-    let small = small_house();
-    let semantics = Semantics::new(&small.house);
-    let terms = terms(&small.house);
-    for seed in 0..8 {
-        let state = if seed == 0 {
-            State::new(&small.house)
-        } else {
-            shaken(&small.house, seed)
-        };
-        let scene = semantics.scene(&state);
-        for predicate in all() {
-            for id in small.house.objects.ids() {
-                let mut related = predicate.related(&scene, id);
-                related.sort_unstable();
-                let own = Term::Object(id);
-                let mut held = terms.clone();
-                held.retain(|term| predicate.holds(&scene, own, *term, None));
-                held.sort_unstable();
-                assert_eq!(related, held, "{} {id:?}, seed {seed}", predicate.name());
-            }
-        }
-    }
 }

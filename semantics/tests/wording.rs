@@ -38,7 +38,9 @@ impl Told {
     fn holds(&self, name: &str, thing: ObjectId, other: Term) -> bool {
         let predicate = predicates::find(name).expect("it exists");
         let scene = self.semantics.scene(&self.state);
-        predicate.holds(&scene, Term::Object(thing), other, None)
+        predicate
+            .holds(&scene, &[Term::Object(thing), other], None)
+            .is_true()
     }
 
     /// Returns what is said to tell a thing from others means that thing alone.

@@ -12,6 +12,10 @@ pub struct Hull {
 }
 
 fn segment_to_point(a: Vec2, b: Vec2, p: Vec2) -> f32 {
+    nearest_on_segment(a, b, p).distance(p)
+}
+
+fn nearest_on_segment(a: Vec2, b: Vec2, p: Vec2) -> Vec2 {
     let along = b - a;
     let length2 = along.length_squared();
     let t = if length2 > 0.0 {
@@ -19,7 +23,7 @@ fn segment_to_point(a: Vec2, b: Vec2, p: Vec2) -> f32 {
     } else {
         0.0
     };
-    (a + along * t).distance(p)
+    a + along * t
 }
 
 fn segments_cross(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
@@ -95,6 +99,50 @@ impl Hull {
         self.edges()
             .map(|(a, b)| segment_to_point(a, b, point))
             .fold(f32::INFINITY, f32::min)
+    }
+
+    /// The point of the outline or within it that is nearest to `point`; `None` of an outline without points.
+    pub fn nearest_point(&self, point: Vec2) -> Option<Vec2> {
+        if self.contains(point) {
+            return Some(point);
+        }
+        let nearest = self.edges().map(|(a, b)| nearest_on_segment(a, b, point));
+        nearest.min_by(|p, q| {
+            p.distance_squared(point)
+                .total_cmp(&q.distance_squared(point))
+        })
+    }
+
+    /// The least and the largest coordinate along `axis`, m; the least is the larger one for an outline without points.
+    pub fn range_along(&self, axis: Vec2) -> (f32, f32) {
+        let along = self.points.iter().map(|point| axis.dot(*point));
+        along.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        })
+    }
+
+    /// The width across the narrowest way, m.
+    pub fn width_m(&self) -> f32 {
+        let across = self.edges().filter_map(|(a, b)| {
+            let (low, high) = self.range_along((b - a).try_normalize()?.perp());
+            Some(high - low)
+        });
+        across.reduce(f32::min).unwrap_or(0.0)
+    }
+
+    /// The length of the border that lies at most `gap_m` from `other`, m: by steps of 2 cm, at least 8 an edge.
+    pub fn border_near_m(&self, other: &Self, gap_m: f32) -> f32 {
+        let mut length_m = 0.0;
+        for (a, b) in self.edges() {
+            let edge_m = a.distance(b);
+            let steps = ((edge_m / 0.02).ceil() as usize).clamp(8, 256);
+            let near = (0..steps).filter(|k| {
+                let at = a.lerp(b, (*k as f32 + 0.5) / steps as f32);
+                other.distance_to(at) <= gap_m
+            });
+            length_m += edge_m * near.count() as f32 / steps as f32;
+        }
+        length_m
     }
 
     /// The area that two outlines share, m².

@@ -1,13 +1,10 @@
 //! Hangs on a wall, from a ceiling, or before a window.
 
-use super::mount::{hangs_on, mounts};
-use super::{Predicate, RelationProperties};
-use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
+use super::{OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, mount::mount_of};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
 
-/// `a` hangs on `b`: nothing carries `a` from below, and `b` is a wall, at whose height it is, 10 cm above its foot or
-/// higher (cloth reaches the floor), with its outline from above at most 6 cm away; or a ceiling over it, 6 cm from
-/// its top at most; or, for curtains and blinds, a window in the same room and at the same height, 0.3 m away at most.
+/// See [`Predicate::definition`].
 pub(super) struct HangsOn;
 
 impl Predicate for HangsOn {
@@ -19,27 +16,44 @@ impl Predicate for HangsOn {
         "on"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[OBJECT, OBJECT_OR_STRUCTURE]
+    }
+
+    fn definition(&self) -> &'static str {
+        "Nothing carries the thing from below, and of the following it is the nearest one: for \
+         curtains and blinds, a window in the same room and at the same height, at most 0.3 m \
+         away from above; else a wall at whose height it is, 0.1 m above its foot or higher \
+         (cloth reaches the floor), with its outline at most 0.06 m away; else a ceiling over it, \
+         at most 0.06 m from its top. Doors and windows are parts of their walls and hang on \
+         nothing."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
+            antisymmetric: true,
             irreflexive: true,
+            functional: true,
+            excludes: &["on"],
             ..RelationProperties::default()
         }
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        _: Option<&Viewer>,
-    ) -> bool {
-        let Term::Object(thing) = subject else {
-            return false;
-        };
-        hangs_on(scene, thing, object)
+    fn is_listed(&self) -> bool {
+        true
     }
 
-    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
-        mounts(scene, subject)
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
+        let mount = args[0].object().and_then(|thing| mount_of(scene, thing));
+        Truth::from(mount == Some(args[1]))
+    }
+
+    fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
+        let mount = subject.object().and_then(|thing| mount_of(scene, thing));
+        mount.into_iter().collect()
     }
 }

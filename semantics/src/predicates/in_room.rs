@@ -1,12 +1,10 @@
 //! In a room.
 
-use super::{Predicate, RelationProperties};
-use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
+use super::{Predicate, ROOM, RelationProperties, THING, shape::room_of};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
 
-/// `a` is in room `b`: the middle of its box lies over the room's floor and between floor and ceiling (0.3 m of tolerance), in the
-/// smallest such room where floors overlap; a held thing is where its holder is; a thing in a wall (a window, a door) that
-/// was never moved is in the room that the house's file names. An agent is where its feet are. Nothing is in two rooms.
+/// See [`Predicate::definition`]; a thing in a wall is where its file names it until it moves.
 pub(super) struct InRoom;
 
 impl Predicate for InRoom {
@@ -18,35 +16,41 @@ impl Predicate for InRoom {
         "in"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING, ROOM]
+    }
+
+    fn definition(&self) -> &'static str {
+        "A thing's middle lies over the room's floor and between floor and ceiling (0.3 m of \
+         tolerance), in the smallest such room where floors overlap; what is held is where its \
+         holder is, an agent where its feet are, and a window or door that was never moved in the \
+         room that the file names."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here; rooms are those of the house's file."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
-            irreflexive: true,
             antisymmetric: true,
+            irreflexive: true,
             functional: true,
             ..RelationProperties::default()
         }
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        _: Option<&Viewer>,
-    ) -> bool {
-        let Term::Room(room) = object else {
-            return false;
-        };
-        let found = match subject {
-            Term::Object(id) => scene.room_of(id),
-            Term::Agent(id) => scene.room_of_agent(id),
-            Term::Structure(id) => scene.house().structure[id].room,
-            Term::Room(_) => None,
-        };
-        found == Some(room)
+    fn is_listed(&self) -> bool {
+        true
     }
 
-    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
-        scene.room_of(subject).map(Term::Room).into_iter().collect()
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
+        Truth::from(room_of(scene, args[0]).map(Term::Room) == Some(args[1]))
+    }
+
+    fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
+        let takes = THING.contains(&subject.kind());
+        let room = room_of(scene, subject).filter(|_| takes);
+        room.map(Term::Room).into_iter().collect()
     }
 }

@@ -1,7 +1,8 @@
 //! In.
 
-use super::{Predicate, RelationProperties};
-use crate::scene::{SemanticScene, Term, Viewer};
+use super::{OBJECT, Predicate, RelationProperties};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
 use dwell_scene::{Aabb, House, ObjectId};
 
 /// Largest number of things that a thing is in.
@@ -9,20 +10,15 @@ const MOST_AROUND: usize = 32;
 /// Largest distance beside a container's box of the middle of its content, m: more than its brim.
 const BESIDE_M: f32 = 0.025;
 
-/// `a` is in `b`: as [`dwell_scene::House::encloses`] has it, and `a` is not held. So a bowl, a drawer, a sink and a
-/// shelf's compartment (open in front) contain things; a table does not contain what lies under it. Where the boxes of more
-/// than 32 things are around it, those about its middle count.
-pub(super) struct Inside;
-
 impl SemanticScene<'_> {
-    /// Returns the containers of the object, rising; at most 32.
+    /// Returns what is around the object, rising; at most 32 things. It is in those of them that are not lain upon.
     pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
         let around = &self.cache(object).around;
         around.get_or_init(|| containers(self, object))
     }
 }
 
-/// Returns the containers of `thing`, rising.
+/// Returns what is around `thing`, rising.
 fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {
@@ -42,6 +38,18 @@ fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     found
 }
 
+/// Returns whether `thing` is in `container`.
+pub(super) fn is_in(scene: &SemanticScene<'_>, thing: ObjectId, container: ObjectId) -> bool {
+    let (inner, outer) = (scene.extent(thing).bounds, scene.extent(container).bounds);
+    thing != container
+        && House::fits_in(&outer, &inner)
+        && scene.containers(thing).binary_search(&container).is_ok()
+        && !scene.is_lain_upon(container)
+}
+
+/// See [`Predicate::definition`] and [`dwell_scene::House::encloses`]. Where the boxes of more than 32 things are around it, those about its middle count.
+pub(super) struct Inside;
+
 impl Predicate for Inside {
     fn name(&self) -> &'static str {
         "in"
@@ -51,32 +59,49 @@ impl Predicate for Inside {
         "in"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[OBJECT, OBJECT]
+    }
+
+    fn definition(&self) -> &'static str {
+        "A thing that is not held has four fifths of its box in the larger box of another (grown \
+         by 0.02 m), and its middle lies in a space of the other that is marked as holding things \
+         inside, or four of the five rays from its middle to the four sides and down meet the \
+         other; seats and beds without such a space hold nothing: what lies there is on them."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here; containment after A. Herskovits, Language and Spatial Cognition, Cambridge \
+         1986."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
-            irreflexive: true,
             antisymmetric: true,
+            irreflexive: true,
+            converse: Some("contains"),
+            excludes: &["on", "above", "under"],
             ..RelationProperties::default()
         }
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        _: Option<&Viewer>,
-    ) -> bool {
-        let (Term::Object(thing), Term::Object(container)) = (subject, object) else {
-            return false;
-        };
-        let (inner, outer) = (scene.extent(thing).bounds, scene.extent(container).bounds);
-        thing != container
-            && House::fits_in(&outer, &inner)
-            && scene.containers(thing).binary_search(&container).is_ok()
+    fn is_listed(&self) -> bool {
+        true
     }
 
-    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
-        let around = scene.containers(subject).iter();
-        around.map(|id| Term::Object(*id)).collect()
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
+        let (Term::Object(thing), Term::Object(container)) = (args[0], args[1]) else {
+            return Truth::False;
+        };
+        Truth::from(is_in(scene, thing, container))
+    }
+
+    fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
+        let Term::Object(thing) = subject else {
+            return Vec::new();
+        };
+        let around = scene.containers(thing).iter();
+        let holding = around.filter(|id| !scene.is_lain_upon(**id));
+        holding.map(|id| Term::Object(*id)).collect()
     }
 }

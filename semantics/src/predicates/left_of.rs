@@ -1,32 +1,13 @@
 //! Left of.
 
-use super::{Predicate, RelationProperties};
-use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
+use super::{Predicate, RelationProperties, THING, view::picture_x};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::{Truth, UndecidedReason};
 
-/// Smallest difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
-const LEAST_TANGENT: f32 = 0.035;
-/// Smallest depth in front of a viewer, m.
-const LEAST_DEPTH_M: f32 = 0.05;
-/// Largest tangent that is still in front: 75 degrees to the side.
-const WIDEST_TANGENT: f32 = 3.73;
+/// The least difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
+pub(crate) const LEAST_TANGENT: f32 = 0.035;
 
-/// Returns the image of a thing's middle in the viewer's picture: x over depth, growing to the right; `None` when it is not in
-/// front of the viewer.
-pub(super) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
-    let point = viewer.upright_from_world(scene.center(term)?);
-    let depth = -point.z;
-    let x = point.x / depth;
-    (depth >= LEAST_DEPTH_M && x.abs() <= WIDEST_TANGENT).then_some(x)
-}
-
-/// Returns whether a thing's middle is in front of a viewer.
-pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> bool {
-    picture_x(scene, viewer, term).is_some()
-}
-
-/// `a` is left of `b` for a viewer: both middles are in front of the viewer (at most 75 degrees to either side of where it looks,
-/// pitch left aside) and the one of `a` falls at least 0.035 further left in its picture (tangents; 2 degrees in the middle).
+/// See [`Predicate::definition`].
 pub(super) struct LeftOf;
 
 impl Predicate for LeftOf {
@@ -38,11 +19,28 @@ impl Predicate for LeftOf {
         "to the left of"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING, THING]
+    }
+
+    fn definition(&self) -> &'static str {
+        "Seen by the viewer, both middles are in front of it (at most 75 degrees to either side \
+         of where it looks, pitch left aside), and that of the thing falls at least 0.035 (a \
+         tangent: 2 degrees in the middle) further left in its picture."
+    }
+
+    fn source(&self) -> &'static str {
+        "The viewer's frame is the relative one of S. C. Levinson, Space in Language and \
+         Cognition, Cambridge 2003; the threshold is chosen here."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
             antisymmetric: true,
             irreflexive: true,
+            transitive: true,
             converse: Some("right_of"),
+            excludes: &["right_of"],
             ..RelationProperties::default()
         }
     }
@@ -51,18 +49,11 @@ impl Predicate for LeftOf {
         true
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        viewer: Option<&Viewer>,
-    ) -> bool {
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
         let x = |term| picture_x(scene, viewer?, term);
-        matches!((x(subject), x(object)), (Some(a), Some(b)) if b - a >= LEAST_TANGENT)
-    }
-
-    fn related(&self, _: &SemanticScene<'_>, _: ObjectId) -> Vec<Term> {
-        Vec::new()
+        let (Some(a), Some(b)) = (x(args[0]), x(args[1])) else {
+            return Truth::Undecided(UndecidedReason::NotInFront);
+        };
+        Truth::from(b - a >= LEAST_TANGENT)
     }
 }

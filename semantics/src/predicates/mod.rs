@@ -1,27 +1,72 @@
-//! Relations, used both to describe and to verify.
+//! What can be true of things: the one engine that is used for saying and for checking.
 //!
 //! To add one: a file here that implements [`Predicate`], and a line in [`all`].
 
+mod above;
+mod against;
+mod at_back_of;
+mod at_front_of;
+mod attached_to;
+mod behind;
+mod below;
+mod between;
+mod closed;
+mod container;
+mod contains;
+mod empty;
+mod facing;
+mod far;
+mod front;
+mod full;
 mod hangs_on;
+mod held_by;
+mod holds;
+mod in_corner_of;
+mod in_front_of;
+mod in_middle_of;
 mod in_room;
 mod inside;
+mod larger_than;
 mod left_of;
 mod mount;
+mod near;
 mod next_to;
 mod on;
+mod on_storey;
+mod open;
+mod reachable;
 mod right_of;
+mod same_color;
+mod same_kind;
+mod same_material;
+mod shape;
 mod support;
+mod supports;
+mod switched_off;
+mod switched_on;
+mod taller_than;
+mod touching;
+mod triangle_distance;
+mod under;
+mod view;
+mod visible;
+mod visible_from;
+mod wider_than;
 
 pub use crate::scene::SurfaceSupport;
-pub(crate) use left_of::is_in_front;
+pub(crate) use left_of::LEAST_TANGENT;
 pub(crate) use mount::mount_of;
+pub(crate) use shape::{bounds_of, gap_m};
+pub(crate) use view::{is_in_front, picture_x};
 
 use crate::error::SemanticsError;
-use crate::scene::{SemanticScene, Term, Viewer};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::semantics::Semantics;
+use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::{ObjectId, State};
 
-/// The properties of a relation that always hold; checked for every relation by the tests.
+/// What always holds of a relation; checked for every relation by the tests. Of one between three things it is said of the last
+/// two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(
     clippy::struct_excessive_bools,
@@ -34,52 +79,167 @@ pub struct RelationProperties {
     pub antisymmetric: bool,
     /// Nothing has it to itself.
     pub irreflexive: bool,
+    /// Everything has it to itself, where it is decided.
+    pub reflexive: bool,
+    /// r(a, b) and r(b, c) give r(a, c).
+    pub transitive: bool,
     /// r(a, b) and r(a, c) give b = c.
     pub functional: bool,
     /// The name of the relation s with r(a, b) exactly when s(b, a).
     pub converse: Option<&'static str>,
+    /// The names of predicates that never hold of the same things in the same order.
+    pub excludes: &'static [&'static str],
 }
 
-/// A relation between two things.
+impl RelationProperties {
+    /// The names of the laws: "symmetric", "converse of `left_of`".
+    pub fn names(&self) -> Vec<String> {
+        let flags = [
+            (self.symmetric, "symmetric"),
+            (self.antisymmetric, "antisymmetric"),
+            (self.irreflexive, "irreflexive"),
+            (self.reflexive, "reflexive"),
+            (self.transitive, "transitive"),
+            (self.functional, "functional"),
+        ];
+        let flags = flags.into_iter().filter(|(held, _)| *held);
+        let mut names: Vec<String> = flags.map(|(_, name)| name.to_owned()).collect();
+        names.extend(self.converse.map(|name| format!("converse of {name}")));
+        names.extend(self.excludes.iter().map(|name| format!("excludes {name}")));
+        names
+    }
+}
+
+/// A truth-valued function of one to three things in a state.
 pub trait Predicate: Sync {
     /// The name, in letters and underscores.
     fn name(&self) -> &'static str;
 
-    /// The words between subject and object: "the cup is **on** the table".
-    fn words(&self) -> &'static str;
+    /// The words between subject and object: "the cup is **on** the table". Empty for what sentences do not say so.
+    fn words(&self) -> &'static str {
+        ""
+    }
 
-    /// Returns the properties that always hold of it.
-    fn properties(&self) -> RelationProperties;
+    /// The kinds of things that each place takes, the subject first.
+    fn places(&self) -> &'static [&'static [TermKind]];
+
+    /// The number of its places, 1 to 3.
+    fn arity(&self) -> usize {
+        self.places().len()
+    }
+
+    /// When it holds, in one sentence with thresholds and units.
+    fn definition(&self) -> &'static str;
+
+    /// Where definition and thresholds come from.
+    fn source(&self) -> &'static str;
+
+    /// Returns what always holds of it.
+    fn properties(&self) -> RelationProperties {
+        RelationProperties::default()
+    }
 
     /// Returns whether it depends on a viewer.
     fn needs_viewer(&self) -> bool {
         false
     }
 
-    /// Returns whether it holds. `false` for kinds of things outside its domain, and without the viewer that it needs.
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        viewer: Option<&Viewer>,
-    ) -> bool;
+    /// Returns whether tables of relations list it unasked: a thing has it to few others, and [`Self::related`] finds these
+    /// without asking for each pair.
+    fn is_listed(&self) -> bool {
+        false
+    }
 
-    /// All terms to which `subject` has it without a viewer, each once: those for which [`Self::holds`] is true, without a test
-    /// for each.
-    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term>;
+    /// Decides of things that exist and are of the kinds that [`Self::places`] takes; with the viewer that it needs.
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth;
+
+    /// Returns whether it holds of `args`, the subject first. Undecided for kinds of things that it says nothing about, and without
+    /// the viewer it needs.
+    fn holds(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        if args.len() != self.arity() {
+            return Truth::Undecided(UndecidedReason::WrongCount);
+        }
+        for (term, kinds) in args.iter().zip(self.places()) {
+            if !kinds.contains(&term.kind()) {
+                return Truth::Undecided(UndecidedReason::WrongKind);
+            }
+            if !term.exists(scene.house(), scene.state) {
+                return Truth::Undecided(UndecidedReason::UnknownTerm);
+            }
+        }
+        if self.needs_viewer() && viewer.is_none() {
+            return Truth::Undecided(UndecidedReason::NoViewer);
+        }
+        self.decide(scene, args, viewer)
+    }
+
+    /// Everything that `subject` has it to without a viewer, each once: of all objects, pieces of the building, rooms, storeys and
+    /// agents those for which [`Self::holds`] says so. Of a predicate that [`Self::is_listed`] without asking for each. None
+    /// where it does not have two places.
+    fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
+        if self.arity() != 2 || self.needs_viewer() {
+            return Vec::new();
+        }
+        let holds = |term: &Term| self.holds(scene, &[subject, *term], None).is_true();
+        scene.terms().filter(holds).collect()
+    }
 }
 
-/// Every relation.
+const OBJECT: &[TermKind] = &[TermKind::Object];
+const ROOM: &[TermKind] = &[TermKind::Room];
+const AGENT: &[TermKind] = &[TermKind::Agent];
+const OBJECT_OR_AGENT: &[TermKind] = &[TermKind::Object, TermKind::Agent];
+const OBJECT_OR_STRUCTURE: &[TermKind] = &[TermKind::Object, TermKind::Structure];
+const OBJECT_OR_ROOM: &[TermKind] = &[TermKind::Object, TermKind::Room];
+/// What has a middle and an outline.
+const THING: &[TermKind] = &[TermKind::Object, TermKind::Structure, TermKind::Agent];
+
+/// Every predicate.
 pub fn all() -> &'static [&'static dyn Predicate] {
     &[
         &in_room::InRoom,
+        &on_storey::OnStorey,
         &inside::Inside,
+        &contains::Contains,
         &on::On,
+        &supports::Supports,
         &hangs_on::HangsOn,
+        &attached_to::AttachedTo,
+        &touching::Touching,
+        &against::Against,
         &next_to::NextTo,
+        &near::Near,
+        &far::Far,
+        &above::Above,
+        &below::Below,
+        &under::Under,
+        &between::Between,
+        &in_corner_of::InCornerOf,
+        &in_middle_of::InMiddleOf,
         &left_of::LeftOf,
         &right_of::RightOf,
+        &in_front_of::InFrontOf,
+        &behind::Behind,
+        &at_front_of::AtFrontOf,
+        &at_back_of::AtBackOf,
+        &facing::Facing,
+        &visible::Visible,
+        &visible_from::VisibleFrom,
+        &reachable::Reachable,
+        &holds::Holds,
+        &held_by::HeldBy,
+        &same_kind::SameKind,
+        &same_color::SameColor,
+        &same_material::SameMaterial,
+        &larger_than::LargerThan,
+        &taller_than::TallerThan,
+        &wider_than::WiderThan,
+        &open::Open,
+        &closed::Closed,
+        &switched_on::SwitchedOn,
+        &switched_off::SwitchedOff,
+        &full::Full,
+        &empty::Empty,
     ]
 }
 
@@ -89,13 +249,13 @@ pub(crate) fn related_objects(
     predicate: &dyn Predicate,
     subject: ObjectId,
 ) -> Vec<ObjectId> {
-    let terms = predicate.related(scene, subject).into_iter();
+    let terms = predicate.related(scene, Term::Object(subject)).into_iter();
     let mut objects: Vec<ObjectId> = terms.filter_map(Term::object).collect();
     objects.sort_unstable();
     objects
 }
 
-/// The relation called `name`.
+/// The predicate called `name`.
 ///
 /// # Errors
 /// [`SemanticsError::UnknownPredicate`] lists those that exist.
@@ -112,7 +272,7 @@ pub fn find(name: &str) -> Result<&'static dyn Predicate, SemanticsError> {
 }
 
 impl Semantics {
-    /// Returns whether the relation `predicate` holds between two things.
+    /// Returns whether the predicate called `predicate` holds of `args`.
     ///
     /// # Errors
     /// [`SemanticsError::UnknownPredicate`] for a name that [`all`] lacks.
@@ -120,10 +280,9 @@ impl Semantics {
         &self,
         state: &State,
         predicate: &str,
-        subject: Term,
-        object: Term,
+        args: &[Term],
         viewer: Option<&Viewer>,
-    ) -> Result<bool, SemanticsError> {
-        Ok(find(predicate)?.holds(&self.scene(state), subject, object, viewer))
+    ) -> Result<Truth, SemanticsError> {
+        Ok(find(predicate)?.holds(&self.scene(state), args, viewer))
     }
 }

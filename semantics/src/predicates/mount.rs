@@ -113,18 +113,8 @@ fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bo
         && (room.is_none() || room == scene.room_of(cloth))
 }
 
-/// Returns whether `thing` hangs on `mount`: see [`super::hangs_on::HangsOn`].
-pub(super) fn hangs_on(scene: &SemanticScene<'_>, thing: ObjectId, mount: Term) -> bool {
-    let near = match mount {
-        Term::Structure(piece) => is_at(scene, thing, piece),
-        Term::Object(window) => is_before(scene, thing, window),
-        Term::Room(_) | Term::Agent(_) => false,
-    };
-    near && scene.holder(thing).is_none() && scene.supports(thing).is_empty()
-}
-
-/// All mounts of `thing`: windows, then pieces of the building, each rising.
-pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
+/// All at which `thing` may hang: windows, then pieces of the building, each rising.
+fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
     if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
         return Vec::new();
     }
@@ -143,6 +133,11 @@ pub(super) fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
 /// Returns the mount of `thing`: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
 /// and windows are part of their walls and hang on nothing.
 pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
+    let mount = &scene.cache(thing).mount;
+    *mount.get_or_init(|| find_mount(scene, thing))
+}
+
+fn find_mount(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
     if scene.facts(thing).is_opening() && !is_cloth(scene, thing) {
         return None;
     }
@@ -150,7 +145,7 @@ pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Ter
     let away_m = |mount: &Term| match *mount {
         Term::Object(window) => here.distance(&scene.extent(window).footprint),
         Term::Structure(piece) => here.distance(scene.semantics.structure_outline(piece)),
-        Term::Room(_) | Term::Agent(_) => f32::MAX,
+        _ => f32::MAX,
     };
     let rank = |mount: &Term| match *mount {
         Term::Structure(piece) => match scene.house().structure[piece].kind {

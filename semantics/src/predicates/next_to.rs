@@ -1,23 +1,17 @@
 //! Next to.
 
-use super::{Predicate, RelationProperties, on::On};
-use crate::scene::{MOST_NEAR, SemanticScene, Term, Viewer};
-use dwell_scene::interrupt;
-use dwell_scene::{Aabb, ObjectId};
+use super::{OBJECT, Predicate, RelationProperties, on::On, shape::shared_height_m};
+use crate::scene::MOST_NEAR;
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
+use dwell_scene::{Aabb, ObjectId, interrupt};
 
 /// The largest gap between neighbours, m.
 const NEIGHBOUR_GAP_M: f32 = 0.5;
 
-/// `a` is next to `b`: two objects in the same room whose outlines from above are at most 0.5 m apart, whose heights overlap by at
-/// least half of the lower one, neither of which carries or contains the other, and none of which is held. Outlines that
-/// overlap by more than half of the smaller one stand above each other rather than side by side, and do not count. Where more
-/// than 128 things are so near, those about the middle count, and only if it is so both ways.
-pub(super) struct NextTo;
-
-/// Returns the overlap of two boxes' heights, m, and the overlap that is needed.
+/// Returns how much of their heights two boxes share, m, and how much that must be.
 fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
-    let shared = p.max.y.min(q.max.y) - p.min.y.max(q.min.y);
-    (shared, 0.5 * p.size().y.min(q.size().y))
+    (shared_height_m(p, q), 0.5 * p.size().y.min(q.size().y))
 }
 
 impl SemanticScene<'_> {
@@ -46,12 +40,9 @@ fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<Obje
 /// Returns the neighbours of `object`, rising.
 fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
-    let holds = |other: &ObjectId| {
-        let (a, b) = (Term::Object(object), Term::Object(*other));
-        NextTo.holds(scene, a, b, None)
-    };
     let near = scene.neighbour_candidates(object).iter().copied();
-    near.filter(holds).collect()
+    near.filter(|other| is_next_to(scene, object, *other))
+        .collect()
 }
 
 /// Returns whether `other` is among the candidates next to `object`, where these are more than count.
@@ -60,12 +51,40 @@ fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool 
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()
 }
 
+/// Returns whether one of two things carries the other, or is around it.
 fn stacked(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
-    let (a, b) = (Term::Object(a), Term::Object(b));
-    [(a, b), (b, a)]
-        .into_iter()
-        .any(|(p, q)| On.holds(scene, p, q, None) || super::inside::Inside.holds(scene, p, q, None))
+    [(a, b), (b, a)].into_iter().any(|(p, q)| {
+        let terms = [Term::Object(p), Term::Object(q)];
+        On.decide(scene, &terms, None).is_true() || scene.containers(p).binary_search(&q).is_ok()
+    })
 }
+
+fn is_next_to(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
+    if a == b || scene.holder(a).is_some() || scene.holder(b).is_some() {
+        return false;
+    }
+    let (p, q) = (scene.extent(a), scene.extent(b));
+    if !p.bounds.grown(NEIGHBOUR_GAP_M).intersects(&q.bounds) {
+        return false;
+    }
+    let (shared, least) = shared_m(&p.bounds, &q.bounds);
+    if shared < least {
+        return false;
+    }
+    let above = || {
+        p.footprint.overlap_m2(&q.footprint)
+            > 0.5 * p.footprint.area_m2().min(q.footprint.area_m2())
+    };
+    p.footprint.distance(&q.footprint) <= NEIGHBOUR_GAP_M
+        && !above()
+        && scene.room_of(a) == scene.room_of(b)
+        && counts(scene, a, b)
+        && counts(scene, b, a)
+        && !stacked(scene, a, b)
+}
+
+/// See [`Predicate::definition`].
+pub(super) struct NextTo;
 
 impl Predicate for NextTo {
     fn name(&self) -> &'static str {
@@ -76,49 +95,47 @@ impl Predicate for NextTo {
         "next to"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[OBJECT, OBJECT]
+    }
+
+    fn definition(&self) -> &'static str {
+        "Two objects in one room, neither of them held, have outlines from above that are at most \
+         0.5 m apart and heights that overlap by at least half of the lower one; neither carries \
+         or contains the other, and their outlines do not overlap by more than half of the \
+         smaller one. Where more than 128 things are so near, those about the middle count, and \
+         only if it is so both ways."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here: within arm's length of each other, side by side."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
             symmetric: true,
             irreflexive: true,
+            excludes: &["on", "in", "far"],
             ..RelationProperties::default()
         }
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        _: Option<&Viewer>,
-    ) -> bool {
-        let (Term::Object(a), Term::Object(b)) = (subject, object) else {
-            return false;
-        };
-        if a == b || scene.holder(a).is_some() || scene.holder(b).is_some() {
-            return false;
-        }
-        let (p, q) = (scene.extent(a), scene.extent(b));
-        if !p.bounds.grown(NEIGHBOUR_GAP_M).intersects(&q.bounds) {
-            return false;
-        }
-        let (shared, least) = shared_m(&p.bounds, &q.bounds);
-        if shared < least {
-            return false;
-        }
-        let above = || {
-            p.footprint.overlap_m2(&q.footprint)
-                > 0.5 * p.footprint.area_m2().min(q.footprint.area_m2())
-        };
-        p.footprint.distance(&q.footprint) <= NEIGHBOUR_GAP_M
-            && !above()
-            && scene.room_of(a) == scene.room_of(b)
-            && counts(scene, a, b)
-            && counts(scene, b, a)
-            && !stacked(scene, a, b)
+    fn is_listed(&self) -> bool {
+        true
     }
 
-    fn related(&self, scene: &SemanticScene<'_>, subject: ObjectId) -> Vec<Term> {
-        let beside = scene.neighbours(subject).iter();
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
+        let (Term::Object(a), Term::Object(b)) = (args[0], args[1]) else {
+            return Truth::False;
+        };
+        Truth::from(is_next_to(scene, a, b))
+    }
+
+    fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
+        let Term::Object(object) = subject else {
+            return Vec::new();
+        };
+        let beside = scene.neighbours(object).iter();
         beside.map(|id| Term::Object(*id)).collect()
     }
 }

@@ -1,11 +1,10 @@
 //! Right of.
 
-use super::left_of::LeftOf;
-use super::{Predicate, RelationProperties};
-use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::ObjectId;
+use super::{Predicate, RelationProperties, THING, left_of::LeftOf};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
 
-/// `a` is right of `b` for a viewer exactly when `b` is left of `a` for it.
+/// The converse of [`LeftOf`].
 pub(super) struct RightOf;
 
 impl Predicate for RightOf {
@@ -17,11 +16,25 @@ impl Predicate for RightOf {
         "to the right of"
     }
 
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING, THING]
+    }
+
+    fn definition(&self) -> &'static str {
+        "For the viewer, a thing is right of another exactly when the other is left of it."
+    }
+
+    fn source(&self) -> &'static str {
+        "As of `left_of`."
+    }
+
     fn properties(&self) -> RelationProperties {
         RelationProperties {
             antisymmetric: true,
             irreflexive: true,
+            transitive: true,
             converse: Some("left_of"),
+            excludes: &["left_of"],
             ..RelationProperties::default()
         }
     }
@@ -30,17 +43,7 @@ impl Predicate for RightOf {
         true
     }
 
-    fn holds(
-        &self,
-        scene: &SemanticScene<'_>,
-        subject: Term,
-        object: Term,
-        viewer: Option<&Viewer>,
-    ) -> bool {
-        LeftOf.holds(scene, object, subject, viewer)
-    }
-
-    fn related(&self, _: &SemanticScene<'_>, _: ObjectId) -> Vec<Term> {
-        Vec::new()
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        LeftOf.decide(scene, &[args[1], args[0]], viewer)
     }
 }

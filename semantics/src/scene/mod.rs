@@ -2,24 +2,25 @@
 
 mod distractor_set;
 mod object_cache;
+mod term;
 
 pub(crate) use distractor_set::{
     Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs,
 };
 pub(crate) use object_cache::ObjectCache;
 pub use object_cache::SurfaceSupport;
+pub use term::{Term, TermKind, Viewer};
 
 use crate::facts::ObjectFacts;
 use crate::geometry::Extent;
+use crate::reachable_area::ReachableArea;
 use crate::semantics::Semantics;
 use dwell_scene::bvh::BoxTree;
 use dwell_scene::interrupt;
+use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Aabb, AgentId, Entity, EntityId, House, Id, IdVec, ObjectId, Pose, ReceptacleKind, RoomId,
-    State, StructureId,
+    Aabb, AgentId, House, Id, IdVec, LevelId, ObjectId, ReceptacleKind, RoomId, State,
 };
-use glam::Vec3;
-use serde::{Deserialize, Serialize};
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -28,69 +29,7 @@ use std::rc::Rc;
 /// middle count.
 pub(crate) const MOST_NEAR: usize = 128;
 
-/// A term of a predicate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Term {
-    /// An object.
-    Object(ObjectId),
-    /// A wall, floor or ceiling piece.
-    Structure(StructureId),
-    /// A room.
-    Room(RoomId),
-    /// An agent.
-    Agent(AgentId),
-}
-
-impl Term {
-    /// The object, if it is one.
-    pub fn object(self) -> Option<ObjectId> {
-        if let Self::Object(id) = self {
-            Some(id)
-        } else {
-            None
-        }
-    }
-
-    /// The term of a sensor's id; `None` for void, negative ids, and agents that `state` does not have.
-    pub fn from_entity(house: &House, state: &State, id: EntityId) -> Option<Self> {
-        match house.entity(id)? {
-            Entity::Void => None,
-            Entity::Structure(piece) => Some(Self::Structure(piece)),
-            Entity::Object(object) => Some(Self::Object(object)),
-            Entity::Agent(agent) => state.agents.get(agent).map(|_| Self::Agent(agent)),
-        }
-    }
-}
-
-/// A viewer, from which left and right are meant.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Viewer {
-    /// A camera's pose: it looks along -Z, +X is right.
-    pub world_from_camera: Pose,
-}
-
-impl Viewer {
-    /// The eyes of an agent.
-    pub fn of_agent(state: &State, agent: AgentId) -> Option<Self> {
-        let agent = state.agents.get(agent)?;
-        Some(Self {
-            world_from_camera: agent.world_from_eye(),
-        })
-    }
-
-    /// `point` in the viewer's **upright** frame, m: +X right, +Y up, -Z ahead, turned as the camera is about the vertical
-    /// only, so that looking up or down changes no left or right.
-    pub fn upright_from_world(&self, point: Vec3) -> Vec3 {
-        let ahead = self.world_from_camera.transform_vector(Vec3::NEG_Z);
-        let yaw = dwell_scene::space::yaw_from_forward(ahead);
-        Pose::from_position_yaw(self.world_from_camera.position, yaw)
-            .inverse()
-            .transform_point(point)
-    }
-}
-
-/// A house in one state, with the measurements so far. Cheap to make: everything is measured at first use.
+/// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
 pub struct SemanticScene<'a> {
     /// The state-independent facts.
     pub semantics: &'a Semantics,
@@ -100,7 +39,12 @@ pub struct SemanticScene<'a> {
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
     windows: OnceCell<IdVec<RoomId, usize>>,
-    /// Distractor sets by noun.
+    /// What each thing carries, and what each holds; found by predicates.
+    pub(crate) loads: OnceCell<BTreeMap<Term, Vec<ObjectId>>>,
+    pub(crate) contents: OnceCell<BTreeMap<ObjectId, Vec<ObjectId>>>,
+    rays: OnceCell<RayScene>,
+    reach: RefCell<BTreeMap<AgentId, Rc<ReachableArea>>>,
+    /// By noun.
     alike: RefCell<BTreeMap<String, Rc<DistractorSet>>>,
 }
 
@@ -114,6 +58,10 @@ impl<'a> SemanticScene<'a> {
             boxes: OnceCell::new(),
             in_rooms: OnceCell::new(),
             windows: OnceCell::new(),
+            loads: OnceCell::new(),
+            contents: OnceCell::new(),
+            rays: OnceCell::new(),
+            reach: RefCell::default(),
             alike: RefCell::default(),
         }
     }
@@ -224,7 +172,58 @@ impl<'a> SemanticScene<'a> {
         &rooms[room]
     }
 
-    /// Returns the number of windows of a room.
+    /// The storey a thing is on: its room's; outside of rooms, the one that the house's file names while it was not moved, else
+    /// the highest whose lowest room floor lies at most 0.3 m above its foot.
+    pub fn storey_of(&self, term: Term) -> Option<LevelId> {
+        let house = self.house();
+        let (room, foot_m) = match term {
+            Term::Storey(id) => return Some(id),
+            Term::Structure(id) => return Some(house.structure[id].level),
+            Term::Room(id) => return Some(house.rooms[id].level),
+            Term::Part(id) => return self.storey_of(Term::Object(house.parts[id].object)),
+            Term::Object(id) => (self.room_of(id), self.extent(id).bounds.min.y),
+            Term::Agent(id) => (
+                self.room_of_agent(id),
+                self.state.agents.get(id)?.position.y,
+            ),
+        };
+        if let Some(room) = room {
+            return Some(house.rooms[room].level);
+        }
+        if let Term::Object(id) = term
+            && self.at_rest(id)
+        {
+            return Some(house.objects[id].level);
+        }
+        let floors = house
+            .rooms
+            .iter()
+            .filter(|room| room.floor_y <= foot_m + 0.3);
+        let under = floors.map(|room| room.level).max();
+        under.or_else(|| house.levels.ids().next())
+    }
+
+    /// The surfaces of the house in this state, for rays.
+    pub fn rays(&self) -> &RayScene {
+        self.rays.get_or_init(|| {
+            let mut rays = RayScene::new(self.semantics.shared_house().clone());
+            rays.update(self.state);
+            rays
+        })
+    }
+
+    /// Returns where an agent can get to from where it stands; `None` for an unknown agent, or one that stands where nobody can
+    /// walk.
+    pub(crate) fn reachable_area(&self, agent: AgentId) -> Option<Rc<ReachableArea>> {
+        if let Some(known) = self.reach.borrow().get(&agent) {
+            return Some(known.clone());
+        }
+        let area = Rc::new(self.semantics.reachable_area(self.state, agent)?);
+        self.reach.borrow_mut().insert(agent, area.clone());
+        Some(area)
+    }
+
+    /// Returns how many windows a room has.
     pub(crate) fn windows_in(&self, room: RoomId) -> usize {
         let rooms = self.windows.get_or_init(|| {
             let mut rooms = IdVec::filled(0, self.house().rooms.len());
@@ -241,23 +240,6 @@ impl<'a> SemanticScene<'a> {
     /// The things that may be called by the nouns that were looked up so far.
     pub(crate) fn distractor_cache(&self) -> &RefCell<BTreeMap<String, Rc<DistractorSet>>> {
         &self.alike
-    }
-
-    /// The middle of a thing, m; `None` for a room and for an unknown agent.
-    pub fn center(&self, term: Term) -> Option<Vec3> {
-        match term {
-            Term::Object(id) => Some(self.extent(id).bounds.center()),
-            Term::Structure(id) => {
-                let mesh = self.house().structure[id].mesh;
-                Some(self.house().meshes[mesh].bounds().center())
-            }
-            Term::Room(_) => None,
-            Term::Agent(id) => self
-                .state
-                .agents
-                .get(id)
-                .map(|agent| agent.position + Vec3::Y * (agent.body.height_m * 0.5)),
-        }
     }
 }
 

@@ -25,7 +25,11 @@ pub(crate) struct ObjectCache {
     pub(crate) supports: OnceCell<Vec<SurfaceSupport>>,
     /// Its containers, rising.
     pub(crate) around: OnceCell<Vec<ObjectId>>,
-    /// Objects that may be next to it, rising.
+    /// What it hangs on.
+    pub(crate) mount: OnceCell<Option<Term>>,
+    /// What it stands against, rising.
+    pub(crate) against: OnceCell<Vec<ObjectId>>,
+    /// What may be next to it, rising.
     pub(crate) near: OnceCell<Vec<ObjectId>>,
     /// Objects next to it, rising.
     pub(crate) beside: OnceCell<Vec<ObjectId>>,

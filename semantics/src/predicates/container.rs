@@ -1,0 +1,46 @@
+//! What holds things inside.
+
+use crate::scene::SemanticScene;
+use dwell_scene::{ObjectId, ReceptacleKind, interrupt};
+use std::collections::BTreeMap;
+
+/// Returns whether things go into an object.
+pub(super) fn is_container(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
+    let row = scene.facts(object).category;
+    row.is_some_and(|row| row.contains) || spaces(scene, object).next().is_some()
+}
+
+/// The volume of an object's spaces that hold things, m³; of its box where none is marked.
+pub(super) fn space_m3(scene: &SemanticScene<'_>, object: ObjectId) -> f32 {
+    let marked: f32 = spaces(scene, object).sum();
+    if marked > 0.0 {
+        marked
+    } else {
+        scene.extent(object).bounds.volume()
+    }
+}
+
+fn spaces(scene: &SemanticScene<'_>, object: ObjectId) -> impl Iterator<Item = f32> {
+    let spaces = scene.house().receptacles_of(object);
+    let inside = spaces.filter(|space| space.holding == ReceptacleKind::In);
+    inside.map(|space| space.space_in_part.volume())
+}
+
+impl SemanticScene<'_> {
+    /// Returns what is in an object, rising.
+    pub(crate) fn contents_of(&self, container: ObjectId) -> &[ObjectId] {
+        let contents = self.contents.get_or_init(|| {
+            let mut contents: BTreeMap<ObjectId, Vec<ObjectId>> = BTreeMap::new();
+            for thing in self.house().objects.ids() {
+                interrupt::check();
+                for around in self.containers(thing) {
+                    if !self.is_lain_upon(*around) {
+                        contents.entry(*around).or_default().push(thing);
+                    }
+                }
+            }
+            contents
+        });
+        contents.get(&container).map_or(&[], Vec::as_slice)
+    }
+}

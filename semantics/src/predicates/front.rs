@@ -1,0 +1,61 @@
+//! The front that a thing has of its own.
+
+use super::shape::{Shape, shape_of, share_room};
+use crate::scene::{SemanticScene, Term};
+use crate::truth::{Truth, UndecidedReason};
+use dwell_scene::space::forward_from_yaw;
+use glam::{Vec2, Vec3};
+
+/// The least length, seen from above, of a front of unit length: 60 degrees from level.
+const LEVEL: f32 = 0.5;
+/// The largest gap at which something is still at a thing's front, m.
+const REACH_M: f32 = 3.7;
+
+/// Where a thing's own front looks, seen from above: (x, z), unit length; of an agent where it faces. `None` for kinds of
+/// things without a front, and for what does not stand upright.
+pub(super) fn front_of(scene: &SemanticScene<'_>, term: Term) -> Option<Vec2> {
+    let ahead = match term {
+        Term::Agent(id) => forward_from_yaw(scene.state.agents.get(id)?.yaw_rad),
+        Term::Object(id) => {
+            let row = scene.facts(id).category;
+            if !row.is_some_and(|row| row.front) {
+                return None;
+            }
+            let root = scene.house().objects[id].first_part;
+            scene.state.part_pose[root].transform_vector(model_front(scene))
+        }
+        _ => return None,
+    };
+    let level = Vec2::new(ahead.x, ahead.z);
+    (level.length() >= LEVEL).then(|| level.normalize_or_zero())
+}
+
+/// Where models look: +Z as in glTF 2.0, SUNCG, ProcTHOR and our own catalogue; -Z in Habitat.
+fn model_front(scene: &SemanticScene<'_>) -> Vec3 {
+    if scene.house().source.starts_with("habitat") {
+        Vec3::NEG_Z
+    } else {
+        Vec3::Z
+    }
+}
+
+/// Returns whether `a` is before the side of `b` that looks along `side` times its front.
+pub(super) fn is_at_side(scene: &SemanticScene<'_>, a: Term, b: Term, side: f32) -> Truth {
+    let Some(front) = front_of(scene, b) else {
+        return Truth::Undecided(UndecidedReason::NoFront);
+    };
+    let (Some(p), Some(q)) = (shape_of(scene, a), shape_of(scene, b)) else {
+        return Truth::Undecided(UndecidedReason::UnknownTerm);
+    };
+    let before = a != b && is_before(&p, &q, front * side) && share_room(scene, a, b);
+    Truth::from(before && p.outline.distance(&q.outline) <= REACH_M)
+}
+
+/// Returns whether the middle of `p` is before the face of `q` that looks along `out`, within its width and 45 degrees more.
+fn is_before(p: &Shape<'_>, q: &Shape<'_>, out: Vec2) -> bool {
+    let (_, face) = q.outline.range_along(out);
+    let (left, right) = q.outline.range_along(out.perp());
+    let ahead_m = out.dot(p.middle_xz()) - face;
+    let across = out.perp().dot(p.middle_xz());
+    ahead_m > 0.0 && across >= left - ahead_m && across <= right + ahead_m
+}

@@ -1,0 +1,57 @@
+//! In front of, from a viewer.
+
+use super::{Predicate, RelationProperties, THING, view::Sight};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::{Truth, UndecidedReason};
+
+/// The least difference of depth, m.
+const LEAST_M: f32 = 0.1;
+/// The share of the narrower one's width in the picture that both have in common.
+const SHARE: f32 = 1.0 / 3.0;
+
+/// See [`Predicate::definition`]; [`super::at_front_of::AtFrontOf`] is meant from the reference's own front.
+pub(super) struct InFrontOf;
+
+impl Predicate for InFrontOf {
+    fn name(&self) -> &'static str {
+        "in_front_of"
+    }
+
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING, THING]
+    }
+
+    fn definition(&self) -> &'static str {
+        "From the viewer: both middles are in front of it, that of the thing is at least 0.1 m \
+         nearer along where it looks (pitch left aside), and in its picture the two share at \
+         least a third of the narrower one's width. The reference's own front does not matter: \
+         see at_front_of."
+    }
+
+    fn source(&self) -> &'static str {
+        "The relative frame, reflected, of S. C. Levinson, Space in Language and Cognition, \
+         Cambridge 2003; thresholds are chosen here."
+    }
+
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
+            antisymmetric: true,
+            irreflexive: true,
+            converse: Some("behind"),
+            excludes: &["behind"],
+            ..RelationProperties::default()
+        }
+    }
+
+    fn needs_viewer(&self) -> bool {
+        true
+    }
+
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        let sight = |term| Sight::of(scene, viewer?, term);
+        let (Some(p), Some(q)) = (sight(args[0]), sight(args[1])) else {
+            return Truth::Undecided(UndecidedReason::NotInFront);
+        };
+        Truth::from(q.depth_m - p.depth_m >= LEAST_M && p.shared_width(&q) >= SHARE)
+    }
+}

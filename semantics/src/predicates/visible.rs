@@ -1,0 +1,44 @@
+//! Visible.
+
+use super::{OBJECT, Predicate};
+use crate::line_of_sight::is_in_line_of_sight;
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
+
+/// Half the field of view, rad.
+const HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
+
+/// See [`Predicate::definition`]; [`super::visible_from::VisibleFrom`] is meant whichever way somebody looks.
+pub(super) struct Visible;
+
+impl Predicate for Visible {
+    fn name(&self) -> &'static str {
+        "visible"
+    }
+
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[OBJECT]
+    }
+
+    fn definition(&self) -> &'static str {
+        "From the viewer, one of nine rays to the middle of the thing's box and to points 60 % of \
+         the way to its corners meets the thing before anything else, at most 45 degrees from \
+         where the viewer looks."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here; 90 degrees is the field of view of the default camera."
+    }
+
+    fn needs_viewer(&self) -> bool {
+        true
+    }
+
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        let (Term::Object(object), Some(viewer)) = (args[0], viewer) else {
+            return Truth::False;
+        };
+        let seen = is_in_line_of_sight(scene, scene.rays(), viewer, object, HALF_ANGLE_RAD);
+        Truth::from(seen)
+    }
+}

@@ -1,0 +1,176 @@
+//! Three truth values: what cannot be asked of these things here is neither true nor false.
+
+use serde::{Deserialize, Serialize};
+
+/// Why a question has no answer here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum UndecidedReason {
+    /// It is asked of more or fewer things than it relates.
+    WrongCount,
+    /// It says nothing about such a kind of thing.
+    WrongKind,
+    /// The house or the state has no such thing.
+    UnknownTerm,
+    /// It is meant from somebody's place, and nobody is named.
+    NoViewer,
+    /// One of the things is not in front of the viewer.
+    NotInFront,
+    /// Nothing is named to which distances are measured.
+    NoReference,
+    /// The reference has no front of its own, or lies on its side.
+    NoFront,
+    /// It does not open.
+    DoesNotOpen,
+    /// It has no switch.
+    NoSwitch,
+    /// It is no container.
+    NoContainer,
+    /// One of the things has no colour of its own, as glass and mirrors.
+    NoColor,
+    /// One of the things is made of no one substance.
+    NoMaterial,
+    /// The agent stands where nobody can walk.
+    NotOnFloor,
+    /// There are fewer things than the number asked for.
+    TooFew,
+    /// Two things come so close in the order that nobody could tell them apart.
+    TooClose,
+}
+
+impl UndecidedReason {
+    /// The reason as a sentence.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Self::WrongCount => "It is asked of another number of things than it relates.",
+            Self::WrongKind => "It says nothing about such a kind of thing.",
+            Self::UnknownTerm => "There is no such thing here.",
+            Self::NoViewer => "It depends on where somebody looks from, and no viewer is given.",
+            Self::NotInFront => "One of the things is not in front of the viewer.",
+            Self::NoReference => "Nothing is named to which it is compared.",
+            Self::NoFront => "The thing has no front of its own, or it does not stand upright.",
+            Self::DoesNotOpen => "It does not open.",
+            Self::NoSwitch => "It has no switch.",
+            Self::NoContainer => "Nothing goes into it.",
+            Self::NoColor => "One of the things has no colour of its own.",
+            Self::NoMaterial => "One of the things is made of no one substance.",
+            Self::NotOnFloor => "The agent stands where nobody can walk.",
+            Self::TooFew => "There are not so many of them.",
+            Self::TooClose => "Two of them are too close in the order to be told apart.",
+        }
+    }
+}
+
+/// A truth value of strong three-valued logic.
+///
+/// # Source
+/// S. C. Kleene, *Introduction to Metamathematics*, North-Holland 1952, § 64.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Truth {
+    /// It holds.
+    True,
+    /// It does not hold.
+    False,
+    /// It cannot be asked of these things here.
+    Undecided(UndecidedReason),
+}
+
+impl Truth {
+    /// Returns whether it holds.
+    pub fn is_true(self) -> bool {
+        self == Self::True
+    }
+
+    /// Returns whether it is decided and does not hold.
+    pub fn is_false(self) -> bool {
+        self == Self::False
+    }
+
+    /// The value; `None` where it is undecided.
+    pub fn value(self) -> Option<bool> {
+        match self {
+            Self::True => Some(true),
+            Self::False => Some(false),
+            Self::Undecided(_) => None,
+        }
+    }
+
+    /// Returns why it is undecided, if it is.
+    pub fn reason(self) -> Option<UndecidedReason> {
+        match self {
+            Self::Undecided(reason) => Some(reason),
+            _ => None,
+        }
+    }
+
+    /// Both hold: false where one is false, undecided (for the first such reason) where none is false and one undecided.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::False, _) | (_, Self::False) => Self::False,
+            (Self::Undecided(reason), _) | (_, Self::Undecided(reason)) => Self::Undecided(reason),
+            (Self::True, Self::True) => Self::True,
+        }
+    }
+
+    /// One of them holds: true where one is true, undecided where none is true and one undecided.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        !((!self).and(!other))
+    }
+}
+
+impl std::ops::Not for Truth {
+    type Output = Self;
+
+    fn not(self) -> Self {
+        match self {
+            Self::True => Self::False,
+            Self::False => Self::True,
+            Self::Undecided(_) => self,
+        }
+    }
+}
+
+impl From<bool> for Truth {
+    fn from(value: bool) -> Self {
+        if value { Self::True } else { Self::False }
+    }
+}
+
+impl From<Result<bool, UndecidedReason>> for Truth {
+    fn from(value: Result<bool, UndecidedReason>) -> Self {
+        value.map_or_else(Self::Undecided, Self::from)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const U: Truth = Truth::Undecided(UndecidedReason::NoViewer);
+    const V: Truth = Truth::Undecided(UndecidedReason::NoFront);
+
+    /// The tables of Kleene 1952, § 64.
+    #[test]
+    fn the_tables_are_those_of_strong_three_valued_logic() {
+        use Truth::{False, True};
+        let rows = [
+            (True, True, True, True),
+            (True, False, False, True),
+            (True, U, U, True),
+            (False, True, False, True),
+            (False, False, False, False),
+            (False, U, False, U),
+            (U, True, U, True),
+            (U, False, False, U),
+            (U, V, U, U),
+        ];
+        for (a, b, and, or) in rows {
+            assert_eq!((a.and(b), a.or(b)), (and, or), "{a:?} {b:?}");
+        }
+        assert_eq!((!True, !False, !U), (False, True, U));
+        assert_eq!((True.value(), U.value()), (Some(true), None));
+    }
+}
