@@ -20,7 +20,7 @@ _BESIDE = {
     "dwell.navigation": ("Route", "Occupancy"),
     "dwell.places": ("receiver_grid", "random_sources"),
     "dwell.plans": ("floor_plan", "dollhouse", "sheet", "house_sheet", "houses_sheet"),
-    "dwell.relations": ("predicates", "orders", "graph_arrays", "to_networkx"),
+    "dwell.relations": ("orders", "graph_arrays", "to_networkx"),
     "dwell.sound_maps": ("SoundMap",),
     "dwell.sounds": ("signals", "write_wav", "read_wav"),
     "dwell.world": ("actions",),

@@ -8,6 +8,7 @@ pub mod describe;
 mod doorways;
 pub mod english;
 mod error;
+mod extent_cache;
 mod facts;
 pub mod geometry;
 pub mod graph;

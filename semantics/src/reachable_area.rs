@@ -41,12 +41,12 @@ impl ReachableArea {
         })
     }
 
-    /// Returns whether a place in it is so near that a hand reaches the box: at most the reach from the eyes.
-    pub(crate) fn reaches(&self, bounds: &Aabb) -> bool {
+    /// Returns whether from a place in it that `counts` a hand reaches the box: at most the reach from the eyes.
+    pub(crate) fn reaches(&self, bounds: &Aabb, counts: impl Fn(Vec3) -> bool) -> bool {
         self.cells_at(bounds, self.reach_m).any(|cell| {
             let eye = cell + Vec3::Y * self.eye_height_m;
             let nearest = eye.clamp(bounds.min, bounds.max);
-            eye.distance_squared(nearest) <= self.reach_m * self.reach_m
+            eye.distance_squared(nearest) <= self.reach_m * self.reach_m && counts(cell)
         })
     }
 

@@ -2,6 +2,7 @@
 
 use crate::color::{MaterialColors, paints};
 use crate::doorways::RoomDoorway;
+use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
 use crate::geometry::{Extent, Hull};
 use crate::noun_index::NounIndex;
@@ -26,6 +27,7 @@ pub struct Semantics {
     facts: IdVec<ObjectId, ObjectFacts>,
     kinds: NounIndex,
     rest_extents: IdVec<ObjectId, Extent>,
+    moved_extents: ExtentCache,
     structure: IdVec<StructureId, (Aabb, Hull)>,
     structure_boxes: BoxTree,
     rooms: IdVec<RoomId, RoomProperties>,
@@ -79,6 +81,7 @@ impl Semantics {
             doorways,
             facts,
             rest_extents,
+            moved_extents: ExtentCache::new(house),
             paints,
             house: house.clone(),
         }
@@ -131,6 +134,11 @@ impl Semantics {
 
     pub(crate) fn rest_extent(&self, object: ObjectId) -> &Extent {
         &self.rest_extents[object]
+    }
+
+    /// Returns where an object is that does not stand where the house puts it.
+    pub(crate) fn moved_extent(&self, state: &State, object: ObjectId) -> Arc<Extent> {
+        self.moved_extents.get(&self.house, state, object)
     }
 
     pub(crate) fn structure_bounds(&self, piece: StructureId) -> &Aabb {

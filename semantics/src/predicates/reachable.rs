@@ -20,9 +20,10 @@ impl Predicate for Reachable {
 
     fn definition(&self) -> &'static str {
         "From where the agent stands it can walk, with its width and step height and all doors as \
-         they are, to a place from whose eyes the thing's box is at most its reach away (reach_m \
-         of its body, 1.5 m by default); into the room; onto the storey. What it holds it \
-         reaches. Undecided for an agent more than 0.5 m from where anybody can walk."
+         they are, to a place in the thing's room (of a door or a window: in any room) from whose \
+         eyes the thing's box is at most its reach away (reach_m of its body, 1.5 m by default); \
+         into the room; onto the storey. What it holds it reaches. Undecided for an agent more \
+         than 0.5 m from where anybody can walk."
     }
 
     fn source(&self) -> &'static str {
@@ -58,7 +59,14 @@ impl Predicate for Reachable {
             })
         };
         Truth::from(match args[0] {
-            Term::Object(id) => area.reaches(&scene.extent(id).bounds),
+            Term::Object(id) => {
+                let room = scene.room_of(id).filter(|_| !scene.facts(id).is_opening());
+                // Walls between rooms are in the way of hands.
+                area.reaches(&scene.extent(id).bounds, |place| {
+                    let here = || house.room_at(place + glam::Vec3::Y * 0.1);
+                    room.is_none() || here() == room
+                })
+            }
             Term::Room(room) => room_holds(room),
             Term::Storey(storey) => {
                 let mut rooms = house.rooms.iter_ids();

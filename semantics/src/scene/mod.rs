@@ -90,7 +90,7 @@ impl<'a> SemanticScene<'a> {
             return self.semantics.rest_extent(object);
         }
         let extent = &self.known[object].extent;
-        extent.get_or_init(|| Extent::measure(self.house(), self.state, object))
+        extent.get_or_init(|| self.semantics.moved_extent(self.state, object))
     }
 
     /// At most `most` things whose boxes share a point with `reach` and for which `counts` is true, rising; of more than that those

@@ -4,6 +4,7 @@ use super::Term;
 use crate::geometry::Extent;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// Something that carries a thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub struct SurfaceSupport {
 /// The measurements of an object.
 #[derive(Default)]
 pub(crate) struct ObjectCache {
-    pub(super) extent: OnceCell<Extent>,
+    pub(super) extent: OnceCell<Arc<Extent>>,
     pub(super) room: OnceCell<Option<RoomId>>,
     /// Its carriers, the largest share first.
     pub(crate) supports: OnceCell<Vec<SurfaceSupport>>,
