@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from dwell.house import House
     from dwell.listening import Microphone, Receiver, Source
     from dwell.navigation import Navigation, Walker
+    from dwell.relations import predicates
     from dwell.replays import Replay
     from dwell.rewards import Reward
     from dwell.sensors import Sensor
@@ -71,6 +72,7 @@ _LAZY = {
     "Walker": "dwell.navigation",
     "World": "dwell.world",
     "calibrate": "dwell.calibration",
+    "predicates": "dwell.relations",
     "register_envs": "dwell.envs",
     "register_task": "dwell.envs",
 }
@@ -95,6 +97,7 @@ _MODULES = {
     "navigation",
     "places",
     "plans",
+    "relations",
     "replays",
     "rewards",
     "sensors",
@@ -137,6 +140,7 @@ __all__ = [
     "World",
     "__version__",
     "calibrate",
+    "predicates",
     "register_envs",
     "register_task",
 ]

@@ -51,7 +51,8 @@ __all__ = [
     "laws",
     "map",
     "max_text_length",
-    "response_metrics",
+    "predicates_json",
+    "response_metrics_json",
     "seed_range",
     "sensors",
     "settings",
@@ -62,6 +63,13 @@ __all__ = [
     "tasks",
     "texture",
     "vocabulary",
+    "world_attributes",
+    "world_color_names",
+    "world_graph_json",
+    "world_holds",
+    "world_relation_array",
+    "world_relations",
+    "world_select",
 ]
 
 __version__: str
@@ -420,6 +428,35 @@ def calibration_example(folder: str, seed: int = ...) -> str:
 
 def check_measured(measured: str) -> int:
     """Reads and checks a measured bundle; answers how many episodes it has."""
+
+def world_holds(
+    world: World, name: str, things: Sequence[str | int], viewer: object
+) -> tuple[bool | None, str | None]:
+    """Whether a predicate holds, ``None`` where it is undecided, and why it is."""
+
+def world_select(
+    world: World,
+    name: str,
+    things: Sequence[str | int],
+    n: int,
+    reference: str | int | None,
+    viewer: object,
+) -> tuple[str | None, str | None]:
+    """The n-th of things in an order, ``None`` where it is undecided, and why it is."""
+
+def world_relations(
+    world: World, names: Sequence[str] | None, viewer: object
+) -> list[tuple[str, str, str]]: ...
+def world_relation_array(
+    world: World, names: Sequence[str] | None, viewer: object
+) -> NDArray[np.int32]: ...
+def world_attributes(world: World, named: str | int) -> dict[str, object]: ...
+def world_color_names(
+    world: World, named: str | int, vocabulary: int
+) -> list[tuple[str, float]]: ...
+def world_graph_json(world: World, viewer: object) -> str: ...
+def predicates_json() -> str:
+    """``predicates`` and ``orders`` with their definitions: one JSON object."""
 
 def map(
     world: World, level: int, longest_edge: int
