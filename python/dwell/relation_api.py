@@ -52,9 +52,7 @@ class RelationApi(StateApi):
         """
         return self._truth(name, things, viewer)[0]
 
-    def why_undecided(
-        self, name: str, *things: Thing, viewer: Viewer | None = None
-    ) -> str | None:
+    def why_undecided(self, name: str, *things: Thing, viewer: Viewer | None = None) -> str | None:
         """Why :meth:`holds` is ``None``, as a sentence; ``None`` where it is not.
 
         Examples:
@@ -188,9 +186,7 @@ class RelationApi(StateApi):
             instance images, or the number of a room or storey for predicates that lead to those
             alone. :mod:`dwell.relations` makes arrays and NetworkX graphs of it.
         """
-        graph: dict[str, Any] = json.loads(
-            _native.world_graph_json(self._native, _viewer(viewer))
-        )
+        graph: dict[str, Any] = json.loads(_native.world_graph_json(self._native, _viewer(viewer)))
         return graph
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import json
+from typing import Any
+
+import numpy as np
+import pytest
 
 import dwell
 import dwell.relations
-import numpy as np
-import pytest
 
 
 @pytest.fixture(scope="module")
@@ -27,12 +29,8 @@ def test_questions_have_three_answers(world: dwell.World) -> None:
     assert world.holds("on_storey", "radio_1", "storey:0") is True
     assert world.holds("holds", "agent:0", "radio_1") is False
     assert world.holds("reachable", "room:kitchen", "agent:0") in (True, False)
-    door = next(row for row in world.objects() if row["name"].startswith("door"))
-    part = world.house.info() and f"part:{door['name']}/leaf"
-    for row in world.relations(["attached_to"]):
-        assert row[1] == "attached_to"
-    with pytest.raises(dwell.ConfigError, match="leaf|no part"):
-        world.holds("attached_to", f"{part}x", door["name"])
+    with pytest.raises(dwell.ConfigError, match='no part "handle"'):
+        world.holds("attached_to", "part:radio_1/handle", "radio_1")
 
 
 def test_sides_are_meant_from_somebody(world: dwell.World) -> None:
@@ -48,13 +46,10 @@ def test_sides_are_meant_from_somebody(world: dwell.World) -> None:
         right = world.holds("right_of", *reversed(things), viewer=viewer)
         assert left == right
     assert world.holds("left_of", *things, viewer=1) in (True, False, None)
-    for viewer, text in (
-        ({"yaw_deg": 3}, "position"),
-        ({"position": (0, 0, 0), "roll": 1}, "position"),
-        ("me", "viewer"),
-    ):
-        with pytest.raises(dwell.ConfigError, match=text):
-            world.holds("left_of", *things, viewer=viewer)  # type: ignore[arg-type]
+    refused: list[Any] = [{"yaw_deg": 3}, {"position": (0, 0, 0), "roll": 1}, "me"]
+    for other in refused:
+        with pytest.raises(dwell.ConfigError, match="viewer is "):
+            world.holds("left_of", *things, viewer=other)
     with pytest.raises(dwell.UsageError, match="no agent 7"):
         world.holds("left_of", *things, viewer=7)
 

@@ -1,7 +1,5 @@
 //! What a thing is like, all of it as data.
 
-use crate::color::ColorVocabulary;
-use crate::facts::ObjectFacts;
 use crate::scene::{SemanticScene, Term};
 use crate::size::SizeClass;
 use dwell_scene::ObjectId;
@@ -76,29 +74,5 @@ pub fn object_attributes(scene: &SemanticScene<'_>, id: ObjectId) -> ObjectAttri
         openness: scene.state.openness(house, id),
         switched_on: switch.map(|_| scene.state.switched_on[id]),
         held_by: scene.holder(id).map(|agent| agent.0),
-    }
-}
-
-impl ColorVocabulary {
-    /// The vocabulary with so many different colours: 12 plain ones, 16, 139 or 949.
-    pub fn of_size(size: usize) -> Option<Self> {
-        match size {
-            12 => Some(Self::Plain),
-            16 => Some(Self::Basic),
-            139 => Some(Self::Web),
-            949 => Some(Self::Xkcd),
-            _ => None,
-        }
-    }
-}
-
-impl ObjectFacts {
-    /// The words for its colours in `vocabulary` with their shares of what is seen of it, largest first; none for what is mostly
-    /// glass or mirror.
-    pub fn color_shares(&self, vocabulary: ColorVocabulary) -> Vec<(&'static str, f32)> {
-        if self.colors.is_empty() {
-            return Vec::new();
-        }
-        crate::color::color_words(&self.patches, vocabulary)
     }
 }

@@ -170,6 +170,37 @@ mod tests {
         }
     }
 
+    /// Names of synsets are a lemma, a part of speech and a number of a sense.
+    #[test]
+    fn synsets_have_names_of_nouns() {
+        let named = categories()
+            .rows()
+            .iter()
+            .filter(|row| !row.synset.is_empty());
+        let mut count = 0;
+        for row in named {
+            count += 1;
+            let [number, speech, lemma] = row.synset.rsplitn(3, '.').collect::<Vec<_>>()[..] else {
+                panic!("{}: {}", row.name, row.synset);
+            };
+            let plain = lemma.chars().all(|c| c.is_ascii_alphabetic() || c == '_');
+            assert!(
+                plain && !lemma.is_empty() && speech == "n",
+                "{}",
+                row.synset
+            );
+            assert!(
+                number.len() == 2 && number.parse::<u8>().is_ok(),
+                "{}",
+                row.synset
+            );
+        }
+        assert!(count > 150, "{count}");
+        let of = |name: &str| categories().get(name).map(|row| (row.synset, row.front));
+        assert_eq!(of("chair"), Some(("chair.n.01", true)));
+        assert_eq!(of("table"), Some(("table.n.02", false)));
+    }
+
     #[test]
     fn the_articles_of_the_file_are_those_of_the_rule() {
         let text = include_str!("../../assets/categories.csv");

@@ -75,6 +75,15 @@ impl ObjectFacts {
         }
     }
 
+    /// The words for its colours in `vocabulary` with their shares of what is seen of it, largest first; none for what is mostly
+    /// glass or mirror.
+    pub fn color_shares(&self, vocabulary: ColorVocabulary) -> Vec<(&'static str, f32)> {
+        if self.colors.is_empty() {
+            return Vec::new();
+        }
+        color_words(&self.patches, vocabulary)
+    }
+
     /// The words for its colours in `vocabulary`, largest share first.
     pub fn color_words(&self, vocabulary: ColorVocabulary) -> Vec<&'static str> {
         color_words(&self.patches, vocabulary)

@@ -263,6 +263,35 @@ fn what_is_related_is_what_holds() {
     }
 }
 
+/// What is empty contains nothing, whether that is asked of one thing or found for all.
+#[test]
+fn what_is_empty_contains_nothing() {
+    let (house, _) = dwell_houses::open("builtin:apartment").expect("the house opens");
+    let house = Arc::new(house);
+    let semantics = Semantics::new(&house);
+    let (empty, contains) = (find("empty").unwrap(), find("contains").unwrap());
+    let mut counts = [0, 0];
+    for seed in 0..3 {
+        let state = if seed == 0 {
+            State::new(&house)
+        } else {
+            shaken(&house, seed)
+        };
+        let (single, all_at_once) = (semantics.scene(&state), semantics.scene(&state));
+        for term in house.objects.ids().map(Term::Object) {
+            let holding = !contains.related(&all_at_once, term).is_empty();
+            match empty.holds(&single, &[term], None).value() {
+                Some(is_empty) => {
+                    assert_eq!(is_empty, !holding, "{term:?}");
+                    counts[usize::from(holding)] += 1;
+                }
+                None => counts[0] += 1,
+            }
+        }
+    }
+    assert!(counts[0] > 50 && counts[1] > 5, "{counts:?}");
+}
+
 #[test]
 fn every_predicate_says_what_it_is() {
     let mut names: Vec<&str> = all().iter().map(|predicate| predicate.name()).collect();

@@ -128,6 +128,17 @@ fn plain_from_survey(survey: &[NamedColor]) -> Vec<NamedColor> {
 }
 
 impl ColorVocabulary {
+    /// The vocabulary with so many different colours: 12 plain ones, 16, 139 or 949.
+    pub fn of_size(size: usize) -> Option<Self> {
+        match size {
+            12 => Some(Self::Plain),
+            16 => Some(Self::Basic),
+            139 => Some(Self::Web),
+            949 => Some(Self::Xkcd),
+            _ => None,
+        }
+    }
+
     /// All lists, from the shortest.
     pub const ALL: [Self; 4] = [Self::Plain, Self::Basic, Self::Web, Self::Xkcd];
 

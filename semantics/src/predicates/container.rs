@@ -1,5 +1,6 @@
 //! What holds things inside.
 
+use super::inside::{BESIDE_M, is_in};
 use crate::scene::SemanticScene;
 use dwell_scene::{ObjectId, ReceptacleKind, interrupt};
 use std::collections::BTreeMap;
@@ -28,8 +29,17 @@ fn spaces(scene: &SemanticScene<'_>, object: ObjectId) -> impl Iterator<Item = f
 
 impl SemanticScene<'_> {
     /// Returns what is in an object, rising.
-    pub(crate) fn contents_of(&self, container: ObjectId) -> &[ObjectId] {
-        let contents = self.contents.get_or_init(|| {
+    pub(crate) fn contents_of(&self, container: ObjectId) -> Vec<ObjectId> {
+        if let Some(known) = self.contents.get() {
+            return known.get(&container).cloned().unwrap_or_default();
+        }
+        let reach = self.extent(container).bounds.grown(2.0 * BESIDE_M);
+        self.within(&reach, usize::MAX, |thing| is_in(self, thing, container))
+    }
+
+    /// Returns what is in each object, rising: of all at once, each thing looked at once.
+    pub(crate) fn all_contents(&self) -> &BTreeMap<ObjectId, Vec<ObjectId>> {
+        self.contents.get_or_init(|| {
             let mut contents: BTreeMap<ObjectId, Vec<ObjectId>> = BTreeMap::new();
             for thing in self.house().objects.ids() {
                 interrupt::check();
@@ -40,7 +50,6 @@ impl SemanticScene<'_> {
                 }
             }
             contents
-        });
-        contents.get(&container).map_or(&[], Vec::as_slice)
+        })
     }
 }

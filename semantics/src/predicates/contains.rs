@@ -45,7 +45,7 @@ impl Predicate for Contains {
         let Term::Object(container) = subject else {
             return Vec::new();
         };
-        let contents = scene.contents_of(container).iter();
+        let contents = scene.all_contents().get(&container).into_iter().flatten();
         contents.map(|id| Term::Object(*id)).collect()
     }
 }

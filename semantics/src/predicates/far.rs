@@ -1,6 +1,9 @@
 //! Far from.
 
-use super::{Predicate, RelationProperties, THING, shape::gap_m};
+use super::{
+    Predicate, RelationProperties, THING,
+    shape::{bounds_of, gap_m, least_gap_m},
+};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
@@ -39,6 +42,12 @@ impl Predicate for Far {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        Truth::from(gap_m(scene, args[0], args[1]).is_some_and(|gap| gap > FAR_M))
+        let (a, b) = (args[0], args[1]);
+        let boxes = (bounds_of(scene, a), bounds_of(scene, b));
+        let (Some(p), Some(q)) = boxes else {
+            return Truth::False;
+        };
+        let far = least_gap_m(&p, &q) > FAR_M;
+        Truth::from(far || gap_m(scene, a, b).is_some_and(|gap| gap > FAR_M))
     }
 }

@@ -7,8 +7,8 @@ use dwell_scene::{Aabb, House, ObjectId};
 
 /// Largest number of things that a thing is in.
 const MOST_AROUND: usize = 32;
-/// Largest distance beside a container's box of the middle of its content, m: more than its brim.
-const BESIDE_M: f32 = 0.025;
+/// How far beside a container's box the middle of what it contains may lie, m: more than its brim.
+pub(super) const BESIDE_M: f32 = 0.025;
 
 impl SemanticScene<'_> {
     /// Returns what is around the object, rising; at most 32 things. It is in those of them that are not lain upon.
