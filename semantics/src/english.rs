@@ -151,6 +151,13 @@ pub fn ordinal(number: usize) -> String {
         "zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth",
         "ninth", "tenth", "eleventh", "twelfth",
     ];
+    WORDS
+        .get(number)
+        .map_or_else(|| ordinal_digits(number), |word| (*word).to_owned())
+}
+
+/// "1st", "2nd", "113th".
+pub fn ordinal_digits(number: usize) -> String {
     let ending = match (number % 10, number % 100) {
         (_, 11..=13) => "th",
         (1, _) => "st",
@@ -158,9 +165,7 @@ pub fn ordinal(number: usize) -> String {
         (3, _) => "rd",
         _ => "th",
     };
-    WORDS
-        .get(number)
-        .map_or_else(|| format!("{number}{ending}"), |word| (*word).to_owned())
+    format!("{number}{ending}")
 }
 
 /// "a chair", "two chairs".

@@ -19,7 +19,9 @@ fn has_no_usual_size(row: &SemanticCategory) -> bool {
 /// With A the product of the two longest edges of its box (in the axes of its own root part) and A0 that of the usual
 /// specimen in `assets/categories.csv`, z = log2(A / A0): sizes of a kind of thing spread by ratios, and the face that a
 /// thing shows says more than its thickness.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeClass {
     /// z below -3: less than 0.35 times as long and wide.
@@ -36,8 +38,17 @@ pub enum SizeClass {
 }
 
 impl SizeClass {
-    /// The size of a box of `extents_m` relative to the usual one of `row`; [`SizeClass::Normal`] for an unknown category
-    /// and for things that fold, swing or are built in.
+    /// All sizes, the smallest first.
+    pub const ALL: [Self; 5] = [
+        Self::Tiny,
+        Self::Small,
+        Self::Normal,
+        Self::Large,
+        Self::Huge,
+    ];
+
+    /// The size of a box of `extents_m` beside the usual one of `row`; [`SizeClass::Normal`] for an unknown category
+    /// and for what folds, swings or is built in.
     pub fn of(extents_m: Vec3, row: Option<&SemanticCategory>) -> Self {
         let Some(row) = row.filter(|row| !has_no_usual_size(row)) else {
             return Self::Normal;

@@ -1,0 +1,317 @@
+//! Rules as a context-free grammar: one production for each wording and each choice of variants.
+
+use super::GrammarError;
+use super::file::{GrammarFile, RuleFile};
+use super::template::{Piece, Variant, category, read};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A category with a variant, such as `np.several`.
+pub(super) type NonTerminal = usize;
+
+/// A piece of a production.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Symbol {
+    Word(String),
+    /// An argument: its number and what it is.
+    Argument(usize, ArgumentKind),
+}
+
+/// What stands for an argument.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum ArgumentKind {
+    /// Text made by rules.
+    Rules(NonTerminal),
+    /// An entry of a class of the lexicon, in a variant.
+    Entry(String, usize),
+    /// A whole number.
+    Count,
+    /// A place in an order.
+    Ordinal,
+}
+
+/// A wording of a rule in one choice of variants.
+#[derive(Clone, Debug)]
+pub(super) struct Production {
+    pub(super) function: String,
+    pub(super) arity: usize,
+    pub(super) result: NonTerminal,
+    pub(super) symbols: Vec<Symbol>,
+    /// Which of the wordings that are said; `None` for one that is only read.
+    pub(super) wording: Option<usize>,
+    /// Productions of less cost are preferred when a text has several readings.
+    pub(super) cost: u32,
+}
+
+/// The productions with their categories.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Productions {
+    pub(super) all: Vec<Production>,
+    /// By category with variant.
+    pub(super) of_result: Vec<Vec<usize>>,
+    /// By function and category with variant.
+    pub(super) of_function: BTreeMap<(String, NonTerminal), Vec<usize>>,
+    pub(super) numbers: BTreeMap<(String, usize), NonTerminal>,
+}
+
+pub(super) const COUNT: &str = "count";
+pub(super) const ORDINAL: &str = "ordinal";
+
+struct Compiler<'a> {
+    file: &'a GrammarFile,
+    /// The categories that rules make; all others are classes of the lexicon.
+    made: BTreeSet<String>,
+    found: Productions,
+}
+
+impl Compiler<'_> {
+    fn variants(&self, category: &str) -> Vec<String> {
+        let one = || vec![String::new()];
+        self.file
+            .variants
+            .get(category)
+            .cloned()
+            .unwrap_or_else(one)
+    }
+
+    fn unknown(
+        &self,
+        rule: &RuleFile,
+        kind: &'static str,
+        name: &str,
+        known: Vec<String>,
+    ) -> GrammarError {
+        GrammarError::Unknown {
+            rule: rule.function.clone(),
+            kind,
+            name: name.to_owned(),
+            known,
+        }
+    }
+
+    fn number(&mut self, category: &str, variant: usize) -> NonTerminal {
+        let next = self.found.numbers.len();
+        let key = (category.to_owned(), variant);
+        let number = *self.found.numbers.entry(key).or_insert(next);
+        if number == next {
+            self.found.of_result.push(Vec::new());
+        }
+        number
+    }
+
+    /// The variants that the variables of a wording may have together: `Any` of the k-th piece is the variable `"#k"`.
+    fn choices(
+        &self,
+        rule: &RuleFile,
+        pieces: &[Piece],
+        result: &(String, Variant),
+    ) -> Result<Vec<BTreeMap<String, String>>, GrammarError> {
+        let mut choices = vec![BTreeMap::new()];
+        let mut places: Vec<(String, String)> =
+            vec![(name_of(&result.1, usize::MAX), result.0.clone())];
+        for (k, piece) in pieces.iter().enumerate() {
+            match piece {
+                Piece::Word(_) | Piece::Inflected(..) => {}
+                Piece::Argument(at, variant) => {
+                    places.push((name_of(variant, k), rule.arguments[*at].clone()));
+                }
+            }
+        }
+        for (name, category) in places {
+            let variants = self.variants(&category);
+            if variants.contains(&name) {
+                continue;
+            }
+            let mut next = Vec::new();
+            for choice in &choices {
+                match choice.get(&name) {
+                    Some(chosen) if variants.contains(chosen) => next.push(choice.clone()),
+                    Some(_) => {}
+                    None => next.extend(variants.iter().map(|variant| {
+                        let mut more: BTreeMap<String, String> = choice.clone();
+                        more.insert(name.clone(), variant.clone());
+                        more
+                    })),
+                }
+            }
+            choices = next;
+        }
+        if choices.is_empty() {
+            let known = self.variants(&result.0);
+            return Err(self.unknown(rule, "common variant of", &rule.result, known));
+        }
+        Ok(choices)
+    }
+
+    fn variant_of(
+        &self,
+        rule: &RuleFile,
+        category: &str,
+        variant: &Variant,
+        piece: usize,
+        choice: &BTreeMap<String, String>,
+    ) -> Result<usize, GrammarError> {
+        let name = name_of(variant, piece);
+        let name = choice.get(&name).unwrap_or(&name);
+        let variants = self.variants(category);
+        let at = variants.iter().position(|known| known == name);
+        at.ok_or_else(|| self.unknown(rule, "variant", name, variants))
+    }
+
+    fn symbol(
+        &mut self,
+        rule: &RuleFile,
+        (k, piece): (usize, &Piece),
+        choice: &BTreeMap<String, String>,
+    ) -> Result<Symbol, GrammarError> {
+        Ok(match piece {
+            Piece::Word(word) => Symbol::Word(word.clone()),
+            Piece::Inflected(name, variant) => {
+                let Some(forms) = self.file.words.get(name) else {
+                    let known = self.file.words.keys().cloned().collect();
+                    return Err(self.unknown(rule, "word", name, known));
+                };
+                let variant = name_of(variant, k);
+                let variant = choice.get(&variant).unwrap_or(&variant);
+                let word = forms.get(variant).ok_or_else(|| {
+                    let known = forms.keys().cloned().collect();
+                    self.unknown(rule, "variant", variant, known)
+                })?;
+                Symbol::Word(word.to_lowercase())
+            }
+            Piece::Argument(at, variant) => {
+                let category = rule.arguments[*at].clone();
+                let variant = self.variant_of(rule, &category, variant, k, choice)?;
+                let kind = match category.as_str() {
+                    COUNT => ArgumentKind::Count,
+                    ORDINAL => ArgumentKind::Ordinal,
+                    made if self.made.contains(made) => {
+                        ArgumentKind::Rules(self.number(&category, variant))
+                    }
+                    _ => ArgumentKind::Entry(category, variant),
+                };
+                Symbol::Argument(*at, kind)
+            }
+        })
+    }
+
+    fn add(
+        &mut self,
+        rule: &RuleFile,
+        text: &str,
+        wording: Option<usize>,
+    ) -> Result<(), GrammarError> {
+        let pieces = read(text, rule.arguments.len())?;
+        for argument in 0..rule.arguments.len() {
+            let said = |piece: &Piece| matches!(piece, Piece::Argument(at, _) if *at == argument);
+            if !pieces.iter().any(said) {
+                return Err(GrammarError::LeftOut {
+                    rule: rule.function.clone(),
+                    template: text.to_owned(),
+                    argument: argument + 1,
+                });
+            }
+        }
+        let result = category(&rule.result);
+        for choice in self.choices(rule, &pieces, &result)? {
+            let variant = self.variant_of(rule, &result.0, &result.1, usize::MAX, &choice)?;
+            let number = self.number(&result.0, variant);
+            let symbols = pieces.iter().enumerate();
+            let symbols: Result<Vec<Symbol>, GrammarError> = symbols
+                .map(|piece| self.symbol(rule, piece, &choice))
+                .collect();
+            let at = self.found.all.len();
+            self.found.all.push(Production {
+                function: rule.function.clone(),
+                arity: rule.arguments.len(),
+                result: number,
+                symbols: symbols?,
+                wording,
+                cost: rule.cost + u32::from(wording.is_none()),
+            });
+            self.found.of_result[number].push(at);
+            let key = (rule.function.clone(), number);
+            self.found.of_function.entry(key).or_default().push(at);
+        }
+        Ok(())
+    }
+}
+
+/// The name of a variable or variant: of the piece's own where it may be any.
+fn name_of(variant: &Variant, piece: usize) -> String {
+    match variant {
+        Variant::Any => format!("#{piece}"),
+        Variant::Named(name) => name.clone(),
+    }
+}
+
+/// Makes the productions of a file.
+///
+/// # Errors
+/// [`GrammarError`] names the rule and what is wrong in it.
+pub(super) fn compile(file: &GrammarFile) -> Result<Productions, GrammarError> {
+    let mut signatures: BTreeMap<&str, (&[String], String)> = BTreeMap::new();
+    for rule in &file.rule {
+        let own = (rule.arguments.as_slice(), category(&rule.result).0);
+        let known = signatures
+            .entry(&rule.function)
+            .or_insert_with(|| own.clone());
+        if *known != own {
+            return Err(GrammarError::Signature {
+                rule: rule.function.clone(),
+            });
+        }
+    }
+    let made = file.rule.iter().map(|rule| category(&rule.result).0);
+    let mut compiler = Compiler {
+        file,
+        made: made.collect(),
+        found: Productions::default(),
+    };
+    for rule in &file.rule {
+        let first = compiler.wordings_of(&rule.function);
+        for (k, text) in rule.texts.iter().enumerate() {
+            compiler.add(rule, text, Some(first + k))?;
+        }
+        for text in &rule.reads {
+            compiler.add(rule, text, None)?;
+        }
+    }
+    let found = compiler.found;
+    no_circles(&found)?;
+    Ok(found)
+}
+
+impl Compiler<'_> {
+    /// How many wordings a function has so far.
+    fn wordings_of(&self, function: &str) -> usize {
+        let own = self.found.all.iter().filter(|one| one.function == function);
+        let last = own.filter_map(|one| one.wording).max();
+        last.map_or(0, |last| last + 1)
+    }
+}
+
+/// Checks that no category leads to itself by productions of one argument and nothing else, of which no parse would come to an end.
+fn no_circles(found: &Productions) -> Result<(), GrammarError> {
+    let single = |number: NonTerminal| {
+        let own = found.of_result[number].iter().map(|at| &found.all[*at]);
+        own.filter_map(|one| match one.symbols[..] {
+            [Symbol::Argument(_, ArgumentKind::Rules(next))] => Some(next),
+            _ => None,
+        })
+    };
+    for (key, start) in &found.numbers {
+        let mut seen = BTreeSet::new();
+        let mut open: Vec<NonTerminal> = single(*start).collect();
+        while let Some(number) = open.pop() {
+            if number == *start {
+                return Err(GrammarError::Circle {
+                    category: key.0.clone(),
+                });
+            }
+            if seen.insert(number) {
+                open.extend(single(number));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,280 @@
+//! The words of a language: entries by class, each with the forms of its variants.
+
+use super::GrammarError;
+use std::collections::BTreeMap;
+
+/// The words of one entry in one variant: the first is said, all are read.
+pub type WordForms = Vec<Vec<String>>;
+
+/// An entry of the lexicon.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LexiconEntry {
+    /// Its class, such as `"noun"`.
+    pub class: String,
+    /// Its name in the class.
+    pub id: String,
+    /// By variant of its class, in the order in which the grammar names them.
+    pub forms: Vec<WordForms>,
+}
+
+/// Splits text into words as they are compared: lower case, punctuation marks apart, `an` as `a`.
+pub fn words(text: &str) -> Vec<String> {
+    let mut words = split(text);
+    for word in &mut words {
+        *word = compared(word);
+    }
+    words
+}
+
+fn compared(word: &str) -> String {
+    let lower = word.to_lowercase();
+    if lower == "an" { "a".to_owned() } else { lower }
+}
+
+fn split(text: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut word = String::new();
+    let mut flush = |word: &mut String| {
+        if !word.is_empty() {
+            words.push(std::mem::take(word));
+        }
+    };
+    for letter in text.chars() {
+        if letter.is_alphanumeric() || letter == '-' || letter == '\'' {
+            word.push(letter);
+        } else {
+            flush(&mut word);
+            if !letter.is_whitespace() {
+                word.push(letter);
+                flush(&mut word);
+            }
+        }
+    }
+    flush(&mut word);
+    words
+}
+
+/// All entries, and where their words begin.
+#[derive(Clone, Debug, Default)]
+pub struct Lexicon {
+    entries: Vec<LexiconEntry>,
+    by_name: BTreeMap<(String, String), usize>,
+    /// By the first word.
+    by_first_word: BTreeMap<String, Vec<EntryForm>>,
+    counts: Vec<String>,
+    ordinals: Vec<String>,
+}
+
+/// A form of an entry, as it is compared.
+#[derive(Clone, Debug)]
+struct EntryForm {
+    entry: usize,
+    variant: usize,
+    /// 0 for what would be said, 1 for a synonym.
+    cost: u32,
+    words: Vec<String>,
+}
+
+/// A lexicon's entry at a place of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct EntryMatch {
+    pub(super) entry: usize,
+    pub(super) variant: usize,
+    /// Words.
+    pub(super) length: usize,
+    /// 0 for what would be said, 1 for a synonym.
+    pub(super) cost: u32,
+}
+
+impl Lexicon {
+    /// Adds an entry; of one class and name the forms are joined, so that more words are read.
+    pub fn add(&mut self, entry: LexiconEntry) {
+        let key = (entry.class.clone(), entry.id.clone());
+        let at = if let Some(at) = self.by_name.get(&key) {
+            *at
+        } else {
+            self.by_name.insert(key, self.entries.len());
+            self.entries.push(LexiconEntry {
+                forms: vec![Vec::new(); entry.forms.len()],
+                ..entry.clone()
+            });
+            self.entries.len() - 1
+        };
+        for (variant, forms) in entry.forms.into_iter().enumerate() {
+            let Some(known) = self.entries[at].forms.get_mut(variant) else {
+                continue;
+            };
+            for form in forms {
+                if form.is_empty() || known.contains(&form) {
+                    continue;
+                }
+                let words: Vec<String> = form.iter().map(|word| compared(word)).collect();
+                let starts = self.by_first_word.entry(words[0].clone()).or_default();
+                starts.push(EntryForm {
+                    entry: at,
+                    variant,
+                    cost: u32::from(!known.is_empty()),
+                    words,
+                });
+                known.push(form);
+            }
+        }
+    }
+
+    /// Adds an entry by its texts: `forms` by variant, the first text of each is said.
+    pub fn add_texts(&mut self, class: &str, id: &str, forms: &[&[&str]]) {
+        let of = |texts: &&[&str]| texts.iter().map(|text| split(text)).collect();
+        self.add(LexiconEntry {
+            class: class.to_owned(),
+            id: id.to_owned(),
+            forms: forms.iter().map(of).collect(),
+        });
+    }
+
+    /// Sets the words of whole numbers from 0, and of ordinals from 1.
+    ///
+    /// # Errors
+    /// [`GrammarError::Template`] for words of several words.
+    pub fn set_numbers(
+        &mut self,
+        counts: &[String],
+        ordinals: &[String],
+    ) -> Result<(), GrammarError> {
+        for text in counts.iter().chain(ordinals) {
+            if words(text).len() != 1 {
+                return Err(GrammarError::Template {
+                    template: text.clone(),
+                    why: "a number is one word",
+                });
+            }
+        }
+        self.counts = counts.to_vec();
+        self.ordinals = ordinals.to_vec();
+        Ok(())
+    }
+
+    /// The entry of a class and name.
+    pub fn find(&self, class: &str, id: &str) -> Option<&LexiconEntry> {
+        let at = self.by_name.get(&(class.to_owned(), id.to_owned()))?;
+        self.entries.get(*at)
+    }
+
+    pub(super) fn entry(&self, at: usize) -> &LexiconEntry {
+        &self.entries[at]
+    }
+
+    /// Returns whether an entry, a number or an ordinal may have this word in it.
+    pub(super) fn has_word(&self, word: &str) -> bool {
+        self.count_of(word).is_some()
+            || self.ordinal_of(word).is_some()
+            || self.all_words().any(|known| known == word)
+    }
+
+    /// Every word of every entry, as it is compared.
+    pub(super) fn all_words(&self) -> impl Iterator<Item = &str> {
+        let forms = self.by_first_word.values().flatten();
+        forms.flat_map(|form| form.words.iter().map(String::as_str))
+    }
+
+    /// The entries that stand at `at`.
+    pub(super) fn at<'a>(
+        &'a self,
+        text: &'a [String],
+        at: usize,
+    ) -> impl Iterator<Item = EntryMatch> + 'a {
+        let starts = self.by_first_word.get(&text[at]).into_iter().flatten();
+        starts.filter_map(move |form| {
+            let length = form.words.len();
+            (text.get(at..at + length)? == form.words.as_slice()).then_some(EntryMatch {
+                entry: form.entry,
+                variant: form.variant,
+                length,
+                cost: form.cost,
+            })
+        })
+    }
+
+    /// The whole number that a word says: `"two"`, `"12"`.
+    pub(super) fn count_of(&self, word: &str) -> Option<u32> {
+        let spelt = self.counts.iter().position(|known| known == word);
+        let digits = || word.parse().ok().filter(|_| word.len() < 7);
+        spelt.map(|number| number as u32).or_else(digits)
+    }
+
+    /// The place that a word says, from 1: `"second"`, `"12th"`.
+    pub(super) fn ordinal_of(&self, word: &str) -> Option<u32> {
+        let spelt = self.ordinals.iter().position(|known| known == word);
+        let digits = || {
+            let number = word.trim_end_matches(|letter: char| letter.is_ascii_lowercase());
+            let number: u32 = number.parse().ok().filter(|_| word.len() < 9)?;
+            (self.ordinal(number) == word).then_some(number)
+        };
+        spelt.map(|number| number as u32 + 1).or_else(digits)
+    }
+
+    /// The word for a whole number.
+    pub(super) fn count(&self, number: u32) -> String {
+        let spelt = self.counts.get(number as usize);
+        spelt.cloned().unwrap_or_else(|| number.to_string())
+    }
+
+    /// The word for a place, counted from 1; beyond the words that are given digits with the ending that English has.
+    pub(super) fn ordinal(&self, number: u32) -> String {
+        let spelt = (number as usize)
+            .checked_sub(1)
+            .and_then(|at| self.ordinals.get(at));
+        spelt
+            .cloned()
+            .unwrap_or_else(|| crate::english::ordinal_digits(number as usize))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn text_is_words_and_marks() {
+        assert_eq!(
+            words("Is an Oak-table's leg, there?\n"),
+            ["is", "a", "oak-table's", "leg", ",", "there", "?"]
+        );
+        assert!(words(" \t ").is_empty());
+    }
+
+    #[test]
+    fn numbers_are_words_and_digits() {
+        let mut lexicon = Lexicon::default();
+        let texts = |all: &[&str]| {
+            all.iter()
+                .map(|word| (*word).to_owned())
+                .collect::<Vec<_>>()
+        };
+        lexicon
+            .set_numbers(&texts(&["no", "one", "two"]), &texts(&["first", "second"]))
+            .unwrap();
+        for number in 0..130 {
+            assert_eq!(lexicon.count_of(&lexicon.count(number)), Some(number));
+        }
+        for number in 1..130 {
+            assert_eq!(lexicon.ordinal_of(&lexicon.ordinal(number)), Some(number));
+        }
+        assert_eq!(lexicon.ordinal_of("12st"), None);
+        assert_eq!(lexicon.count_of("99999999999"), None);
+        assert!(lexicon.set_numbers(&texts(&["twenty one"]), &[]).is_err());
+    }
+
+    #[test]
+    fn longer_entries_are_found_where_they_begin() {
+        let mut lexicon = Lexicon::default();
+        lexicon.add_texts("noun", "sofa", &[&["sofa", "couch"], &["sofas", "couches"]]);
+        lexicon.add_texts("noun", "sofa bed", &[&["sofa bed"], &["sofa beds"]]);
+        let text = words("the sofa bed");
+        let found: Vec<(&str, usize)> = lexicon
+            .at(&text, 1)
+            .map(|found| (lexicon.entry(found.entry).id.as_str(), found.length))
+            .collect();
+        assert_eq!(found, [("sofa", 1), ("sofa bed", 2)]);
+        assert!(lexicon.has_word("couches") && !lexicon.has_word("chair"));
+    }
+}

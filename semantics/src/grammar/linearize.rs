@@ -1,0 +1,95 @@
+//! Trees to text.
+
+use super::compile::{ArgumentKind, NonTerminal, Symbol};
+use super::{Grammar, Tree};
+
+/// The words of a tree, with those of its parts inside.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Phrase {
+    Word(String),
+    /// A part: the number of the argument that it is, and its words.
+    Part(usize, Vec<Phrase>),
+}
+
+/// Chooses wordings: called with how many there are, it returns a number below that.
+pub type ChooseWording<'a> = &'a mut dyn FnMut(usize) -> usize;
+
+impl Grammar {
+    pub(super) fn phrases(
+        &self,
+        tree: &Tree,
+        category: NonTerminal,
+        choose: ChooseWording<'_>,
+    ) -> Option<Vec<Phrase>> {
+        let Tree::Apply {
+            function,
+            arguments,
+        } = tree
+        else {
+            return None;
+        };
+        let key = (function.clone(), category);
+        let productions = self.productions.of_function.get(&key)?;
+        let productions = || productions.iter().map(|at| &self.productions.all[*at]);
+        let mut wordings: Vec<usize> = productions().filter_map(|one| one.wording).collect();
+        wordings.dedup();
+        if wordings.is_empty() {
+            return None;
+        }
+        let first = choose(wordings.len()).min(wordings.len() - 1);
+        // A wording may lack the variant that an argument needs; then the next is taken.
+        (0..wordings.len()).find_map(|k| {
+            let wording = wordings[(first + k) % wordings.len()];
+            let own = productions().filter(|one| one.wording == Some(wording));
+            own.filter(|one| one.arity == arguments.len())
+                .find_map(|one| self.phrases_of(&one.symbols, arguments, choose))
+        })
+    }
+
+    fn phrases_of(
+        &self,
+        symbols: &[Symbol],
+        arguments: &[Tree],
+        choose: ChooseWording<'_>,
+    ) -> Option<Vec<Phrase>> {
+        let mut phrases = Vec::with_capacity(symbols.len());
+        for symbol in symbols {
+            match symbol {
+                Symbol::Word(word) => phrases.push(Phrase::Word(word.clone())),
+                Symbol::Argument(at, kind) => {
+                    let part = self.part(kind, &arguments[*at], choose)?;
+                    phrases.push(Phrase::Part(*at, part));
+                }
+            }
+        }
+        Some(phrases)
+    }
+
+    fn part(
+        &self,
+        kind: &ArgumentKind,
+        tree: &Tree,
+        choose: ChooseWording<'_>,
+    ) -> Option<Vec<Phrase>> {
+        match (kind, tree) {
+            (ArgumentKind::Rules(category), _) => self.phrases(tree, *category, choose),
+            (ArgumentKind::Entry(class, variant), Tree::Entry { class: own, id })
+                if class == own =>
+            {
+                let form = self.lexicon.find(class, id)?.forms.get(*variant)?.first()?;
+                Some(form.iter().cloned().map(Phrase::Word).collect())
+            }
+            (ArgumentKind::Count, Tree::Number { class, value })
+                if class == super::compile::COUNT =>
+            {
+                Some(vec![Phrase::Word(self.lexicon.count(*value))])
+            }
+            (ArgumentKind::Ordinal, Tree::Number { class, value })
+                if class == super::compile::ORDINAL =>
+            {
+                Some(vec![Phrase::Word(self.lexicon.ordinal(*value))])
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Words that somebody may have meant.
+
+use super::Grammar;
+
+/// The edit distance of two words, in letters that are put in, left out, changed, or swapped with the next.
+///
+/// # Source
+/// F. J. Damerau, Communications of the ACM 7(3), 171 (1964), in the form of optimal string alignment.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let mut before: Vec<usize> = Vec::new();
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let change = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut best = change.min(last[j] + 1).min(row[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(before[j - 2] + 1);
+            }
+            row.push(best);
+        }
+        before = std::mem::replace(&mut last, row);
+    }
+    last[b.len()]
+}
+
+impl Grammar {
+    /// The known words nearest to `word`, at most `most`, none that differs in more than a third of its letters.
+    pub fn nearest_words(&self, word: &str, most: usize) -> Vec<String> {
+        let length = word.chars().count();
+        // Long strings are no words of any language that is read here.
+        if length > 40 {
+            return Vec::new();
+        }
+        let known = self.words.iter().map(String::as_str);
+        let known = known.chain(self.lexicon.all_words());
+        let mut found: Vec<(usize, &str)> = known
+            .filter(|known| known.chars().count().abs_diff(length) <= length.div_ceil(3))
+            .map(|known| (distance(word, known), known))
+            .filter(|(distance, _)| *distance <= length.div_ceil(3))
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        let found = found.into_iter().take(most);
+        found.map(|(_, word)| word.to_owned()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::distance;
+
+    #[test]
+    fn the_distance_counts_slips_of_the_hand() {
+        let cases = [
+            ("", "", 0),
+            ("chair", "chair", 0),
+            ("chiar", "chair", 1),
+            ("char", "chair", 1),
+            ("sofa", "soda", 1),
+            ("ab", "", 2),
+        ];
+        for (a, b, expected) in cases {
+            assert_eq!(
+                (distance(a, b), distance(b, a)),
+                (expected, expected),
+                "{a} {b}"
+            );
+        }
+    }
+}

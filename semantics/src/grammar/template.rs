@@ -1,0 +1,91 @@
+//! Templates of text: words, arguments and words that agree with them.
+
+use super::GrammarError;
+
+/// A variant of a category, such as singular or plural.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Variant {
+    /// Any that the argument has.
+    Any,
+    /// The one called so; else a variable that takes every variant of its category, the same wherever it stands in a rule.
+    Named(String),
+}
+
+/// A piece of a template.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Piece {
+    /// A word as it stands, in lower case, or a punctuation mark.
+    Word(String),
+    /// `[be.n]`: a word of the grammar's own in a variant.
+    Inflected(String, Variant),
+    /// `{1.n}`: an argument, counted from 0 here.
+    Argument(usize, Variant),
+}
+
+/// A category with a variant: `cn.n`.
+pub(super) fn category(text: &str) -> (String, Variant) {
+    match text.split_once('.') {
+        Some((name, variant)) => (name.to_owned(), Variant::Named(variant.to_owned())),
+        None => (text.to_owned(), Variant::Any),
+    }
+}
+
+/// Reads `"{1.n} [be.n] {2} {3} ."`, pieces apart by spaces.
+///
+/// # Errors
+/// [`GrammarError::Template`] for brackets that do not close and arguments that are no number from 1 to `arity`.
+pub(super) fn read(text: &str, arity: usize) -> Result<Vec<Piece>, GrammarError> {
+    let fault = |why: &'static str| GrammarError::Template {
+        template: text.to_owned(),
+        why,
+    };
+    let mut pieces = Vec::new();
+    for part in text.split_whitespace() {
+        let inner = |open: char, close: char| {
+            let rest = part.strip_prefix(open)?;
+            Some(rest.strip_suffix(close))
+        };
+        if let Some(inside) = inner('{', '}') {
+            let inside = inside.ok_or_else(|| fault("{ without }"))?;
+            let (number, variant) = category(inside);
+            let number: usize = number
+                .parse()
+                .ok()
+                .filter(|number| (1..=arity).contains(number))
+                .ok_or_else(|| fault("an argument is a number from 1 to that of the arguments"))?;
+            pieces.push(Piece::Argument(number - 1, variant));
+        } else if let Some(inside) = inner('[', ']') {
+            let inside = inside.ok_or_else(|| fault("[ without ]"))?;
+            let (name, variant) = category(inside);
+            pieces.push(Piece::Inflected(name, variant));
+        } else {
+            pieces.push(Piece::Word(part.to_lowercase()));
+        }
+    }
+    if pieces.is_empty() {
+        return Err(fault("it has no words"));
+    }
+    Ok(pieces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn templates_are_words_arguments_and_words_that_agree() {
+        let named = |name: &str| Variant::Named(name.to_owned());
+        assert_eq!(
+            read("{1.n} [be.n] on {2}", 2).unwrap(),
+            [
+                Piece::Argument(0, named("n")),
+                Piece::Inflected("be".to_owned(), named("n")),
+                Piece::Word("on".to_owned()),
+                Piece::Argument(1, Variant::Any),
+            ]
+        );
+        for wrong in ["{3} x", "{0}", "{x}", "{1", "[be", ""] {
+            assert!(read(wrong, 2).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Phrases as written text: spaces, capitals, articles by sound; and where the parts of a tree stand in it.
+
+use super::linearize::Phrase;
+use crate::english::article;
+
+/// A part of a tree in its text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// The numbers of the arguments that lead to the part, from 0.
+    pub path: Vec<usize>,
+    /// The first byte of the text.
+    pub start: usize,
+    /// The byte behind the last.
+    pub end: usize,
+}
+
+#[derive(Default)]
+struct Writer {
+    words: Vec<String>,
+    /// Words, not bytes.
+    parts: Vec<Span>,
+}
+
+impl Writer {
+    fn add(&mut self, phrases: &[Phrase], path: &mut Vec<usize>) {
+        for phrase in phrases {
+            match phrase {
+                Phrase::Word(word) => self.words.push(word.clone()),
+                Phrase::Part(at, inside) => {
+                    let start = self.words.len();
+                    path.push(*at);
+                    self.add(inside, path);
+                    self.parts.push(Span {
+                        path: path.clone(),
+                        start,
+                        end: self.words.len(),
+                    });
+                    path.pop();
+                }
+            }
+        }
+    }
+}
+
+/// The text of `phrases` as a sentence, and its parts with the bytes that they take.
+pub(super) fn write(phrases: &[Phrase]) -> (String, Vec<Span>) {
+    let mut writer = Writer::default();
+    writer.add(phrases, &mut Vec::new());
+    let Writer { words, mut parts } = writer;
+    let mut text = String::new();
+    let mut places: Vec<(usize, usize)> = Vec::with_capacity(words.len());
+    for (k, word) in words.iter().enumerate() {
+        let is_mark = word.chars().all(|letter| !letter.is_alphanumeric());
+        if k > 0 && !is_mark {
+            text.push(' ');
+        }
+        let start = text.len();
+        let following = words.get(k + 1).map_or("", String::as_str);
+        let word = if word == "a" {
+            article(following)
+        } else {
+            word
+        };
+        if k == 0 {
+            text.push_str(&crate::english::capitalized(word));
+        } else {
+            text.push_str(word);
+        }
+        places.push((start, text.len()));
+    }
+    for part in &mut parts {
+        let first = places.get(part.start).map_or(text.len(), |place| place.0);
+        let last = part.end.checked_sub(1).and_then(|at| places.get(at));
+        (part.start, part.end) = (first, last.map_or(first, |place| place.1));
+    }
+    parts.sort_by(|p, q| p.path.cmp(&q.path));
+    (text, parts)
+}

@@ -1,0 +1,134 @@
+//! The words of English: the file of function words, and the tables of nouns, rooms, colours and materials.
+
+use crate::category::categories;
+use crate::color::ColorVocabulary;
+use crate::english::plural;
+use crate::grammar::{GrammarError, Lexicon};
+use crate::room_kind::room_kinds;
+use dwell_scene::material::library;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+pub(super) const NOUN: &str = "noun";
+pub(super) const GATHERING: &str = "gathering";
+pub(super) const GATHERED: &str = "gathered";
+pub(super) const ROOM: &str = "room";
+pub(super) const RELATION: &str = "relation";
+pub(super) const VERB_RELATION: &str = "verb_relation";
+pub(super) const ADJECTIVE_STATE: &str = "adjective_state";
+pub(super) const ORDER: &str = "order";
+pub(super) const ORDER_TO: &str = "order_to";
+pub(super) const SUPERLATIVE: &str = "superlative";
+pub(super) const VERB: &str = "verb";
+
+/// Words that gather things: colour and substance stand behind their "of".
+const GATHERING_WORDS: [(&str, &str); 8] = [
+    ("bunch", "bunches"),
+    ("pair", "pairs"),
+    ("piece", "pieces"),
+    ("roll", "rolls"),
+    ("row", "rows"),
+    ("set", "sets"),
+    ("sheet", "sheets"),
+    ("stack", "stacks"),
+];
+
+type Texts = BTreeMap<String, Vec<String>>;
+
+/// `lexicon.toml`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LexiconFile {
+    counts: Vec<String>,
+    ordinals: Vec<String>,
+    relation: Texts,
+    verb_relation: BTreeMap<String, [Vec<String>; 2]>,
+    state: Texts,
+    adjective_state: Texts,
+    size: Texts,
+    order: Texts,
+    superlative: Texts,
+    order_to: Texts,
+    verb: Texts,
+}
+
+/// Adds a noun: as one entry, or as what gathers and what is gathered.
+pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
+    if let Some((head, tail)) = one.split_once(" of ")
+        && GATHERING_WORDS.iter().any(|(word, _)| *word == head)
+    {
+        lexicon.add_texts(GATHERED, tail, &[&[tail]]);
+        return;
+    }
+    lexicon.add_texts(NOUN, one, &[&[one], &[several]]);
+}
+
+/// Adds a room's noun; `preposition` is the word that says where one is: "in" or "on".
+pub(super) fn add_room(lexicon: &mut Lexicon, noun: &str, preposition: &str) {
+    if preposition == "on" {
+        lexicon.add_texts(ROOM, noun, &[&[], &[noun]]);
+    } else {
+        lexicon.add_texts(ROOM, noun, &[&[noun], &[]]);
+    }
+}
+
+fn borrowed(texts: &[String]) -> Vec<&str> {
+    texts.iter().map(String::as_str).collect()
+}
+
+/// The words of English.
+///
+/// # Errors
+/// [`GrammarError`] for a file that cannot be read.
+pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
+    let file: LexiconFile =
+        toml::from_str(file).map_err(|error| GrammarError::Syntax(error.to_string()))?;
+    let mut lexicon = Lexicon::default();
+    lexicon.set_numbers(&file.counts, &file.ordinals)?;
+    let single = [
+        (RELATION, &file.relation),
+        ("state", &file.state),
+        (ADJECTIVE_STATE, &file.adjective_state),
+        ("size", &file.size),
+        (ORDER, &file.order),
+        (SUPERLATIVE, &file.superlative),
+        (ORDER_TO, &file.order_to),
+        (VERB, &file.verb),
+    ];
+    for (class, entries) in single {
+        for (id, texts) in entries {
+            lexicon.add_texts(class, id, &[&borrowed(texts)]);
+        }
+    }
+    for (id, [one, several]) in &file.verb_relation {
+        lexicon.add_texts(VERB_RELATION, id, &[&borrowed(one), &borrowed(several)]);
+    }
+    for (one, several) in GATHERING_WORDS {
+        lexicon.add_texts(GATHERING, one, &[&[one], &[several]]);
+    }
+    for row in categories().rows() {
+        add_noun(&mut lexicon, row.singular, row.plural);
+        for synonym in &row.synonyms {
+            add_noun(&mut lexicon, synonym, &plural(synonym));
+        }
+    }
+    for kind in room_kinds().rows() {
+        add_room(&mut lexicon, kind.singular, kind.preposition);
+        for synonym in &kind.synonyms {
+            add_room(&mut lexicon, synonym, kind.preposition);
+        }
+    }
+    for word in ColorVocabulary::Plain.words() {
+        let texts: &[&str] = if word == "gray" {
+            &["gray", "grey"]
+        } else {
+            &[word]
+        };
+        lexicon.add_texts("color", word, &[texts]);
+    }
+    for substance in library().iter() {
+        let word = substance.adjective.as_str();
+        lexicon.add_texts("material", word, &[&[word]]);
+    }
+    Ok(lexicon)
+}

@@ -1,0 +1,257 @@
+//! Text to forms.
+
+use super::{Language, from_tree};
+use crate::form::Form;
+use crate::grammar::words;
+
+/// How long a text may be, bytes.
+pub const MAX_TEXT_BYTES: usize = 4096;
+/// How many words a sentence may have.
+pub const MAX_WORDS: usize = 60;
+/// How many known words are named for one that is unknown.
+const MOST_NEAREST: usize = 5;
+
+/// A word that no text of the language has.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownWord {
+    /// The word, lower case.
+    pub word: String,
+    /// Known words that differ from it in few letters.
+    pub nearest: Vec<String>,
+}
+
+/// Why a text was not read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Unread {
+    /// It has no words.
+    #[error("the text has no words")]
+    Empty,
+    /// It is too long.
+    #[error("the text has {found} {unit}; allowed are {allowed}")]
+    TooLong {
+        /// Bytes or words.
+        unit: &'static str,
+        /// Its length.
+        found: usize,
+        /// The most.
+        allowed: usize,
+    },
+    /// It has words that the language lacks.
+    #[error("unknown {}", list_unknown(.0))]
+    UnknownWords(Vec<UnknownWord>),
+    /// All words are known, their order is not.
+    #[error(
+        "understood as far as {understood:?}; then {found} was found, and one of {expected:?} can follow"
+    )]
+    NotASentence {
+        /// The words that could begin a sentence.
+        understood: String,
+        /// The word behind them, in quotes, or "the end".
+        found: String,
+        /// The words and kinds of words that could follow; at most 12.
+        expected: Vec<String>,
+    },
+}
+
+fn list_unknown(words: &[UnknownWord]) -> String {
+    let one = |word: &UnknownWord| {
+        let nearest = word.nearest.join(", ");
+        if nearest.is_empty() {
+            format!("word {:?}", word.word)
+        } else {
+            format!("word {:?} (known are {nearest})", word.word)
+        }
+    };
+    words.iter().map(one).collect::<Vec<_>>().join("; ")
+}
+
+/// The readings of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reading {
+    /// Forms, the preferred one first; at least one.
+    pub forms: Vec<Form>,
+}
+
+impl Language {
+    /// The forms that `text`, one sentence, may stand for. Case, articles before the only noun, known synonyms and the order of
+    /// adjectives do not matter.
+    ///
+    /// # Errors
+    /// [`Unread`] says which words are unknown, or how far the text was understood. Nothing is guessed.
+    pub fn read(&self, text: &str) -> Result<Reading, Unread> {
+        let too_long = |unit, found, allowed| Unread::TooLong {
+            unit,
+            found,
+            allowed,
+        };
+        if text.len() > MAX_TEXT_BYTES {
+            return Err(too_long("bytes", text.len(), MAX_TEXT_BYTES));
+        }
+        let words = words(text);
+        if words.is_empty() {
+            return Err(Unread::Empty);
+        }
+        if words.len() > MAX_WORDS {
+            return Err(too_long("words", words.len(), MAX_WORDS));
+        }
+        let unknown = words.iter().filter(|word| !self.grammar.has_word(word));
+        let unknown: Vec<UnknownWord> = unknown
+            .map(|word| UnknownWord {
+                word: word.clone(),
+                nearest: self.grammar.nearest_words(word, MOST_NEAREST),
+            })
+            .collect();
+        if !unknown.is_empty() {
+            return Err(Unread::UnknownWords(unknown));
+        }
+        let parse = self.grammar.parse(&words);
+        let mut forms: Vec<Form> = Vec::new();
+        for (_, tree) in &parse.trees {
+            let form = from_tree::form(tree);
+            forms.extend(form.filter(|form| !forms.contains(form)));
+        }
+        if forms.is_empty() {
+            let found = words.get(parse.understood);
+            let mut expected = parse.expected;
+            expected.truncate(12);
+            return Err(Unread::NotASentence {
+                understood: words[..parse.understood.min(words.len())].join(" "),
+                found: found.map_or_else(|| "the end".to_owned(), |word| format!("{word:?}")),
+                expected,
+            });
+        }
+        Ok(Reading { forms })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_is_said_again_as_it_was() {
+        let english = Language::english();
+        for text in [
+            "There is a chair.",
+            "There are two red chairs in the kitchen.",
+            "A cup is on the table.",
+            "The small brown wooden chair is next to the white table.",
+            "The pair of black leather shoes is under the bed.",
+            "The chair is to the left of a table next to the bed.",
+            "The cup on a table that is next to the bed is red.",
+            "The lamp on the table but not next to the bed is closed.",
+            "No chair in the kitchen is red.",
+            "Every chair is wooden and there is no bed.",
+            "A chair is red, a bed is blue and a table is small.",
+            "The cup is not on the table.",
+            "The sofa is between the lamp and the table.",
+            "The second chair from the left is red.",
+            "The largest chair is on the second floor.",
+            "The chair closest to the bed is brown.",
+            "At least three chairs are in the dining room.",
+            "The table supports a lamp.",
+            "Object 12 has the same color as the bed.",
+            "The chair is on the balcony.",
+            "Go to the kitchen.",
+            "Go to the bedroom with a desk.",
+            "Go to the second bedroom.",
+            "Find the red chair in the bedroom.",
+            "Pick up the apple on the table, then put the apple in the bowl.",
+            "If the door is open, close the door.",
+            "Do not open the door.",
+            "Bring the cup to the kitchen.",
+            "Bring the cup to the table.",
+            "Put the apple that supports a cup on the table.",
+            "Is the cup on the table?",
+            "Is there a bed in the bedroom?",
+            "Are there two chairs?",
+            "How many chairs in the kitchen are there?",
+            "What is on the table?",
+            "Which chair is red?",
+            "Which lamp is in the kitchen?",
+            "Where is the cup?",
+            "What color is the sofa?",
+            "What is the sofa made of?",
+            "In which room is the sofa?",
+            "Is the lamp on?",
+        ] {
+            let reading = english
+                .read(text)
+                .unwrap_or_else(|error| panic!("{text}: {error}"));
+            let said = english.say(&reading.forms[0], None);
+            let said = said.unwrap_or_else(|| panic!("{text}: {:?}", reading.forms[0]));
+            assert_eq!(said.text, text, "{:?}", reading.forms);
+        }
+    }
+
+    #[test]
+    fn people_say_the_same_in_other_words() {
+        let english = Language::english();
+        for (other, plain) in [
+            ("there's no such word", ""),
+            ("go to kitchen", "Go to the kitchen."),
+            ("Please walk to the kitchen!", "Go to the kitchen."),
+            (
+                "could you please fetch me the little red cup",
+                "Bring me the small red cup.",
+            ),
+            ("find the couch", "Find the couch."),
+            (
+                "the red small wooden chair is beside the bed",
+                "The small red wooden chair is next to the bed.",
+            ),
+            (
+                "after you go to the kitchen, find the bed",
+                "Go to the kitchen, then find the bed.",
+            ),
+            (
+                "find the bed before you go to the kitchen",
+                "Find the bed, then go to the kitchen.",
+            ),
+            (
+                "how many chairs are in the kitchen",
+                "How many chairs in the kitchen are there?",
+            ),
+            ("all chairs are grey", "Every chair is gray."),
+            (
+                "the cup which is on the table is blue",
+                "The cup on the table is blue.",
+            ),
+        ] {
+            match english.read(other) {
+                Err(_) => assert!(plain.is_empty(), "{other}: {:?}", english.read(other)),
+                Ok(reading) => {
+                    let said = english.say(&reading.forms[0], None).unwrap();
+                    assert_eq!(said.text, plain, "{other}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_read_gets_a_sentence() {
+        let english = Language::english();
+        let told = |text: &str| english.read(text).unwrap_err().to_string();
+        assert_eq!(told("  "), "the text has no words");
+        assert!(
+            told("find the chiar").contains("word \"chiar\" (known are chair"),
+            "{}",
+            told("find the chiar")
+        );
+        assert!(
+            told("the chair on is").starts_with("understood as far as \"the chair on\""),
+            "{}",
+            told("the chair on is")
+        );
+        assert!(
+            told("find").contains("then the end was found"),
+            "{}",
+            told("find")
+        );
+        assert!(told(&"the left of ".repeat(10_000)).contains("allowed are 4096"));
+        assert!(told(&"to the left of ".repeat(20)).contains("allowed are 60"));
+        assert!(told(&"(".repeat(50)).contains("unknown word \"(\""));
+        assert!(told("find the \u{0} cup").contains("unknown word"));
+    }
+}

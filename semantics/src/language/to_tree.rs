@@ -1,0 +1,465 @@
+//! Forms to trees: which functions of the grammar say a form.
+
+use super::lexicon::{
+    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, SUPERLATIVE, VERB,
+    VERB_RELATION,
+};
+use crate::form::{
+    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, Plan, Quality, Quantifier,
+    Question, Selection, Step,
+};
+use crate::grammar::{Lexicon, Tree};
+use crate::size::SizeClass;
+
+/// Makes trees for a lexicon.
+pub(super) struct TreeBuilder<'a> {
+    pub(super) lexicon: &'a Lexicon,
+}
+
+fn count(value: u32) -> Tree {
+    let class = "count".to_owned();
+    Tree::Number { class, value }
+}
+
+fn ordinal(value: u32) -> Tree {
+    let class = "ordinal".to_owned();
+    Tree::Number { class, value }
+}
+
+/// A noun phrase's function and arguments in a landmark have names of their own, with fewer modifiers.
+#[derive(Clone, Copy, PartialEq)]
+enum Position {
+    /// Subject, object, what is asked for.
+    Free,
+    /// Inside another noun phrase.
+    Landmark,
+}
+
+impl TreeBuilder<'_> {
+    fn has(&self, class: &str, id: &str) -> bool {
+        self.lexicon.find(class, id).is_some()
+    }
+
+    fn known(&self, class: &str, id: &str) -> Option<Tree> {
+        self.has(class, id).then(|| Tree::entry(class, id))
+    }
+
+    pub(super) fn form(&self, form: &Form) -> Option<Tree> {
+        Some(match form {
+            Form::Claim(clause) => Tree::apply("claim", [self.clause(clause)?]),
+            Form::Request(plan) => Tree::apply("request", [self.plan(plan)?]),
+            Form::Question(question) => Tree::apply("ask", [self.question(question)?]),
+        })
+    }
+
+    fn clause(&self, clause: &Clause) -> Option<Tree> {
+        Some(match clause {
+            Clause::All(clauses) => {
+                Tree::apply("all_clauses", [self.list(clauses, "and_pair", "and_more")?])
+            }
+            Clause::Any(clauses) => {
+                Tree::apply("any_clause", [self.list(clauses, "or_pair", "or_more")?])
+            }
+            _ => Tree::apply("one_clause", [self.simple(clause)?]),
+        })
+    }
+
+    fn list(&self, clauses: &[Clause], pair: &str, more: &str) -> Option<Tree> {
+        match clauses {
+            [first, last] => Some(Tree::apply(pair, [self.simple(first)?, self.simple(last)?])),
+            [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
+                more,
+                [self.simple(first)?, self.list(rest, pair, more)?],
+            )),
+            _ => None,
+        }
+    }
+
+    fn simple(&self, clause: &Clause) -> Option<Tree> {
+        let (clause, negated) = match clause {
+            Clause::Not(inner) => (&**inner, true),
+            clause => (clause, false),
+        };
+        let function = |plain: &str| format!("{plain}{}", if negated { "_not" } else { "" });
+        Some(match clause {
+            Clause::Holds {
+                predicate,
+                arguments,
+            } => {
+                let (name, trees) = self.relation(predicate, arguments)?;
+                Tree::apply(&function(name), trees)
+            }
+            Clause::Is { subject, quality } => Tree::apply(
+                &function("is"),
+                [
+                    self.phrase(subject, Position::Free)?,
+                    self.quality(quality)?,
+                ],
+            ),
+            Clause::Exists(what) => {
+                Tree::apply(&function("exists"), [self.phrase(what, Position::Free)?])
+            }
+            Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+        })
+    }
+
+    /// The function of a clause with a relation, and its arguments.
+    fn relation(&self, predicate: &str, arguments: &[Phrase]) -> Option<(&'static str, Vec<Tree>)> {
+        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        match (predicate, arguments) {
+            ("in_room" | "on_storey", [subject, place]) => {
+                Some(("holds_place", vec![free(subject)?, self.place(place)?]))
+            }
+            ("between", [subject, a, b]) => {
+                Some(("holds_between", vec![free(subject)?, free(a)?, free(b)?]))
+            }
+            (_, [subject, object]) => {
+                let (subject, object) = (free(subject)?, free(object)?);
+                if let Some(word) = self.known(RELATION, predicate) {
+                    return Some(("holds", vec![subject, word, object]));
+                }
+                let word = self.known(VERB_RELATION, predicate)?;
+                Some(("holds_verb", vec![subject, word, object]))
+            }
+            _ => None,
+        }
+    }
+
+    fn place(&self, place: &Phrase) -> Option<Tree> {
+        match place {
+            Phrase::Storey(number) => Some(Tree::apply("on_storey", [ordinal(*number)])),
+            place => Some(Tree::apply("place", [self.room(place)?])),
+        }
+    }
+
+    fn quality(&self, quality: &Quality) -> Option<Tree> {
+        Some(match quality {
+            Quality::Color(word) => Tree::apply("quality_color", [self.known("color", word)?]),
+            Quality::Material(word) => {
+                Tree::apply("quality_material", [self.known("material", word)?])
+            }
+            Quality::Size(size) => Tree::apply("quality_size", [self.known("size", size.word()?)?]),
+            Quality::State(name) => Tree::apply("quality_state", [self.known("state", name)?]),
+        })
+    }
+
+    fn room(&self, phrase: &Phrase) -> Option<Tree> {
+        let Phrase::Described(description) = phrase else {
+            return None;
+        };
+        let Noun::Room(noun) = &description.noun else {
+            return None;
+        };
+        let is_plain = description.size.is_none()
+            && description.state.is_none()
+            && description.colors.is_empty()
+            && description.material.is_none();
+        if !is_plain {
+            return None;
+        }
+        let kind = Tree::apply("room_kind", [self.known(ROOM, noun)?]);
+        match (
+            &description.selection,
+            &description.modifiers[..],
+            description.quantifier,
+        ) {
+            (Some(selection), [], Quantifier::The) if selection.order == "house" => {
+                Some(Tree::apply("room_nth", [ordinal(selection.place), kind]))
+            }
+            (None, [with], Quantifier::The) if with.predicate == "contains" && !with.negated => {
+                let [thing] = &with.arguments[..] else {
+                    return None;
+                };
+                Some(Tree::apply(
+                    "room_with",
+                    [kind, self.phrase(thing, Position::Landmark)?],
+                ))
+            }
+            (None, [], quantifier) => {
+                let function = match quantifier {
+                    Quantifier::The => "room_the",
+                    Quantifier::Some => "room_a",
+                    Quantifier::Every => "room_every",
+                    Quantifier::No => "room_no",
+                    Quantifier::Exactly(_) | Quantifier::AtLeast(_) => return None,
+                };
+                Some(Tree::apply(function, [kind]))
+            }
+            _ => None,
+        }
+    }
+
+    fn phrase(&self, phrase: &Phrase, position: Position) -> Option<Tree> {
+        let landmark = position == Position::Landmark;
+        Some(match phrase {
+            Phrase::Id(id) => Tree::apply(if landmark { "i_by_id" } else { "by_id" }, [count(*id)]),
+            Phrase::Listener => Tree::apply(if landmark { "i_you" } else { "you" }, []),
+            Phrase::Described(description) if landmark => self.landmark(description)?,
+            Phrase::Described(description) => self.described(description)?,
+            Phrase::Storey(_) | Phrase::Hole => return None,
+        })
+    }
+
+    fn landmark(&self, description: &Description) -> Option<Tree> {
+        let own = self.adjectives(description)?;
+        if description.selection.is_some() {
+            return None;
+        }
+        match (description.quantifier, &description.modifiers[..]) {
+            (Quantifier::The, []) => Some(Tree::apply("i_the", [own])),
+            (Quantifier::Some, []) => Some(Tree::apply("i_some", [own])),
+            (Quantifier::Exactly(number), []) if number != 1 => {
+                Some(Tree::apply("i_exactly", [count(number), own]))
+            }
+            (quantifier @ (Quantifier::The | Quantifier::Some), [only]) if !only.negated => {
+                let [other] = &only.arguments[..] else {
+                    return None;
+                };
+                let function = if quantifier == Quantifier::The {
+                    "i_the_that"
+                } else {
+                    "i_some_that"
+                };
+                let relation = self.known(RELATION, &only.predicate)?;
+                Some(Tree::apply(
+                    function,
+                    [own, relation, self.phrase(other, Position::Landmark)?],
+                ))
+            }
+            _ => None,
+        }
+    }
+
+    fn described(&self, description: &Description) -> Option<Tree> {
+        let noun = self.with_modifiers(description)?;
+        if let Some(selection) = &description.selection {
+            return self.selected(selection, description.quantifier, noun);
+        }
+        Some(match description.quantifier {
+            Quantifier::Some => Tree::apply("some", [noun]),
+            Quantifier::The => Tree::apply("the", [noun]),
+            Quantifier::Every => Tree::apply("every", [noun]),
+            Quantifier::No => Tree::apply("no", [noun]),
+            Quantifier::Exactly(1) => Tree::apply("exactly_one", [noun]),
+            Quantifier::Exactly(number) => Tree::apply("exactly", [count(number), noun]),
+            Quantifier::AtLeast(1) => Tree::apply("at_least_one", [noun]),
+            Quantifier::AtLeast(number) => Tree::apply("at_least", [count(number), noun]),
+        })
+    }
+
+    fn selected(&self, selection: &Selection, quantifier: Quantifier, noun: Tree) -> Option<Tree> {
+        if quantifier != Quantifier::The {
+            return None;
+        }
+        let Selection {
+            order,
+            place,
+            reference,
+        } = selection;
+        if let Some(reference) = reference {
+            let reference = self.phrase(reference, Position::Landmark)?;
+            let order = self.known(ORDER_TO, order)?;
+            return (*place == 1).then(|| Tree::apply("selected_to", [noun, order, reference]));
+        }
+        if let Some(order) = self.known(ORDER, order) {
+            return Some(Tree::apply("nth", [ordinal(*place), noun, order]));
+        }
+        let order = self.known(SUPERLATIVE, order)?;
+        (*place == 1).then(|| Tree::apply("superlative", [order, noun]))
+    }
+
+    /// The noun with all that is said of it, affirmed modifiers first.
+    fn with_modifiers(&self, description: &Description) -> Option<Tree> {
+        let mut noun = Tree::apply("plain", [self.adjectives(description)?]);
+        for modifier in &description.modifiers {
+            let function = if modifier.negated { "but_not" } else { "with" };
+            noun = Tree::apply(function, [noun, self.modifier(modifier)?]);
+        }
+        Some(noun)
+    }
+
+    fn modifier(&self, modifier: &Modifier) -> Option<Tree> {
+        let landmark = |phrase: &Phrase| self.phrase(phrase, Position::Landmark);
+        match (modifier.predicate.as_str(), &modifier.arguments[..]) {
+            ("in_room" | "on_storey", [place]) => {
+                Some(Tree::apply("modifier_place", [self.place(place)?]))
+            }
+            ("between", [a, b]) => Some(Tree::apply(
+                "modifier_between",
+                [landmark(a)?, landmark(b)?],
+            )),
+            (predicate, [other]) => {
+                if let Some(word) = self.known(RELATION, predicate) {
+                    return Some(Tree::apply("modifier", [word, landmark(other)?]));
+                }
+                let word = self.known(VERB_RELATION, predicate)?;
+                Some(Tree::apply("modifier_verb", [word, landmark(other)?]))
+            }
+            _ => None,
+        }
+    }
+
+    /// Size, state, colours, material, noun, in this order; of what is gathered ("pair of black shoes") those of look before the
+    /// last word.
+    fn adjectives(&self, description: &Description) -> Option<Tree> {
+        let Noun::Object(noun) = &description.noun else {
+            return None;
+        };
+        let split = noun.split_once(" of ").filter(|(head, tail)| {
+            self.has(GATHERING, head) && self.has(GATHERED, tail) && !self.has(NOUN, noun)
+        });
+        let (mut tree, ending) = match split {
+            Some((_, tail)) => (Tree::apply("tail", [Tree::entry(GATHERED, tail)]), "_tail"),
+            None => (Tree::apply("noun", [self.known(NOUN, noun)?]), ""),
+        };
+        let named = |plain: &str| format!("{plain}{ending}");
+        if let Some(word) = &description.material {
+            tree = Tree::apply(&named("material"), [self.known("material", word)?, tree]);
+        }
+        let color = |word: &String| self.known("color", word);
+        tree = match &description.colors[..] {
+            [] => tree,
+            [one] => Tree::apply(&named("color"), [color(one)?, tree]),
+            [one, two] => Tree::apply(&named("two_colors"), [color(one)?, color(two)?, tree]),
+            _ => return None,
+        };
+        if let Some((head, _)) = split {
+            tree = Tree::apply("gathered", [Tree::entry(GATHERING, head), tree]);
+        }
+        if let Some(state) = &description.state {
+            tree = Tree::apply("state", [self.known(ADJECTIVE_STATE, state)?, tree]);
+        }
+        if let Some(word) = description.size.map(SizeClass::word) {
+            tree = Tree::apply("size", [self.known("size", word?)?, tree]);
+        }
+        Some(tree)
+    }
+
+    fn plan(&self, plan: &Plan) -> Option<Tree> {
+        match plan {
+            Plan::Sequence(steps) => match &steps[..] {
+                [] => None,
+                [only] => Some(Tree::apply("one_step", [self.step(only)?])),
+                [first, rest @ ..] => {
+                    let rest = self.plan(&Plan::Sequence(rest.to_vec()))?;
+                    Some(Tree::apply("then", [self.step(first)?, rest]))
+                }
+            },
+            Plan::If(clause, step) => {
+                Some(Tree::apply("if", [self.simple(clause)?, self.step(step)?]))
+            }
+        }
+    }
+
+    fn step(&self, step: &Step) -> Option<Tree> {
+        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        Some(match step {
+            Step::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
+            Step::Do { verb, object } => {
+                Tree::apply("do", [self.known(VERB, verb)?, free(object)?])
+            }
+            Step::DoNot { verb, object } => {
+                Tree::apply("do_not", [self.known(VERB, verb)?, free(object)?])
+            }
+            Step::Put {
+                object,
+                predicate,
+                to,
+            } if predicate == "in_room" => {
+                Tree::apply("put_in_place", [free(object)?, self.place(to)?])
+            }
+            Step::Put {
+                object,
+                predicate,
+                to,
+            } => Tree::apply(
+                "put",
+                [free(object)?, self.known(RELATION, predicate)?, free(to)?],
+            ),
+            Step::Bring { object, to } => match self.room(to) {
+                Some(room) => Tree::apply("bring_to_place", [free(object)?, room]),
+                None => Tree::apply("bring", [free(object)?, free(to)?]),
+            },
+        })
+    }
+
+    fn question(&self, question: &Question) -> Option<Tree> {
+        Some(match question {
+            Question::Whether(clause) => self.whether(clause)?,
+            Question::HowMany(what) => Tree::apply("how_many", [self.with_modifiers(what)?]),
+            Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
+            Question::Attribute { kind, of } => {
+                let function = match kind {
+                    AttributeKind::Color => "what_color",
+                    AttributeKind::Material => "what_material",
+                    AttributeKind::Place => "where",
+                    AttributeKind::Room => "which_room",
+                };
+                Tree::apply(function, [self.phrase(of, Position::Free)?])
+            }
+        })
+    }
+
+    fn whether(&self, clause: &Clause) -> Option<Tree> {
+        let (function, arguments) = match clause {
+            Clause::Holds {
+                predicate,
+                arguments,
+            } => {
+                let (name, arguments) = self.relation(predicate, arguments)?;
+                let function = match name {
+                    "holds" => "whether_holds",
+                    "holds_place" => "whether_place",
+                    _ => return None,
+                };
+                (function, arguments)
+            }
+            Clause::Is { subject, quality } => {
+                let subject = self.phrase(subject, Position::Free)?;
+                ("whether_is", vec![subject, self.quality(quality)?])
+            }
+            Clause::Exists(what) => ("whether_exists", vec![self.phrase(what, Position::Free)?]),
+            Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+        };
+        Some(Tree::apply(function, arguments))
+    }
+
+    fn which(&self, kind: Option<&Description>, clause: &Clause) -> Option<Tree> {
+        let kind = match kind {
+            Some(kind) if kind.modifiers.is_empty() && kind.selection.is_none() => {
+                Some(self.adjectives(kind)?)
+            }
+            Some(_) => return None,
+            None => None,
+        };
+        match (kind, clause) {
+            (
+                kind,
+                Clause::Holds {
+                    predicate,
+                    arguments,
+                },
+            ) => {
+                let [Phrase::Hole, object] = &arguments[..] else {
+                    return None;
+                };
+                if let Some(word) = self.known(RELATION, predicate) {
+                    let object = self.phrase(object, Position::Free)?;
+                    return Some(match kind {
+                        Some(kind) => Tree::apply("which_holds", [kind, word, object]),
+                        None => Tree::apply("what_holds", [word, object]),
+                    });
+                }
+                Some(Tree::apply("which_place", [kind?, self.place(object)?]))
+            }
+            (
+                Some(kind),
+                Clause::Is {
+                    subject: Phrase::Hole,
+                    quality,
+                },
+            ) => Some(Tree::apply("which_is", [kind, self.quality(quality)?])),
+            _ => None,
+        }
+    }
+}
