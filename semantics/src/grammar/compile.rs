@@ -27,6 +27,8 @@ pub(super) enum ArgumentKind {
     Count,
     /// A place in an order.
     Ordinal,
+    /// A number that names something: digits.
+    Digits,
 }
 
 /// A wording of a rule in one choice of variants.
@@ -55,6 +57,7 @@ pub(super) struct Productions {
 
 pub(super) const COUNT: &str = "count";
 pub(super) const ORDINAL: &str = "ordinal";
+pub(super) const DIGITS: &str = "digits";
 
 struct Compiler<'a> {
     file: &'a GrammarFile,
@@ -184,6 +187,7 @@ impl Compiler<'_> {
                 let kind = match category.as_str() {
                     COUNT => ArgumentKind::Count,
                     ORDINAL => ArgumentKind::Ordinal,
+                    DIGITS => ArgumentKind::Digits,
                     made if self.made.contains(made) => {
                         ArgumentKind::Rules(self.number(&category, variant))
                     }

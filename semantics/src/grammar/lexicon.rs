@@ -165,7 +165,8 @@ impl Lexicon {
 
     /// Returns whether an entry, a number or an ordinal may have this word in it.
     pub(super) fn has_word(&self, word: &str) -> bool {
-        self.count_of(word).is_some()
+        word.bytes().all(|letter| letter.is_ascii_digit())
+            || self.count_of(word).is_some()
             || self.ordinal_of(word).is_some()
             || self.all_words().any(|known| known == word)
     }

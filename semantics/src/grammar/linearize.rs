@@ -84,6 +84,11 @@ impl Grammar {
             {
                 Some(vec![Phrase::Word(self.lexicon.count(*value))])
             }
+            (ArgumentKind::Digits, Tree::Number { class, value })
+                if class == super::compile::DIGITS =>
+            {
+                Some(vec![Phrase::Word(value.to_string())])
+            }
             (ArgumentKind::Ordinal, Tree::Number { class, value })
                 if class == super::compile::ORDINAL =>
             {

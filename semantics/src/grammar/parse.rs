@@ -127,6 +127,11 @@ impl Parser<'_> {
                     self.advance(item, at, at + 1, Child::Number(number));
                 }
             }
+            Symbol::Argument(_, ArgumentKind::Digits) => {
+                if let Some(number) = word.parse().ok().filter(|_| word.len() < 10) {
+                    self.advance(item, at, at + 1, Child::Number(number));
+                }
+            }
             Symbol::Argument(_, ArgumentKind::Ordinal) => {
                 if let Some(number) = lexicon.ordinal_of(word) {
                     self.advance(item, at, at + 1, Child::Number(number));
@@ -253,6 +258,7 @@ impl Parser<'_> {
             Child::Number(value) => {
                 let class = match symbol {
                     Symbol::Argument(_, ArgumentKind::Ordinal) => super::compile::ORDINAL,
+                    Symbol::Argument(_, ArgumentKind::Digits) => super::compile::DIGITS,
                     _ => super::compile::COUNT,
                 };
                 let class = class.to_owned();
@@ -276,6 +282,7 @@ impl Parser<'_> {
                     expected.push(format!("<{class}>"));
                 }
                 Some(Symbol::Argument(_, ArgumentKind::Count)) => expected.push("<count>".into()),
+                Some(Symbol::Argument(_, ArgumentKind::Digits)) => expected.push("<digits>".into()),
                 Some(Symbol::Argument(_, ArgumentKind::Ordinal)) => {
                     expected.push("<ordinal>".into());
                 }

@@ -20,7 +20,7 @@ pub enum Tree {
     },
     /// A whole number of a class that counts or orders.
     Number {
-        /// `"count"` or `"ordinal"`.
+        /// `"count"`, `"ordinal"` or `"digits"`.
         class: String,
         /// The number.
         value: u32,

@@ -34,6 +34,12 @@ impl Language {
         })
     }
 
+    /// A language of a grammar whose functions are those of `assets/language/en/grammar.toml`; of those it lacks nothing is said
+    /// or read.
+    pub fn of(grammar: Grammar) -> Self {
+        Self { grammar }
+    }
+
     /// English as it ships with the engine.
     pub fn english() -> &'static Self {
         static ENGLISH: LazyLock<Language> = LazyLock::new(|| {

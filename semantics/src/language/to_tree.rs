@@ -21,6 +21,11 @@ fn count(value: u32) -> Tree {
     Tree::Number { class, value }
 }
 
+fn digits(value: u32) -> Tree {
+    let class = "digits".to_owned();
+    Tree::Number { class, value }
+}
+
 fn ordinal(value: u32) -> Tree {
     let class = "ordinal".to_owned();
     Tree::Number { class, value }
@@ -192,7 +197,9 @@ impl TreeBuilder<'_> {
     fn phrase(&self, phrase: &Phrase, position: Position) -> Option<Tree> {
         let landmark = position == Position::Landmark;
         Some(match phrase {
-            Phrase::Id(id) => Tree::apply(if landmark { "i_by_id" } else { "by_id" }, [count(*id)]),
+            Phrase::Id(id) => {
+                Tree::apply(if landmark { "i_by_id" } else { "by_id" }, [digits(*id)])
+            }
             Phrase::Listener => Tree::apply(if landmark { "i_you" } else { "you" }, []),
             Phrase::Described(description) if landmark => self.landmark(description)?,
             Phrase::Described(description) => self.described(description)?,

@@ -1,0 +1,144 @@
+//! The things that descriptions fit.
+
+use super::Checker;
+use super::witness::Judged;
+use crate::form::{Description, Modifier, Noun, Phrase, Quality, Selection};
+use crate::predicates;
+use crate::scene::Term;
+use crate::selections;
+use crate::truth::{Truth, UndecidedReason};
+use std::rc::Rc;
+
+/// The things that a description fits.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Extension {
+    /// Those that it fits, rising.
+    pub(super) fits: Vec<Term>,
+    /// Those of which it cannot be decided, rising.
+    pub(super) open: Vec<(Term, UndecidedReason)>,
+    /// Why it means nothing here.
+    pub(super) fault: Option<UndecidedReason>,
+}
+
+impl Checker<'_> {
+    pub(super) fn extension(&self, description: &Description) -> Rc<Extension> {
+        let key = description.clone().with_quantifier(crate::form::Quantifier::Some);
+        if let Some(known) = self.extensions.borrow().get(&key) {
+            return known.clone();
+        }
+        let found = Rc::new(self.find(description));
+        self.extensions.borrow_mut().insert(key, found.clone());
+        found
+    }
+
+    fn find(&self, description: &Description) -> Extension {
+        let mut found = Extension::default();
+        for term in self.called(&description.noun) {
+            match self.fits(description, term) {
+                Truth::True => found.fits.push(term),
+                Truth::False => {}
+                Truth::Undecided(reason) => found.open.push((term, reason)),
+            }
+        }
+        if let Some(selection) = &description.selection {
+            return self.selected(selection, &found.fits);
+        }
+        found
+    }
+
+    /// The things that may be called by a noun.
+    fn called(&self, noun: &Noun) -> Vec<Term> {
+        match noun {
+            Noun::Object(noun) => {
+                let kinds = self.scene.distractors(noun);
+                kinds.things.iter().map(|id| Term::Object(*id)).collect()
+            }
+            Noun::Room(noun) => {
+                let rooms = self.scene.house().rooms.ids();
+                let rooms = rooms.filter(|id| self.scene.semantics.room(*id).is_called(noun));
+                rooms.map(Term::Room).collect()
+            }
+        }
+    }
+
+    fn fits(&self, description: &Description, term: Term) -> Truth {
+        let quality = |quality: Quality| self.has_quality(term, &quality).truth;
+        let mut truth = Truth::True;
+        let color = description.colors.iter().cloned().map(Quality::Color);
+        let material = description.material.iter().cloned().map(Quality::Material);
+        let size = description.size.map(Quality::Size);
+        let state = description.state.iter().cloned().map(Quality::State);
+        for own in color.chain(material).chain(size).chain(state) {
+            truth = truth.and(quality(own));
+        }
+        for modifier in &description.modifiers {
+            if truth.is_false() {
+                break;
+            }
+            truth = truth.and(self.modified(modifier, term));
+        }
+        truth
+    }
+
+    fn modified(&self, modifier: &Modifier, term: Term) -> Truth {
+        let Ok(predicate) = predicates::find(&modifier.predicate) else {
+            return Truth::Undecided(UndecidedReason::UnknownPredicate);
+        };
+        let body = |terms: &[Term]| {
+            let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
+            Judged::plain(truth)
+        };
+        let truth = self.quantify(&modifier.arguments, &mut vec![term], &body).truth;
+        if modifier.negated { !truth } else { truth }
+    }
+
+    fn selected(&self, selection: &Selection, fits: &[Term]) -> Extension {
+        let fault = |reason| Extension {
+            fault: Some(reason),
+            ..Extension::default()
+        };
+        let one = |term| Extension {
+            fits: vec![term],
+            ..Extension::default()
+        };
+        let place = selection.place as usize;
+        if selection.order == "house" {
+            // The order of the house's own list, as in "second bedroom".
+            return place
+                .checked_sub(1)
+                .and_then(|at| fits.get(at))
+                .map_or_else(Extension::default, |term| one(*term));
+        }
+        let Ok(order) = selections::find(&selection.order) else {
+            return fault(UndecidedReason::UnknownPredicate);
+        };
+        let reference = match selection.reference.as_deref() {
+            None => None,
+            Some(phrase) => match self.only(phrase) {
+                Ok(term) => Some(term),
+                Err(reason) => return fault(reason),
+            },
+        };
+        let viewer = self.listener.viewer.as_ref();
+        match order.select(self.scene, fits, place, reference, viewer) {
+            Ok(term) => one(term),
+            Err(UndecidedReason::TooFew) => Extension::default(),
+            Err(reason) => fault(reason),
+        }
+    }
+
+    /// The one thing that a phrase means.
+    fn only(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
+        if let Some(named) = self.named(phrase) {
+            return named;
+        }
+        let Phrase::Described(description) = phrase else {
+            return Err(UndecidedReason::UnknownTerm);
+        };
+        match self.extension(description).fits[..] {
+            [only] => Ok(only),
+            [] => Err(UndecidedReason::UnknownTerm),
+            _ => Err(UndecidedReason::SeveralFit),
+        }
+    }
+}

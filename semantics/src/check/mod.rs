@@ -1,0 +1,169 @@
+//! Forms against a scene: true, false or undecided, with what decided.
+//!
+//! Truth values are those of strong three-valued logic ([`Truth`]). A definite description that several things fit is decided
+//! where all of them would decide alike, and undecided else (supervaluation); where nothing fits, a claim about it is false.
+//!
+//! # Source
+//! B. Russell, "On denoting", Mind 14, 479 (1905), for descriptions that nothing fits; B. van Fraassen, "Singular terms,
+//! truth-value gaps, and free logic", Journal of Philosophy 63(17), 481 (1966), for those that several things fit; J. Barwise and
+//! R. Cooper, "Generalized quantifiers and natural language", Linguistics and Philosophy 4, 159 (1981), for quantifiers.
+
+mod answer;
+mod description;
+mod quantify;
+mod witness;
+
+pub use answer::Answer;
+pub use witness::Witness;
+
+use crate::form::{Clause, Description, Phrase, Quality};
+use crate::predicates;
+use crate::scene::{SemanticScene, Term, Viewer};
+use crate::truth::{Truth, UndecidedReason};
+use description::Extension;
+use dwell_scene::interrupt;
+use dwell_scene::AgentId;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use witness::Judged;
+
+/// Who is spoken to, and from where left and right are meant.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Listener {
+    /// From where left, right, in front and behind are meant.
+    pub viewer: Option<Viewer>,
+    /// Who "you" is.
+    pub agent: Option<AgentId>,
+}
+
+impl Listener {
+    /// An agent with its own eyes.
+    pub fn agent(scene: &SemanticScene<'_>, agent: AgentId) -> Self {
+        Self {
+            viewer: Viewer::of_agent(scene.state, agent),
+            agent: Some(agent),
+        }
+    }
+}
+
+/// A clause checked: its truth value, and the facts that decided it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The value.
+    pub truth: Truth,
+    /// Facts that suffice for it: those of one example where one is enough, of one counterexample where one refutes; at most 16.
+    pub witnesses: Vec<Witness>,
+}
+
+/// Checks forms of one scene for one listener. What descriptions fit is found once for each description.
+pub struct Checker<'a> {
+    scene: &'a SemanticScene<'a>,
+    listener: Listener,
+    extensions: RefCell<BTreeMap<Description, Rc<Extension>>>,
+}
+
+impl<'a> Checker<'a> {
+    /// A checker of a scene.
+    pub fn new(scene: &'a SemanticScene<'a>, listener: Listener) -> Self {
+        Self {
+            scene,
+            listener,
+            extensions: RefCell::default(),
+        }
+    }
+
+    /// Returns whether a clause is true.
+    pub fn check(&self, clause: &Clause) -> Verdict {
+        let Judged { truth, witnesses } = self.judge(clause);
+        Verdict { truth, witnesses }
+    }
+
+    /// The things that fit a description, its quantifier left aside; rising. What it cannot be decided of is left out.
+    pub fn fitting(&self, description: &Description) -> Vec<Term> {
+        self.extension(description).fits.clone()
+    }
+
+    fn judge(&self, clause: &Clause) -> Judged {
+        interrupt::check();
+        match clause {
+            Clause::Holds {
+                predicate,
+                arguments,
+            } => match predicates::find(predicate) {
+                Ok(found) => {
+                    let body = |terms: &[Term]| {
+                        let viewer = self.listener.viewer.as_ref();
+                        let truth = found.holds(self.scene, terms, viewer);
+                        Judged::fact(predicate, terms, truth)
+                    };
+                    self.quantify(arguments, &mut Vec::new(), &body)
+                }
+                Err(_) => Judged::undecided(UndecidedReason::UnknownPredicate),
+            },
+            Clause::Is { subject, quality } => {
+                let body = |terms: &[Term]| self.has_quality(terms[0], quality);
+                self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body)
+            }
+            Clause::Exists(what) => {
+                let body = |terms: &[Term]| Judged::fact("exists", terms, Truth::True);
+                self.quantify(std::slice::from_ref(what), &mut Vec::new(), &body)
+            }
+            Clause::Not(inner) => self.judge(inner).negated(),
+            Clause::All(clauses) => Judged::all(clauses.iter().map(|clause| self.judge(clause))),
+            Clause::Any(clauses) => Judged::any(clauses.iter().map(|clause| self.judge(clause))),
+        }
+    }
+
+    fn has_quality(&self, term: Term, quality: &Quality) -> Judged {
+        let Some(object) = term.object() else {
+            return Judged::undecided(UndecidedReason::WrongKind);
+        };
+        let facts = self.scene.facts(object);
+        let (name, truth) = match quality {
+            Quality::Color(word) if facts.colors.is_empty() => {
+                (word.as_str(), Truth::Undecided(UndecidedReason::NoColor))
+            }
+            Quality::Color(word) => (
+                word.as_str(),
+                facts.colors.iter().any(|(known, _)| known == word).into(),
+            ),
+            Quality::Material(word) => {
+                (word.as_str(), facts.adjectives().any(|own| own == word).into())
+            }
+            Quality::Size(size) => (size.word().unwrap_or("normal"), (facts.size == *size).into()),
+            Quality::State(name) => (name.as_str(), self.state(name, term)),
+        };
+        Judged::fact(name, &[term], truth)
+    }
+
+    fn state(&self, name: &str, term: Term) -> Truth {
+        predicates::find(name).map_or(
+            Truth::Undecided(UndecidedReason::UnknownPredicate),
+            |found| found.holds(self.scene, &[term], self.listener.viewer.as_ref()),
+        )
+    }
+
+    /// The thing that a phrase names, where it names one by itself.
+    fn named(&self, phrase: &Phrase) -> Option<Result<Term, UndecidedReason>> {
+        let house = self.scene.house();
+        Some(match phrase {
+            Phrase::Id(id) => {
+                let id = i32::try_from(*id).map(dwell_scene::EntityId).ok();
+                id.and_then(|id| Term::from_entity(house, self.scene.state, id))
+                    .ok_or(UndecidedReason::UnknownTerm)
+            }
+            Phrase::Listener => {
+                let agent = self.listener.agent.map(Term::Agent);
+                agent.ok_or(UndecidedReason::NoViewer)
+            }
+            Phrase::Storey(number) => house
+                .levels
+                .ids()
+                .nth(number.saturating_sub(1) as usize)
+                .map(Term::Storey)
+                .ok_or(UndecidedReason::UnknownTerm),
+            Phrase::Described(_) | Phrase::Hole => return None,
+        })
+    }
+}

@@ -1,0 +1,167 @@
+//! Quantified phrases, the first of a clause outermost.
+
+use super::Checker;
+use super::witness::Judged;
+use crate::form::{Description, Phrase, Quantifier};
+use crate::scene::Term;
+use crate::truth::{Truth, UndecidedReason};
+
+/// A clause of its arguments.
+type Body<'a> = &'a dyn Fn(&[Term]) -> Judged;
+
+impl Checker<'_> {
+    /// The truth of `body` of all arguments, those that were chosen before among them.
+    pub(super) fn quantify(
+        &self,
+        arguments: &[Phrase],
+        chosen: &mut Vec<Term>,
+        body: Body<'_>,
+    ) -> Judged {
+        let Some((first, rest)) = arguments.split_first() else {
+            return body(chosen);
+        };
+        let mut with = |term: Term| {
+            chosen.push(term);
+            let judged = self.quantify(rest, chosen, body);
+            chosen.pop();
+            judged
+        };
+        match (self.named(first), first) {
+            (Some(Ok(term)), _) => with(term),
+            (Some(Err(reason)), _) => Judged::undecided(reason),
+            (None, Phrase::Described(description)) => self.of_described(description, &mut with),
+            (None, _) => Judged::undecided(UndecidedReason::UnknownTerm),
+        }
+    }
+
+    fn of_described(
+        &self,
+        description: &Description,
+        with: &mut dyn FnMut(Term) -> Judged,
+    ) -> Judged {
+        let extension = self.extension(description);
+        if let Some(reason) = extension.fault {
+            return Judged::undecided(reason);
+        }
+        // What may or may not fit is undecided, however the clause would be decided of it: but where that settles nothing.
+        let fitting = extension.fits.iter().map(|term| (*term, None));
+        let open = extension.open.iter().map(|(term, reason)| (*term, Some(*reason)));
+        let mut fitting = fitting.chain(open);
+        match description.quantifier {
+            Quantifier::Some => Judged::any(fitting.map(|(term, open)| {
+                let mut judged = with(term);
+                if let Some(reason) = open {
+                    judged.truth = judged.truth.and(Truth::Undecided(reason));
+                }
+                judged
+            })),
+            Quantifier::Every => Judged::all(fitting.map(|(term, open)| {
+                let mut judged = with(term);
+                if let Some(reason) = open {
+                    judged.truth = judged.truth.or(Truth::Undecided(reason));
+                }
+                judged
+            })),
+            Quantifier::No => Judged::all(fitting.map(|(term, open)| {
+                let mut judged = with(term).negated();
+                if let Some(reason) = open {
+                    judged.truth = judged.truth.or(Truth::Undecided(reason));
+                }
+                judged
+            })),
+            Quantifier::The => self.of_the_only(&extension.fits, &extension.open, with),
+            Quantifier::Exactly(number) => {
+                let counted = Counted::of(&mut fitting, with);
+                counted.judged(|low, high| {
+                    if low > number || high < number {
+                        Some(false)
+                    } else {
+                        (low == number && high == number).then_some(true)
+                    }
+                })
+            }
+            Quantifier::AtLeast(number) => {
+                let counted = Counted::of(&mut fitting, with);
+                counted.judged(|low, high| {
+                    if high < number {
+                        Some(false)
+                    } else {
+                        (low >= number).then_some(true)
+                    }
+                })
+            }
+        }
+    }
+
+    /// Of a definite description: false where nothing fits; of several that fit what is decided alike of all.
+    fn of_the_only(
+        &self,
+        fits: &[Term],
+        open: &[(Term, UndecidedReason)],
+        with: &mut dyn FnMut(Term) -> Judged,
+    ) -> Judged {
+        if fits.is_empty() {
+            return match open.first() {
+                Some((_, reason)) => Judged::undecided(*reason),
+                None => Judged::plain(Truth::False),
+            };
+        }
+        let all: Vec<Judged> = fits.iter().map(|term| with(*term)).collect();
+        let first = all[0].truth;
+        if all.iter().all(|judged| judged.truth == first) {
+            return Judged::all(all.into_iter());
+        }
+        Judged {
+            truth: Truth::Undecided(UndecidedReason::SeveralFit),
+            witnesses: all.into_iter().flat_map(|judged| judged.witnesses).take(8).collect(),
+        }
+    }
+}
+
+/// How many of things a clause is true of: at least and at most.
+struct Counted {
+    low: u32,
+    high: u32,
+    reason: Option<UndecidedReason>,
+    examples: Vec<Judged>,
+}
+
+impl Counted {
+    fn of(
+        things: &mut dyn Iterator<Item = (Term, Option<UndecidedReason>)>,
+        with: &mut dyn FnMut(Term) -> Judged,
+    ) -> Self {
+        let mut counted = Self {
+            low: 0,
+            high: 0,
+            reason: None,
+            examples: Vec::new(),
+        };
+        for (term, open) in things {
+            let mut judged = with(term);
+            if let Some(reason) = open {
+                judged.truth = judged.truth.and(Truth::Undecided(reason));
+            }
+            match judged.truth {
+                Truth::False => continue,
+                Truth::True => counted.low += 1,
+                Truth::Undecided(reason) => counted.reason = counted.reason.or(Some(reason)),
+            }
+            counted.high += 1;
+            counted.examples.push(judged);
+        }
+        counted
+    }
+
+    /// `decide` is given the least and the largest number.
+    fn judged(self, decide: impl Fn(u32, u32) -> Option<bool>) -> Judged {
+        let reason = self.reason.unwrap_or(UndecidedReason::SeveralFit);
+        let decided = decide(self.low, self.high);
+        let truth = decided.map_or(Truth::Undecided(reason), Truth::from);
+        let witnesses = self.examples.into_iter().flat_map(|judged| judged.witnesses);
+        Judged {
+            truth,
+            witnesses: witnesses.take(16).collect(),
+        }
+    }
+}
