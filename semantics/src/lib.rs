@@ -2,6 +2,7 @@
 
 mod attributes;
 pub mod category;
+pub mod check;
 pub mod color;
 mod csv_table;
 pub mod describe;

@@ -16,6 +16,10 @@ pub enum UndecidedReason {
     NoViewer,
     /// One of the things is not in front of the viewer.
     NotInFront,
+    /// No predicate or order has this name.
+    UnknownPredicate,
+    /// A definite description fits several things of which the clause is not decided alike.
+    SeveralFit,
     /// Nothing is named to which distances are measured.
     NoReference,
     /// The reference has no front of its own, or lies on its side.
@@ -47,6 +51,8 @@ impl UndecidedReason {
             Self::UnknownTerm => "There is no such thing here.",
             Self::NoViewer => "It depends on where somebody looks from, and no viewer is given.",
             Self::NotInFront => "One of the things is not in front of the viewer.",
+            Self::UnknownPredicate => "No relation of this name is defined here.",
+            Self::SeveralFit => "Several things fit the description.",
             Self::NoReference => "Nothing is named to which it is compared.",
             Self::NoFront => "The thing has no front of its own, or it does not stand upright.",
             Self::DoesNotOpen => "It does not open.",

@@ -11,11 +11,13 @@ use dwell_semantics::grammar::{Grammar, Lexicon};
 use dwell_semantics::language::Language;
 use proptest::prelude::*;
 
-fn word(words: &'static [&'static str]) -> impl Strategy<Value = String> {
-    proptest::sample::select(words).prop_map(str::to_owned)
+fn word(words: &'static [&'static str]) -> BoxedStrategy<String> {
+    proptest::sample::select(words)
+        .prop_map(str::to_owned)
+        .boxed()
 }
 
-fn noun() -> impl Strategy<Value = Noun> {
+fn noun() -> BoxedStrategy<Noun> {
     let words = &[
         "chair",
         "bed",
@@ -26,10 +28,10 @@ fn noun() -> impl Strategy<Value = Noun> {
         "pair of shoes",
         "sofa",
     ];
-    word(words).prop_map(Noun::Object)
+    word(words).prop_map(Noun::Object).boxed()
 }
 
-fn adjectives(quantifier: Quantifier) -> impl Strategy<Value = Description> {
+fn adjectives(quantifier: Quantifier) -> BoxedStrategy<Description> {
     let colors = &["red", "blue", "gray", "orange"];
     let sizes = [
         SizeClass::Tiny,
@@ -40,9 +42,15 @@ fn adjectives(quantifier: Quantifier) -> impl Strategy<Value = Description> {
     (
         noun(),
         proptest::option::of(proptest::sample::select(sizes.to_vec())),
-        proptest::option::of(word(&["open", "closed", "on", "off", "empty"])),
+        proptest::option::of(word(&[
+            "open",
+            "closed",
+            "switched_on",
+            "switched_off",
+            "empty",
+        ])),
         proptest::collection::vec(word(colors), 0..3),
-        proptest::option::of(word(&["wooden", "leather", "metal"])),
+        proptest::option::of(word(&["wooden", "leather", "steel"])),
     )
         .prop_map(move |(noun, size, state, colors, material)| Description {
             size,
@@ -51,65 +59,76 @@ fn adjectives(quantifier: Quantifier) -> impl Strategy<Value = Description> {
             material,
             ..Description::new(quantifier, noun)
         })
+        .boxed()
 }
 
-fn relation() -> impl Strategy<Value = String> {
+fn relation() -> BoxedStrategy<String> {
     word(&[
         "on", "in", "next_to", "left_of", "behind", "under", "facing",
     ])
+    .boxed()
 }
 
-fn landmark() -> impl Strategy<Value = Phrase> {
+fn landmark() -> BoxedStrategy<Phrase> {
     let plain =
         || prop_oneof![Just(Quantifier::The), Just(Quantifier::Some)].prop_flat_map(adjectives);
-    let nested = (plain(), relation(), plain()).prop_map(|(mut outer, predicate, inner)| {
+    let of = |mut outer: Description, predicate: String, inner: Phrase| {
         outer.modifiers.push(Modifier {
             negated: false,
             predicate,
-            arguments: vec![inner.into()],
+            arguments: vec![inner],
         });
         outer
-    });
+    };
+    let to_thing = (plain(), relation(), plain());
+    let by_verb = (plain(), word(&["contains", "holds"]), plain());
+    let nested = prop_oneof![
+        to_thing.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
+        by_verb.prop_map(move |(outer, name, inner)| of(outer, name, inner.into())),
+        (plain(), room()).prop_map(move |(outer, inner)| of(outer, "in_room".to_owned(), inner)),
+    ];
     prop_oneof![
         4 => plain().prop_map(Phrase::from),
         1 => nested.prop_map(Phrase::from),
         1 => (2..40_u32).prop_flat_map(|n| adjectives(Quantifier::Exactly(n))).prop_map(Phrase::from),
         1 => (1..400_u32).prop_map(Phrase::Id),
         1 => Just(Phrase::Listener),
-    ]
+    ].boxed()
 }
 
-fn room() -> impl Strategy<Value = Phrase> {
+fn room() -> BoxedStrategy<Phrase> {
     let noun = word(&["kitchen", "bedroom", "living room", "balcony", "hall"]);
     let kinds = (0..6_u8, noun, 1..15_u32, adjectives(Quantifier::Some));
-    kinds.prop_map(|(kind, noun, place, thing)| {
-        let plain = |quantifier| Description::new(quantifier, Noun::Room(noun.clone()));
-        let description = match kind {
-            0 => plain(Quantifier::Some),
-            1 => plain(Quantifier::Every),
-            2 => Description {
-                selection: Some(Selection {
-                    order: "house".to_owned(),
-                    place,
-                    reference: None,
-                }),
-                ..plain(Quantifier::The)
-            },
-            3 => Description {
-                modifiers: vec![Modifier {
-                    negated: false,
-                    predicate: "contains".to_owned(),
-                    arguments: vec![thing.into()],
-                }],
-                ..plain(Quantifier::The)
-            },
-            _ => plain(Quantifier::The),
-        };
-        description.into()
-    })
+    kinds
+        .prop_map(|(kind, noun, place, thing)| {
+            let plain = |quantifier| Description::new(quantifier, Noun::Room(noun.clone()));
+            let description = match kind {
+                0 => plain(Quantifier::Some),
+                1 => plain(Quantifier::Every),
+                2 => Description {
+                    selection: Some(Selection {
+                        order: "house".to_owned(),
+                        place,
+                        reference: None,
+                    }),
+                    ..plain(Quantifier::The)
+                },
+                3 => Description {
+                    modifiers: vec![Modifier {
+                        negated: false,
+                        predicate: "contains".to_owned(),
+                        arguments: vec![thing.into()],
+                    }],
+                    ..plain(Quantifier::The)
+                },
+                _ => plain(Quantifier::The),
+            };
+            description.into()
+        })
+        .boxed()
 }
 
-fn modifier() -> impl Strategy<Value = Modifier> {
+fn modifier() -> BoxedStrategy<Modifier> {
     let made = |predicate: String, arguments| Modifier {
         negated: false,
         predicate,
@@ -121,9 +140,10 @@ fn modifier() -> impl Strategy<Value = Modifier> {
         (1..20_u32).prop_map(move |n| made("on_storey".to_owned(), vec![Phrase::Storey(n)])),
         (landmark(), landmark()).prop_map(move |(a, b)| made("between".to_owned(), vec![a, b])),
     ]
+    .boxed()
 }
 
-fn quantifier() -> impl Strategy<Value = Quantifier> {
+fn quantifier() -> BoxedStrategy<Quantifier> {
     prop_oneof![
         Just(Quantifier::Some),
         Just(Quantifier::The),
@@ -132,9 +152,10 @@ fn quantifier() -> impl Strategy<Value = Quantifier> {
         (1..30_u32).prop_map(Quantifier::Exactly),
         (1..30_u32).prop_map(Quantifier::AtLeast),
     ]
+    .boxed()
 }
 
-fn described() -> impl Strategy<Value = Description> {
+fn described() -> BoxedStrategy<Description> {
     (
         quantifier().prop_flat_map(adjectives),
         proptest::collection::vec(modifier(), 0..2),
@@ -143,9 +164,10 @@ fn described() -> impl Strategy<Value = Description> {
             modifiers,
             ..description
         })
+        .boxed()
 }
 
-fn selected() -> impl Strategy<Value = Phrase> {
+fn selected() -> BoxedStrategy<Phrase> {
     let order = word(&[
         "from_left",
         "from_right",
@@ -153,8 +175,8 @@ fn selected() -> impl Strategy<Value = Phrase> {
         "nearest",
         "closest_to",
     ]);
-    (adjectives(Quantifier::The), order, 1..20_u32, landmark()).prop_map(
-        |(description, order, place, reference)| {
+    (adjectives(Quantifier::The), order, 1..20_u32, landmark())
+        .prop_map(|(description, order, place, reference)| {
             let counted = order.starts_with("from");
             let reference = (order == "closest_to").then(|| Box::new(reference));
             let selection = Selection {
@@ -167,29 +189,31 @@ fn selected() -> impl Strategy<Value = Phrase> {
                 ..description
             }
             .into()
-        },
-    )
+        })
+        .boxed()
 }
 
-fn phrase() -> impl Strategy<Value = Phrase> {
+fn phrase() -> BoxedStrategy<Phrase> {
     prop_oneof![
         6 => described().prop_map(Phrase::from),
         1 => selected(),
         1 => (1..400_u32).prop_map(Phrase::Id),
         1 => Just(Phrase::Listener),
     ]
+    .boxed()
 }
 
-fn quality() -> impl Strategy<Value = Quality> {
+fn quality() -> BoxedStrategy<Quality> {
     prop_oneof![
         word(&["red", "green"]).prop_map(Quality::Color),
         word(&["wooden", "leather"]).prop_map(Quality::Material),
         Just(Quality::Size(SizeClass::Small)),
-        word(&["open", "off"]).prop_map(Quality::State),
+        word(&["open", "switched_off"]).prop_map(Quality::State),
     ]
+    .boxed()
 }
 
-fn affirmed() -> impl Strategy<Value = Clause> {
+fn affirmed() -> BoxedStrategy<Clause> {
     let holds = |predicate: String, arguments| Clause::Holds {
         predicate,
         arguments,
@@ -204,26 +228,42 @@ fn affirmed() -> impl Strategy<Value = Clause> {
         (phrase(), quality()).prop_map(|(subject, quality)| Clause::Is { subject, quality }),
         described().prop_map(|what| Clause::Exists(what.into())),
     ]
+    .boxed()
 }
 
-fn simple() -> impl Strategy<Value = Clause> {
+fn simple() -> BoxedStrategy<Clause> {
     prop_oneof![
         3 => affirmed(),
         1 => affirmed().prop_map(|clause| Clause::Not(Box::new(clause))),
     ]
+    .boxed()
 }
 
-fn step() -> impl Strategy<Value = Step> {
+fn step() -> BoxedStrategy<Step> {
     let verb = || word(&["find", "pick_up", "open", "switch_off", "bring_me"]);
     prop_oneof![
         room().prop_map(Step::GoTo),
         (verb(), phrase()).prop_map(|(verb, object)| Step::Do { verb, object }),
         (verb(), phrase()).prop_map(|(verb, object)| Step::DoNot { verb, object }),
         (phrase(), room()).prop_map(|(object, to)| Step::Bring { object, to }),
+        (phrase(), phrase()).prop_map(|(object, to)| Step::Bring { object, to }),
+        (landmark(), room()).prop_map(|(object, to)| Step::Put {
+            object,
+            predicate: "in_room".to_owned(),
+            to,
+        }),
+        (landmark(), word(&["on", "in"]), phrase()).prop_map(|(object, predicate, to)| {
+            Step::Put {
+                object,
+                predicate,
+                to,
+            }
+        }),
     ]
+    .boxed()
 }
 
-fn form() -> impl Strategy<Value = Form> {
+fn form() -> BoxedStrategy<Form> {
     prop_oneof![
         4 => simple().prop_map(Form::Claim),
         2 => proptest::collection::vec(step(), 1..4)
@@ -236,11 +276,20 @@ fn form() -> impl Strategy<Value = Form> {
         1 => (phrase(), quality()).prop_map(|(subject, quality)| {
             Form::Question(Question::Whether(Clause::Is { subject, quality }))
         }),
+        1 => proptest::collection::vec(simple(), 2..4)
+            .prop_map(|clauses| Form::Claim(Clause::All(clauses))),
+        1 => (adjectives(Quantifier::Some), relation(), phrase()).prop_map(|(kind, predicate, to)| {
+            let arguments = vec![Phrase::Hole, to];
+            let clause = Clause::Holds { predicate, arguments };
+            let kind = Some(Box::new(kind));
+            Form::Question(Question::Which { kind, clause })
+        }),
         1 => phrase().prop_map(|of| {
             let kind = AttributeKind::Color;
             Form::Question(Question::Attribute { kind, of })
         }),
     ]
+    .boxed()
 }
 
 proptest! {

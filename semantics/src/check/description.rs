@@ -22,7 +22,9 @@ pub(super) struct Extension {
 
 impl Checker<'_> {
     pub(super) fn extension(&self, description: &Description) -> Rc<Extension> {
-        let key = description.clone().with_quantifier(crate::form::Quantifier::Some);
+        let key = description
+            .clone()
+            .with_quantifier(crate::form::Quantifier::Some);
         if let Some(known) = self.extensions.borrow().get(&key) {
             return known.clone();
         }
@@ -88,7 +90,9 @@ impl Checker<'_> {
             let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
             Judged::plain(truth)
         };
-        let truth = self.quantify(&modifier.arguments, &mut vec![term], &body).truth;
+        let truth = self
+            .quantify(&modifier.arguments, &mut vec![term], &body)
+            .truth;
         if modifier.negated { !truth } else { truth }
     }
 

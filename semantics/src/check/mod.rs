@@ -21,8 +21,8 @@ use crate::predicates;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 use description::Extension;
-use dwell_scene::interrupt;
 use dwell_scene::AgentId;
+use dwell_scene::interrupt;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -128,10 +128,14 @@ impl<'a> Checker<'a> {
                 word.as_str(),
                 facts.colors.iter().any(|(known, _)| known == word).into(),
             ),
-            Quality::Material(word) => {
-                (word.as_str(), facts.adjectives().any(|own| own == word).into())
-            }
-            Quality::Size(size) => (size.word().unwrap_or("normal"), (facts.size == *size).into()),
+            Quality::Material(word) => (
+                word.as_str(),
+                facts.adjectives().any(|own| own == word).into(),
+            ),
+            Quality::Size(size) => (
+                size.word().unwrap_or("normal"),
+                (facts.size == *size).into(),
+            ),
             Quality::State(name) => (name.as_str(), self.state(name, term)),
         };
         Judged::fact(name, &[term], truth)

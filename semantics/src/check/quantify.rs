@@ -45,7 +45,10 @@ impl Checker<'_> {
         }
         // What may or may not fit is undecided, however the clause would be decided of it: but where that settles nothing.
         let fitting = extension.fits.iter().map(|term| (*term, None));
-        let open = extension.open.iter().map(|(term, reason)| (*term, Some(*reason)));
+        let open = extension
+            .open
+            .iter()
+            .map(|(term, reason)| (*term, Some(*reason)));
         let mut fitting = fitting.chain(open);
         match description.quantifier {
             Quantifier::Some => Judged::any(fitting.map(|(term, open)| {
@@ -113,7 +116,11 @@ impl Checker<'_> {
         }
         Judged {
             truth: Truth::Undecided(UndecidedReason::SeveralFit),
-            witnesses: all.into_iter().flat_map(|judged| judged.witnesses).take(8).collect(),
+            witnesses: all
+                .into_iter()
+                .flat_map(|judged| judged.witnesses)
+                .take(8)
+                .collect(),
         }
     }
 }
@@ -158,7 +165,10 @@ impl Counted {
         let reason = self.reason.unwrap_or(UndecidedReason::SeveralFit);
         let decided = decide(self.low, self.high);
         let truth = decided.map_or(Truth::Undecided(reason), Truth::from);
-        let witnesses = self.examples.into_iter().flat_map(|judged| judged.witnesses);
+        let witnesses = self
+            .examples
+            .into_iter()
+            .flat_map(|judged| judged.witnesses);
         Judged {
             truth,
             witnesses: witnesses.take(16).collect(),

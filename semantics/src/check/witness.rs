@@ -77,7 +77,9 @@ impl Judged {
             }
             whole.truth = join(whole.truth, part.truth);
             let room = MOST_WITNESSES - whole.witnesses.len().min(MOST_WITNESSES);
-            whole.witnesses.extend(part.witnesses.into_iter().take(room));
+            whole
+                .witnesses
+                .extend(part.witnesses.into_iter().take(room));
         }
         whole
     }

@@ -14,7 +14,7 @@ pub enum Quality {
     Material(String),
     /// Its size for its kind.
     Size(SizeClass),
-    /// A state by its predicate: `"open"`, `"off"`.
+    /// A state by its predicate: `"open"`, `"switched_off"`.
     State(String),
 }
 

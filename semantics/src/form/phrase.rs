@@ -62,7 +62,7 @@ pub struct Description {
     pub noun: Noun,
     /// Its size for its kind; never [`SizeClass::Normal`].
     pub size: Option<SizeClass>,
-    /// A state by name: `"open"`, `"off"`.
+    /// A state by name: `"open"`, `"switched_off"`.
     pub state: Option<String>,
     /// Plain colour words, all of which it shows; at most two.
     pub colors: Vec<String>,

@@ -176,26 +176,38 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
             };
             Some(description.into())
         };
-    let that = |quantifier, noun: &Tree, relation: &Tree, other: &Tree| -> Option<Phrase> {
+    let that = |quantifier, noun: &Tree, predicate: String, other: Phrase| -> Option<Phrase> {
         let mut description = described(noun)?.with_quantifier(quantifier);
         description.modifiers.push(Modifier {
             negated: false,
-            predicate: id(relation)?,
-            arguments: vec![phrase(other)?],
+            predicate,
+            arguments: vec![other],
         });
         Some(description.into())
     };
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some", [noun]) => of(Quantifier::Some, noun),
-        ("every", [noun]) => of(Quantifier::Every, noun),
+        ("every" | "i_every", [noun]) => of(Quantifier::Every, noun),
         ("no", [noun]) => of(Quantifier::No, noun),
         ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
         ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
         ("at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
-        ("i_the_that", [noun, relation, other]) => that(Quantifier::The, noun, relation, other),
-        ("i_some_that", [noun, relation, other]) => that(Quantifier::Some, noun, relation, other),
+        ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
+            that(Quantifier::The, noun, id(relation)?, phrase(other)?)
+        }
+        ("i_some_that" | "i_some_that_verb", [noun, relation, other]) => {
+            that(Quantifier::Some, noun, id(relation)?, phrase(other)?)
+        }
+        ("i_the_that_place", [noun, place]) => {
+            let (predicate, place) = place_of(place)?;
+            that(Quantifier::The, noun, predicate.to_owned(), place)
+        }
+        ("i_some_that_place", [noun, place]) => {
+            let (predicate, place) = place_of(place)?;
+            that(Quantifier::Some, noun, predicate.to_owned(), place)
+        }
         ("nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
         ("superlative", [order, noun]) => selected(noun, order, 1, None),
         ("selected_to", [noun, order, reference]) => {
@@ -307,12 +319,12 @@ fn step(tree: &Tree) -> Option<Step> {
             verb: id(verb)?,
             object: phrase(object)?,
         },
-        ("put", [object, relation, to]) => Step::Put {
+        ("put" | "put_modified", [object, relation, to]) => Step::Put {
             object: phrase(object)?,
             predicate: id(relation)?,
             to: phrase(to)?,
         },
-        ("put_in_place", [object, place]) => {
+        ("put_in_place" | "put_modified_in_place", [object, place]) => {
             let (predicate, to) = place_of(place)?;
             Step::Put {
                 object: phrase(object)?,

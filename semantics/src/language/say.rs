@@ -25,7 +25,7 @@ pub struct Said {
 }
 
 /// The functions that make noun phrases of things.
-const NOUN_PHRASES: [&str; 24] = [
+const NOUN_PHRASES: [&str; 29] = [
     "the",
     "some",
     "every",
@@ -41,9 +41,14 @@ const NOUN_PHRASES: [&str; 24] = [
     "you",
     "i_the",
     "i_some",
+    "i_every",
     "i_exactly",
     "i_the_that",
     "i_some_that",
+    "i_the_that_verb",
+    "i_some_that_verb",
+    "i_the_that_place",
+    "i_some_that_place",
     "i_by_id",
     "i_you",
     "room_the",

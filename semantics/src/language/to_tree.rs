@@ -215,6 +215,7 @@ impl TreeBuilder<'_> {
         match (description.quantifier, &description.modifiers[..]) {
             (Quantifier::The, []) => Some(Tree::apply("i_the", [own])),
             (Quantifier::Some, []) => Some(Tree::apply("i_some", [own])),
+            (Quantifier::Every, []) => Some(Tree::apply("i_every", [own])),
             (Quantifier::Exactly(number), []) if number != 1 => {
                 Some(Tree::apply("i_exactly", [count(number), own]))
             }
@@ -222,16 +223,21 @@ impl TreeBuilder<'_> {
                 let [other] = &only.arguments[..] else {
                     return None;
                 };
-                let function = if quantifier == Quantifier::The {
-                    "i_the_that"
+                let article = if quantifier == Quantifier::The {
+                    "the"
                 } else {
-                    "i_some_that"
+                    "some"
                 };
-                let relation = self.known(RELATION, &only.predicate)?;
-                Some(Tree::apply(
-                    function,
-                    [own, relation, self.phrase(other, Position::Landmark)?],
-                ))
+                let named = |ending: &str| format!("i_{article}_that{ending}");
+                if matches!(only.predicate.as_str(), "in_room" | "on_storey") {
+                    return Some(Tree::apply(&named("_place"), [own, self.place(other)?]));
+                }
+                let other = self.phrase(other, Position::Landmark)?;
+                if let Some(word) = self.known(RELATION, &only.predicate) {
+                    return Some(Tree::apply(&named(""), [own, word, other]));
+                }
+                let word = self.known(VERB_RELATION, &only.predicate)?;
+                Some(Tree::apply(&named("_verb"), [own, word, other]))
             }
             _ => None,
         }
@@ -372,17 +378,15 @@ impl TreeBuilder<'_> {
                 object,
                 predicate,
                 to,
-            } if predicate == "in_room" => {
-                Tree::apply("put_in_place", [free(object)?, self.place(to)?])
+            } => {
+                let object = self.phrase(object, Position::Landmark)?;
+                if predicate == "in_room" {
+                    Tree::apply("put_in_place", [object, self.place(to)?])
+                } else {
+                    let relation = self.known(RELATION, predicate)?;
+                    Tree::apply("put", [object, relation, free(to)?])
+                }
             }
-            Step::Put {
-                object,
-                predicate,
-                to,
-            } => Tree::apply(
-                "put",
-                [free(object)?, self.known(RELATION, predicate)?, free(to)?],
-            ),
             Step::Bring { object, to } => match self.room(to) {
                 Some(room) => Tree::apply("bring_to_place", [free(object)?, room]),
                 None => Tree::apply("bring", [free(object)?, free(to)?]),

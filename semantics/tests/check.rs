@@ -1,0 +1,222 @@
+//! Clauses against scenes: what was counted by hand, what was swapped, what cannot be asked.
+#![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
+
+use dwell_houses::open;
+use dwell_scene::{House, ObjectId, State};
+use dwell_semantics::check::{Answer, Checker, Listener, Verdict};
+use dwell_semantics::form::{Clause, Form, Question};
+use dwell_semantics::language::Language;
+use dwell_semantics::{SemanticScene, Semantics, Term, Truth, UndecidedReason, Viewer};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+fn house(name: &str) -> Arc<House> {
+    Arc::new(open(name).unwrap().0)
+}
+
+fn clause(text: &str) -> Clause {
+    match Language::english()
+        .read(text)
+        .unwrap_or_else(|error| panic!("{text}: {error}"))
+        .forms
+        .remove(0)
+    {
+        Form::Claim(clause) => clause,
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+fn question(text: &str) -> Question {
+    match Language::english().read(text).unwrap().forms.remove(0) {
+        Form::Question(question) => question,
+        other => panic!("{text}: {other:?}"),
+    }
+}
+
+fn check(scene: &SemanticScene<'_>, text: &str) -> Verdict {
+    Checker::new(scene, Listener::default()).check(&clause(text))
+}
+
+/// Things that may be called by each noun, counted one by one.
+fn called(scene: &SemanticScene<'_>) -> BTreeMap<String, Vec<ObjectId>> {
+    let objects = || scene.house().objects.ids();
+    let nouns: BTreeSet<String> = objects().map(|id| scene.facts(id).noun.clone()).collect();
+    let known = nouns.into_iter().filter(|noun| {
+        Language::english()
+            .read(&format!("There is a {noun}."))
+            .is_ok()
+    });
+    known
+        .map(|noun| {
+            let own = objects().filter(|id| scene.facts(*id).is_called(&noun));
+            let own = own.collect();
+            (noun, own)
+        })
+        .collect()
+}
+
+#[test]
+fn quantifiers_agree_with_counting() {
+    for name in ["builtin:studio", "builtin:apartment", "seed:7"] {
+        let house = house(name);
+        let semantics = Semantics::new(&house);
+        let state = State::new(&house);
+        let scene = semantics.scene(&state);
+        for (noun, things) in called(&scene) {
+            let own = things.iter().find(|id| scene.facts(**id).noun == noun);
+            let facts = scene.facts(*own.unwrap());
+            if facts.noun.contains(" of ") {
+                continue;
+            }
+            let (one, several) = (noun.as_str(), facts.plural.as_str());
+            let red = things.iter().filter(|id| {
+                scene
+                    .facts(**id)
+                    .colors
+                    .iter()
+                    .any(|(word, _)| *word == "red")
+            });
+            let (all, red) = (things.len(), red.count());
+            // Glass has no colour, so that nobody can say how many are red.
+            let clear = things
+                .iter()
+                .filter(|id| scene.facts(**id).colors.is_empty())
+                .count();
+            let mut cases = vec![
+                (format!("There is a {one}."), true),
+                (format!("There is no {one}."), false),
+                (format!("There are {} {several}.", all + 1), false),
+                (format!("There are at least {} {several}.", all + 1), false),
+            ];
+            if all > 1 {
+                cases.push((format!("There are {all} {several}."), true));
+                cases.push((format!("There are at least {all} {several}."), true));
+            }
+            if clear == 0 {
+                cases.push((format!("A {one} is red."), red > 0));
+                cases.push((format!("Every {one} is red."), red == all));
+                cases.push((format!("No {one} is red."), red == 0));
+                cases.push((format!("There is a red {one}."), red > 0));
+            }
+            for (text, expected) in cases {
+                let verdict = check(&scene, &text);
+                assert_eq!(verdict.truth, Truth::from(expected), "{name}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn relations_of_descriptions_agree_with_those_of_things() {
+    let house = house("builtin:apartment");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let nouns = called(&scene);
+    let on = dwell_semantics::predicates::find("on").unwrap();
+    let mut held = 0;
+    for (a, first) in &nouns {
+        for (b, second) in &nouns {
+            let pairs = first
+                .iter()
+                .flat_map(|a| second.iter().map(move |b| (*a, *b)));
+            let mut pairs = pairs.map(|(a, b)| [Term::Object(a), Term::Object(b)]);
+            let expected = pairs.any(|pair| on.holds(&scene, &pair, None).is_true());
+            let text = format!("A {a} is on a {b}.");
+            assert_eq!(check(&scene, &text).truth, expected.into(), "{text}");
+            if expected {
+                held += 1;
+                let verdict = check(&scene, &text);
+                let witness = &verdict.witnesses[0];
+                assert!(
+                    on.holds(&scene, &witness.terms, None).is_true(),
+                    "{witness:?}"
+                );
+                assert!(
+                    check(&scene, &format!("No {a} is on a {b}."))
+                        .truth
+                        .is_false()
+                );
+            }
+        }
+    }
+    assert!(held > 10, "{held}");
+}
+
+#[test]
+fn what_cannot_be_asked_is_undecided_with_its_reason() {
+    let house = house("builtin:apartment");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let reason = |text: &str| check(&scene, text).truth.reason();
+    assert_eq!(
+        reason("A chair is to the left of a bed."),
+        Some(UndecidedReason::NoViewer)
+    );
+    assert_eq!(
+        reason("You are near a chair."),
+        Some(UndecidedReason::NoViewer)
+    );
+    assert_eq!(
+        reason("Object 99999 is red."),
+        Some(UndecidedReason::UnknownTerm)
+    );
+    // Nothing is a piano, so that what is said of the piano is false, and so is what is said of it not being so: it is the claim
+    // about the piano that is false, not its opposite that is true.
+    assert!(check(&scene, "The grand piano is red.").truth.is_false());
+    let viewer = Viewer {
+        world_from_camera: dwell_scene::Pose::from_position_yaw(
+            house.rooms.as_slice()[0].bounds.center(),
+            0.3,
+        ),
+    };
+    let listener = Listener {
+        viewer: Some(viewer),
+        agent: None,
+    };
+    let checker = Checker::new(&scene, listener);
+    let left = checker
+        .check(&clause("Some chair is to the left of some chair."))
+        .truth;
+    assert_ne!(left.reason(), Some(UndecidedReason::NoViewer));
+}
+
+#[test]
+fn questions_get_what_was_counted() {
+    let house = house("builtin:apartment");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let checker = Checker::new(&scene, Listener::default());
+    let nouns = called(&scene);
+    let chairs = &nouns["chair"];
+    assert_eq!(
+        checker.answer(&question("How many chairs are there?")),
+        Answer::Number(chairs.len())
+    );
+    let Answer::Things(found) = checker.answer(&question("Which chair is wooden?")) else {
+        panic!("ids");
+    };
+    let wooden = |id: &&ObjectId| {
+        scene
+            .facts(**id)
+            .substances
+            .iter()
+            .any(|(substance, share)| substance.adjective == "wooden" && *share >= 0.2)
+    };
+    let expected: Vec<Term> = chairs
+        .iter()
+        .filter(wooden)
+        .map(|id| Term::Object(*id))
+        .collect();
+    assert_eq!(found, expected);
+    let Answer::Truth(verdict) = checker.answer(&question("Is there a bed?")) else {
+        panic!("a truth value");
+    };
+    assert!(verdict.truth.is_true());
+    assert_eq!(
+        checker.answer(&question("What color is the chair?")),
+        Answer::None(UndecidedReason::SeveralFit)
+    );
+}
