@@ -5,8 +5,10 @@ use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
 use crate::geometry::{Extent, Hull};
+use crate::language::Language;
 use crate::noun_index::NounIndex;
 use crate::reachable_area::{NavGridPool, ReachableArea};
+use crate::room_kind::preposition;
 use crate::room_outline::RoomOutline;
 use crate::rooms::RoomProperties;
 use crate::visible_area::visible_surface_areas;
@@ -18,7 +20,7 @@ use dwell_scene::{
 };
 use glam::Vec2;
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// State-independent semantics of a house. Make it once and share it.
 #[derive(Debug)]
@@ -35,6 +37,7 @@ pub struct Semantics {
     walkers: NavGridPool,
     doorways: BTreeMap<ObjectId, RoomDoorway>,
     paints: IdVec<MaterialId, MaterialColors>,
+    language: OnceLock<Language>,
 }
 
 impl Semantics {
@@ -83,6 +86,7 @@ impl Semantics {
             rest_extents,
             moved_extents: ExtentCache::new(house),
             paints,
+            language: OnceLock::new(),
             house: house.clone(),
         }
     }
@@ -90,6 +94,17 @@ impl Semantics {
     /// The house.
     pub fn house(&self) -> &House {
         &self.house
+    }
+
+    /// English with the nouns of this house: those of things and rooms outside the tables, too.
+    pub fn language(&self) -> &Language {
+        self.language.get_or_init(|| {
+            let things = self.facts.iter();
+            let nouns = things.map(|facts| (facts.noun.as_str(), facts.plural.as_str()));
+            let rooms = self.rooms.iter();
+            let rooms = rooms.map(|room| (room.noun.as_str(), preposition(&room.noun)));
+            Language::english().with_nouns(nouns).with_rooms(rooms)
+        })
     }
 
     pub(crate) fn shared_house(&self) -> &Arc<House> {

@@ -220,3 +220,39 @@ fn questions_get_what_was_counted() {
         Answer::None(UndecidedReason::SeveralFit)
     );
 }
+
+#[test]
+fn sentences_are_checked_and_their_phrases_grounded() {
+    let house = house("builtin:apartment");
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let checker = Checker::new(&scene, Listener::default());
+    let checked = checker.check_text("there's a bed").unwrap_err();
+    assert!(checked.to_string().contains("there's"), "{checked}");
+    let checked = checker
+        .check_text("There is a bed in the bedroom.")
+        .unwrap();
+    let Some(Answer::Truth(verdict)) = checked.answer else {
+        panic!("a truth value");
+    };
+    assert!(verdict.truth.is_true(), "{verdict:?}");
+    let request = checker
+        .check_text("Go to the kitchen, then find the bed.")
+        .unwrap();
+    assert!(request.answer.is_none());
+    let said = semantics.language().say(&checked.form, None).unwrap();
+    let grounded = checker.ground(&said);
+    let text: Vec<&str> = grounded
+        .iter()
+        .map(|span| &said.text[span.start..span.end])
+        .collect();
+    assert_eq!(text, ["a bed in the bedroom", "the bedroom"]);
+    let beds = &grounded[0].terms;
+    assert!(!beds.is_empty());
+    for bed in beds {
+        let bed = bed.object().unwrap();
+        assert!(scene.facts(bed).is_called("bed"));
+        assert_eq!(grounded[1].terms, [Term::Room(scene.room_of(bed).unwrap())]);
+    }
+}

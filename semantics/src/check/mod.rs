@@ -11,9 +11,11 @@
 mod answer;
 mod description;
 mod quantify;
+mod text;
 mod witness;
 
 pub use answer::Answer;
+pub use text::{CheckedText, GroundedPhrase};
 pub use witness::Witness;
 
 use crate::form::{Clause, Description, Phrase, Quality};

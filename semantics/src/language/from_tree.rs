@@ -158,6 +158,11 @@ fn room(tree: &Tree) -> Option<Phrase> {
     Some(description.into())
 }
 
+/// The phrase that a part of a tree stands for; `None` for parts that are none.
+pub(super) fn noun_phrase(tree: &Tree) -> Option<Phrase> {
+    phrase(tree).or_else(|| room(tree))
+}
+
 fn phrase(tree: &Tree) -> Option<Phrase> {
     let (function, arguments) = parts(tree)?;
     let of = |quantifier, noun: &Tree| -> Option<Phrase> {

@@ -1,14 +1,17 @@
 //! Forms to text.
 
 use super::Language;
+use super::from_tree;
 use super::to_tree::TreeBuilder;
-use crate::form::Form;
-use crate::grammar::{Span, Tree};
+use crate::form::{Form, Phrase};
+use crate::grammar::Tree;
 use dwell_scene::random::RandomKey;
 
 /// A noun phrase of a form in its text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PhraseSpan {
+    /// What it means.
+    pub phrase: Phrase,
     /// The first byte.
     pub start: usize,
     /// The byte behind the last.
@@ -24,49 +27,11 @@ pub struct Said {
     pub phrases: Vec<PhraseSpan>,
 }
 
-/// The functions that make noun phrases of things.
-const NOUN_PHRASES: [&str; 29] = [
-    "the",
-    "some",
-    "every",
-    "no",
-    "exactly_one",
-    "exactly",
-    "at_least_one",
-    "at_least",
-    "nth",
-    "superlative",
-    "selected_to",
-    "by_id",
-    "you",
-    "i_the",
-    "i_some",
-    "i_every",
-    "i_exactly",
-    "i_the_that",
-    "i_some_that",
-    "i_the_that_verb",
-    "i_some_that_verb",
-    "i_the_that_place",
-    "i_some_that_place",
-    "i_by_id",
-    "i_you",
-    "room_the",
-    "room_a",
-    "room_nth",
-    "room_with",
-];
-
 fn at<'a>(tree: &'a Tree, path: &[usize]) -> Option<&'a Tree> {
     path.iter().try_fold(tree, |tree, step| match tree {
         Tree::Apply { arguments, .. } => arguments.get(*step),
         Tree::Entry { .. } | Tree::Number { .. } => None,
     })
-}
-
-fn is_noun_phrase(tree: &Tree, span: &Span) -> bool {
-    let part = at(tree, &span.path);
-    matches!(part, Some(Tree::Apply { function, .. }) if NOUN_PHRASES.contains(&function.as_str()))
 }
 
 impl Language {
@@ -87,14 +52,14 @@ impl Language {
                 .map_or(0, |stream| (stream.bits() % count as u64) as usize)
         };
         let (text, spans) = self.grammar.linearize(&tree, &mut choose)?;
-        let mut phrases: Vec<PhraseSpan> = spans
-            .iter()
-            .filter(|span| is_noun_phrase(&tree, span))
-            .map(|span| PhraseSpan {
+        let phrases = spans.iter().filter_map(|span| {
+            Some(PhraseSpan {
+                phrase: from_tree::noun_phrase(at(&tree, &span.path)?)?,
                 start: span.start,
                 end: span.end,
             })
-            .collect();
+        });
+        let mut phrases: Vec<PhraseSpan> = phrases.collect();
         phrases.sort_by_key(|span| (span.start, usize::MAX - span.end));
         Some(Said { text, phrases })
     }
