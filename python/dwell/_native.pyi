@@ -63,7 +63,10 @@ __all__ = [
     "tasks",
     "texture",
     "vocabulary",
+    "language_read",
+    "language_say",
     "world_attributes",
+    "world_check_text",
     "world_color_names",
     "world_graph_json",
     "world_holds",
@@ -455,6 +458,17 @@ def world_color_names(
     world: World, named: str | int, vocabulary: int
 ) -> list[tuple[str, float]]: ...
 def world_graph_json(world: World, viewer: object) -> str: ...
+def language_read(text: str) -> list[dict[str, Any]]:
+    """The forms of a sentence, the preferred one first."""
+
+def language_say(form: Mapping[str, Any], seed: int | None) -> str | None:
+    """A form in English; ``None`` where there are no words for it."""
+
+def world_check_text(
+    world: World, text: str, viewer: object, agent: int | None
+) -> dict[str, Any]:
+    """A sentence read, checked and grounded."""
+
 def predicates_json() -> str:
     """``predicates`` and ``orders`` with their definitions: one JSON object."""
 

@@ -67,7 +67,7 @@ class RelationApi(StateApi):
         self, name: str, things: Sequence[Thing], viewer: Viewer | None
     ) -> tuple[bool | None, str | None]:
         named = [_thing("things", thing) for thing in things]
-        return _native.world_holds(self._native, text("name", name), named, _viewer(viewer))
+        return _native.world_holds(self._native, text("name", name), named, viewer_argument(viewer))
 
     def relations(
         self, names: Sequence[str] | None = None, *, viewer: Viewer | None = None
@@ -89,7 +89,7 @@ class RelationApi(StateApi):
             [('radio_1', 'in_room', 'room:child_room')]
         """
         wanted = None if names is None else texts("names", names)
-        return _native.world_relations(self._native, wanted, _viewer(viewer))
+        return _native.world_relations(self._native, wanted, viewer_argument(viewer))
 
     def relation_array(
         self, names: Sequence[str] | None = None, *, viewer: Viewer | None = None
@@ -101,7 +101,7 @@ class RelationApi(StateApi):
         :func:`dwell.relations.predicates`.
         """
         wanted = None if names is None else texts("names", names)
-        return _native.world_relation_array(self._native, wanted, _viewer(viewer))
+        return _native.world_relation_array(self._native, wanted, viewer_argument(viewer))
 
     def select(
         self,
@@ -138,7 +138,7 @@ class RelationApi(StateApi):
         compared = None if reference is None else _thing("reference", reference)
         place = whole("n", n, low=1, high=2**31 - 1)
         found: tuple[str | None, str | None] = _native.world_select(
-            self._native, text("order", order), named, place, compared, _viewer(viewer)
+            self._native, text("order", order), named, place, compared, viewer_argument(viewer)
         )
         return found[0]
 
@@ -186,7 +186,9 @@ class RelationApi(StateApi):
             instance images, or the number of a room or storey for predicates that lead to those
             alone. :mod:`dwell.relations` makes arrays and NetworkX graphs of it.
         """
-        graph: dict[str, Any] = json.loads(_native.world_graph_json(self._native, _viewer(viewer)))
+        graph: dict[str, Any] = json.loads(
+            _native.world_graph_json(self._native, viewer_argument(viewer))
+        )
         return graph
 
 
@@ -199,7 +201,7 @@ def _thing(name: str, thing: object) -> Thing:
     return text(name, thing) if isinstance(thing, str) else whole(name, thing, high=2**31 - 1)
 
 
-def _viewer(viewer: object) -> int | dict[str, Any] | None:
+def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
     """What the native side takes for a viewer.
 
     Raises:

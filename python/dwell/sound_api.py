@@ -10,7 +10,7 @@ import numpy as np
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import choice, finite, flag, path, point, whole
-from dwell.relation_api import RelationApi
+from dwell.language_api import LanguageApi
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
@@ -79,7 +79,7 @@ def emitter_sound(
     return told
 
 
-class SoundApi(RelationApi):
+class SoundApi(LanguageApi):
     """The sounds of a world."""
 
     def play(

@@ -21,6 +21,7 @@ mod house;
 mod hrtf;
 mod json;
 mod json_rows;
+mod language;
 mod logs;
 mod navigation;
 #[cfg(feature = "panic-for-tests")]
@@ -72,6 +73,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(calibrate::check_measured, module)?)?;
     module.add_function(wrap_pyfunction!(json::json_extent, module)?)?;
     module.add_function(wrap_pyfunction!(prepared_env::spares, module)?)?;
+    module.add_function(wrap_pyfunction!(language::language_read, module)?)?;
+    module.add_function(wrap_pyfunction!(language::language_say, module)?)?;
+    module.add_function(wrap_pyfunction!(language::world_check_text, module)?)?;
     module.add_function(wrap_pyfunction!(relations::predicates_json, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_holds, module)?)?;
     module.add_function(wrap_pyfunction!(relations::world_select, module)?)?;

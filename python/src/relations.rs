@@ -43,7 +43,7 @@ struct PoseArgument {
 }
 
 impl WorldAccess<'_> {
-    fn scene(&self) -> SemanticScene<'_> {
+    pub(crate) fn scene(&self) -> SemanticScene<'_> {
         self.world.engines().semantics().scene(self.world.state())
     }
 
@@ -110,7 +110,7 @@ impl WorldAccess<'_> {
         )))
     }
 
-    fn name_of(&self, term: Term) -> String {
+    pub(crate) fn name_of(&self, term: Term) -> String {
         let house = self.world.house();
         match term {
             Term::Object(id) => house.objects[id].name.clone(),
@@ -130,7 +130,7 @@ impl WorldAccess<'_> {
         named.iter().map(|named| self.term(named)).collect()
     }
 
-    fn viewer(&self, viewer: Data) -> Result<Option<Viewer>, PyFault> {
+    pub(crate) fn viewer(&self, viewer: Data) -> Result<Option<Viewer>, PyFault> {
         let viewer: Value = viewer.read()?;
         if viewer.is_null() {
             return Ok(None);

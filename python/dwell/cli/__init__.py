@@ -18,6 +18,7 @@ COMMANDS = {
     "view": "a house in the Rerun viewer, or as a recording for it",
     "replay": "a recorded episode: checked to the bit, seen and heard again",
     "describe": "sentences about houses",
+    "check-text": "whether sentences are true of a house",
     "ir": "an impulse response between two points",
     "generate": "houses from seeds, in bulk, written as files",
     "measure": "tables of measurements into a bundle that calibrate reads",
@@ -36,7 +37,7 @@ def parser(chosen: str | None = None) -> argparse.ArgumentParser:
     for name, about in COMMANDS.items():
         command = commands.add_parser(name, help=about, description=about)
         if name == chosen:
-            module = importlib.import_module(f"dwell.cli.{name}")
+            module = importlib.import_module(f"dwell.cli.{name.replace('-', '_')}")
             module.configure(command)
             command.set_defaults(run=module.run, parser=command)
     return top

@@ -1,0 +1,54 @@
+"""English: sentences to logical forms and back; ``docs/words.md`` says what forms mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from dwell import ConfigError, _native
+from dwell.arguments import quoted, text, whole
+
+__all__ = ["read", "say"]
+
+
+def read(sentence: str) -> list[dict[str, Any]]:
+    """The logical forms that a sentence may stand for, the preferred one first.
+
+    Raises:
+        ConfigError: It is not understood: the message names unknown words with the nearest known
+            ones, or how far the sentence was understood and what could follow.
+
+    Examples:
+        >>> from dwell.language import read, say
+        >>> say(read("put the mug onto the table".replace("onto", "on"))[0])
+        'Put the mug on the table.'
+        >>> list(read("Is there a red chair?")[0])
+        ['question']
+    """
+    forms: list[dict[str, Any]] = _native.language_read(text("sentence", sentence))
+    return forms
+
+
+def say(form: Mapping[str, Any], *, seed: int | None = None) -> str:
+    """A form in English.
+
+    Args:
+        form: As :func:`read` gives it.
+        seed: Draws the wording; without it every form has its first one.
+
+    Raises:
+        ConfigError: It is no form, or English has no words for it.
+
+    Examples:
+        >>> from dwell.language import read, say
+        >>> form = read("walk to the kitchen")[0]
+        >>> say(form), say(form, seed=5) == say(form, seed=5)
+        ('Go to the kitchen.', True)
+    """
+    if not isinstance(form, Mapping):
+        raise ConfigError(f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives")
+    drawn = None if seed is None else whole("seed", seed, high=2**64 - 1)
+    said = _native.language_say(form, drawn)
+    if said is None:
+        raise ConfigError(f"English has no words for the form {quoted(form)}")
+    return said

@@ -1,0 +1,58 @@
+"""Sentences about a world: read, checked against it, answered."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from dwell import _native
+from dwell.arguments import text as checked_text
+from dwell.arguments import whole
+from dwell.relation_api import RelationApi, Viewer, viewer_argument
+
+
+class LanguageApi(RelationApi):
+    """Claims and questions in English, checked by the predicates of a world."""
+
+    def check(
+        self, sentence: str, *, viewer: Viewer | None = None, agent: int | None = None
+    ) -> dict[str, Any]:
+        """Reads one sentence and checks it against the world as it is now.
+
+        Args:
+            sentence: A claim (``"The cup is on the table."``), a question or a request, at most
+                60 words. :func:`dwell.language.read` says what is understood.
+            viewer: From where left, right, in front and behind are meant: an agent's number or a
+                camera, as for :meth:`holds`. Without it the eyes of ``agent``.
+            agent: Who "you" is.
+
+        Returns:
+            ``form``, the preferred reading, and ``other_forms``; ``said``, the form in the engine's
+            own words, and ``phrases`` of that text: ``start``, ``end`` and the ``things`` that
+            fit, each with ``kind``, ``id`` (of instance images; a number for rooms and storeys)
+            and ``name``. ``answer`` of a claim or a yes-no question: ``truth`` (``None`` where it
+            is undecided, with a ``reason``) and the ``witnesses`` that decided; of other
+            questions ``things``, ``number`` or ``words``, or the ``reason`` why there is none;
+            ``None`` for a request.
+
+        Raises:
+            ConfigError: The sentence is not understood; the message says where, and which words
+                could have been meant.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> world.check("There is a bed in the bedroom.")["answer"]["truth"]
+            True
+            >>> world.check("How many beds are there?")["answer"]["number"] > 0
+            True
+            >>> world.check("Find the sofer.")
+            Traceback (most recent call last):
+            ...
+            dwell.ConfigError: unknown word "sofer" (known are sofa, sofas)
+        """
+        listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
+        sentence = checked_text("sentence", sentence)
+        found: dict[str, Any] = _native.world_check_text(
+            self._native, sentence, viewer_argument(viewer), listener
+        )
+        return found

@@ -1,0 +1,142 @@
+//! Forms and sentences for Python.
+
+use crate::engine_call::EngineCall;
+use crate::errors::PyFault;
+use crate::values::{self, Data};
+use crate::world::PyWorld;
+use crate::world_access::WorldAccess;
+use dwell_scene::AgentId;
+use dwell_scene::Id;
+use dwell_scene::random::RandomKey;
+use dwell_semantics::check::{Answer, Checker, Listener, Verdict};
+use dwell_semantics::form::Form;
+use dwell_semantics::language::Language;
+use dwell_semantics::{Term, Truth};
+use pyo3::prelude::*;
+use serde_json::{Value, json};
+
+impl WorldAccess<'_> {
+    fn listener(&self, viewer: Data, agent: Option<usize>) -> Result<Listener, PyFault> {
+        let agent = agent.map(|agent| self.agent(agent)).transpose()?;
+        let eyes = |agent: AgentId| dwell_semantics::Viewer::of_agent(self.world.state(), agent);
+        let viewer = self.viewer(viewer)?;
+        Ok(Listener {
+            viewer: viewer.or_else(|| agent.and_then(eyes)),
+            agent,
+        })
+    }
+
+    /// A term by its kind, the sensors' id or its number, and its name.
+    fn told(&self, term: Term) -> Value {
+        let house = self.world.house();
+        let (kind, id) = match term {
+            Term::Object(id) => ("object", house.entity_of_object(id).0),
+            Term::Structure(id) => ("structure", house.entity_of_structure(id).0),
+            Term::Agent(id) => ("agent", house.entity_of_agent(id).0),
+            Term::Room(id) => ("room", id.index() as i32),
+            Term::Storey(id) => ("storey", id.index() as i32),
+            Term::Part(id) => ("part", id.index() as i32),
+        };
+        json!({"kind": kind, "id": id, "name": self.name_of(term)})
+    }
+
+    fn terms_told(&self, terms: &[Term]) -> Value {
+        terms.iter().map(|term| self.told(*term)).collect()
+    }
+
+    fn verdict(&self, verdict: &Verdict) -> Value {
+        let witnesses = verdict.witnesses.iter().map(|witness| {
+            json!({
+                "predicate": witness.predicate,
+                "things": self.terms_told(&witness.terms),
+                "truth": truth(witness.truth),
+            })
+        });
+        json!({
+            "truth": truth(verdict.truth),
+            "reason": verdict.truth.reason().map(|reason| reason.sentence()),
+            "witnesses": witnesses.collect::<Vec<Value>>(),
+        })
+    }
+
+    fn answer(&self, answer: &Answer) -> Value {
+        match answer {
+            Answer::Truth(verdict) => self.verdict(verdict),
+            Answer::Things(terms) => json!({"things": self.terms_told(terms)}),
+            Answer::Number(number) => json!({"number": number}),
+            Answer::Words(words) => json!({"words": words}),
+            Answer::None(reason) => json!({"reason": reason.sentence()}),
+        }
+    }
+}
+
+fn truth(truth: Truth) -> Value {
+    truth.value().map_or(Value::Null, Value::Bool)
+}
+
+fn unread(error: dwell_semantics::language::Unread) -> PyFault {
+    PyFault::Config(error.to_string())
+}
+
+/// The forms that a sentence may stand for, the preferred one first.
+#[pyfunction]
+pub(crate) fn language_read<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    let forms = py.engine(|| {
+        let reading = Language::english().read(text).map_err(unread)?;
+        Ok::<_, PyFault>(serde_json::to_value(reading.forms)?)
+    })?;
+    values::object(py, &forms)
+}
+
+/// The text of a form with the bytes of its noun phrases; nothing where English has no words for it.
+#[pyfunction]
+pub(crate) fn language_say(
+    py: Python<'_>,
+    form: Data,
+    seed: Option<u64>,
+) -> PyResult<Option<String>> {
+    py.engine(|| {
+        let form: Form = form.read()?;
+        let said = Language::english().say(&form, seed.map(RandomKey::root));
+        Ok::<_, PyFault>(said.map(|said| said.text))
+    })
+}
+
+/// A sentence read with the nouns of the house, and checked or answered: one mapping.
+#[pyfunction]
+pub(crate) fn world_check_text<'py>(
+    py: Python<'py>,
+    world: &Bound<'_, PyWorld>,
+    text: &str,
+    viewer: Data,
+    agent: Option<usize>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let checked = world.get().look(py, |running| {
+        let scene = running.scene();
+        let checker = Checker::new(&scene, running.listener(viewer, agent)?);
+        let checked = checker.check_text(text).map_err(unread)?;
+        let said = scene.semantics.language().say(&checked.form, None);
+        let phrases = said.iter().flat_map(|said| {
+            let grounded = checker.ground(said);
+            let phrases = grounded.into_iter().map(|phrase| {
+                // Python counts letters.
+                let letters = |byte: usize| said.text[..byte].chars().count();
+                json!({
+                    "start": letters(phrase.start),
+                    "end": letters(phrase.end),
+                    "things": running.terms_told(&phrase.terms),
+                })
+            });
+            phrases.collect::<Vec<Value>>()
+        });
+        let phrases: Vec<Value> = phrases.collect();
+        Ok(json!({
+            "form": serde_json::to_value(&checked.form)?,
+            "other_forms": serde_json::to_value(&checked.others)?,
+            "said": said.map(|said| said.text),
+            "phrases": phrases,
+            "answer": checked.answer.map(|answer| running.answer(&answer)),
+        }))
+    })?;
+    values::object(py, &checked)
+}
