@@ -1,8 +1,9 @@
 //! Forms and sentences for Python.
 
+use crate::answers;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use crate::values::{self, Data};
+use crate::values::Data;
 use crate::world::PyWorld;
 use crate::world_access::WorldAccess;
 use dwell_scene::AgentId;
@@ -80,12 +81,11 @@ fn unread(error: dwell_semantics::language::Unread) -> PyFault {
 
 /// The forms that a sentence may stand for, the preferred one first.
 #[pyfunction]
-pub(crate) fn language_read<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
-    let forms = py.engine(|| {
+pub(crate) fn language_read(py: Python<'_>, text: &str) -> PyResult<answers::Answer> {
+    py.engine(|| {
         let reading = Language::english().read(text).map_err(unread)?;
-        Ok::<_, PyFault>(serde_json::to_value(reading.forms)?)
-    })?;
-    values::object(py, &forms)
+        answers::Answer::of(&reading.forms)
+    })
 }
 
 /// The text of a form with the bytes of its noun phrases; nothing where English has no words for it.
@@ -104,14 +104,14 @@ pub(crate) fn language_say(
 
 /// A sentence read with the nouns of the house, and checked or answered: one mapping.
 #[pyfunction]
-pub(crate) fn world_check_text<'py>(
-    py: Python<'py>,
+pub(crate) fn world_check_text(
+    py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     text: &str,
     viewer: Data,
     agent: Option<usize>,
-) -> PyResult<Bound<'py, PyAny>> {
-    let checked = world.get().look(py, |running| {
+) -> PyResult<answers::Answer> {
+    world.get().look(py, |running| {
         let scene = running.scene();
         let checker = Checker::new(&scene, running.listener(viewer, agent)?);
         let checked = checker.check_text(text).map_err(unread)?;
@@ -130,13 +130,12 @@ pub(crate) fn world_check_text<'py>(
             phrases.collect::<Vec<Value>>()
         });
         let phrases: Vec<Value> = phrases.collect();
-        Ok(json!({
+        answers::Answer::of(&json!({
             "form": serde_json::to_value(&checked.form)?,
             "other_forms": serde_json::to_value(&checked.others)?,
             "said": said.map(|said| said.text),
             "phrases": phrases,
             "answer": checked.answer.map(|answer| running.answer(&answer)),
         }))
-    })?;
-    values::object(py, &checked)
+    })
 }

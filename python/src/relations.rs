@@ -1,8 +1,9 @@
 //! Predicates, relations and attributes for Python.
 
+use crate::answers::Answer;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use crate::values::{self, Data};
+use crate::values::Data;
 use crate::world::PyWorld;
 use crate::world_access::WorldAccess;
 use dwell_scene::space::rotation_from_yaw_pitch;
@@ -300,19 +301,15 @@ pub(crate) fn world_relation_array<'py>(
 
 /// What an object is like: one mapping.
 #[pyfunction]
-pub(crate) fn world_attributes<'py>(
-    py: Python<'py>,
+pub(crate) fn world_attributes(
+    py: Python<'_>,
     world: &Bound<'_, PyWorld>,
     named: Data,
-) -> PyResult<Bound<'py, PyAny>> {
-    let attributes = world.get().look(py, |running| {
+) -> PyResult<Answer> {
+    world.get().look(py, |running| {
         let id = running.object(&named.read()?)?;
-        Ok(serde_json::to_value(object_attributes(
-            &running.scene(),
-            id,
-        ))?)
-    })?;
-    values::object(py, &attributes)
+        Answer::of(&object_attributes(&running.scene(), id))
+    })
 }
 
 /// The words for an object's colours out of a vocabulary of so many, with their shares.
