@@ -9,13 +9,14 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 use dwell_acoustics::Recording;
 use dwell_acoustics::hdf5::Hdf5;
 use dwell_calibration::{Options, calibrate};
+use dwell_semantics::language::Language;
 use tempfile::TempDir;
 
 use super::bodies::{live_in, read};
 use super::samples::{NAMES, Sample, files_below, sample};
 
 /// Targets beside those of [`NAMES`].
-pub const OTHERS: [&str; 3] = ["bundle", "sound", "head"];
+pub const OTHERS: [&str; 4] = ["bundle", "sound", "head", "sentence"];
 
 /// Files with one ending that a corpus begins with. The studio has some hundred of them, all alike.
 const SEEDS_AN_ENDING: usize = 8;
@@ -114,6 +115,35 @@ impl Target for HeadFiles {
     }
 }
 
+/// Sentences of a stranger.
+struct Sentences;
+
+impl Target for Sentences {
+    fn files(&self) -> Vec<(String, Vec<u8>)> {
+        let texts = [
+            "The small brown wooden chair is next to a table that is in the kitchen.",
+            "Pick up the mug on the table, then put the mug in the second bedroom.",
+            "How many red and blue chairs but not near the bed are there?",
+        ];
+        let of = |text: &&str| ((*text).to_owned(), text.as_bytes().to_vec());
+        texts.iter().map(of).collect()
+    }
+
+    fn take(&self, _: usize, bytes: &[u8]) {
+        let text = String::from_utf8_lossy(bytes);
+        match Language::english().read(&text) {
+            // What was read can be said, and means the same again.
+            Ok(reading) => {
+                if let Some(said) = Language::english().say(&reading.forms[0], None) {
+                    let again = Language::english().read(&said.text);
+                    assert!(again.is_ok_and(|again| again.forms.contains(&reading.forms[0])));
+                }
+            }
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}
+
 /// A WAV file of 64 samples, integers, 16 kHz, one channel.
 fn ramp(bits: u16) -> Vec<u8> {
     let width = u32::from(bits / 8);
@@ -186,6 +216,7 @@ fn target(name: &str) -> Box<dyn Target> {
         "bundle" => Box::new(MeasuredBundle::new()),
         "sound" => Box::new(SoundFiles),
         "head" => Box::new(HeadFiles),
+        "sentence" => Box::new(Sentences),
         _ if NAMES.contains(&name) => Box::new(sample(name)),
         _ => panic!("no target {name:?}; there are {NAMES:?} and {OTHERS:?}"),
     }
