@@ -1,6 +1,7 @@
 //! Collision shapes of a part.
 
 use crate::bounds::Aabb;
+use crate::error::{SceneError, range};
 use crate::space::Pose;
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
@@ -80,32 +81,60 @@ impl Collider {
         }
     }
 
-    /// Returns whether its numbers are finite and all of it lies within `reach_m` of the part's origin; sizes count without their sign,
-    /// as physics takes them.
-    pub fn is_valid(&self, reach_m: f32) -> bool {
-        let around = |middle: Vec3, size_m: f32| middle.abs().max_element() + size_m.abs();
-        let far_m = match self {
+    /// Checks that its sizes are above 0, its numbers finite and all of it within `reach_m` of the part's origin.
+    ///
+    /// # Errors
+    /// [`SceneError::Range`] with the field; `at`: where the collider stands.
+    pub(crate) fn check(&self, at: &str, reach_m: f32) -> Result<(), SceneError> {
+        let pose = |field, pose: &Pose| {
+            let allowed = "finite with a unit quaternion";
+            range(at, field, pose.is_valid(), "not rigid", allowed)
+        };
+        let size = |field, smallest: f32, found: String| {
+            range(at, field, smallest > 0.0, found, "numbers above 0")
+        };
+        let near = |field, center: Vec3, radius: f32| {
+            let far_m = center.abs().max_element() + radius;
+            let allowed = "finite numbers, all of the shape within 32768 m of the part's origin";
+            range(at, field, far_m <= reach_m, far_m, allowed)
+        };
+        match self {
             Self::Cuboid {
                 part_from_box,
                 half_extents,
-            } if part_from_box.is_valid() => around(part_from_box.position, half_extents.length()),
-            Self::Ball { center, radius } if center.is_finite() => around(*center, *radius),
+            } => {
+                let smallest = half_extents.min_element();
+                pose("part_from_box", part_from_box)?;
+                size("half_extents", smallest, half_extents.to_string())?;
+                let (center, radius) = (part_from_box.position, half_extents.length());
+                near("part_from_box, half_extents", center, radius)
+            }
+            Self::Ball { center, radius } => {
+                size("radius", *radius, radius.to_string())?;
+                near("center, radius", *center, *radius)
+            }
             Self::Cylinder {
                 part_from_cylinder,
                 half_height,
                 radius,
-            } if part_from_cylinder.is_valid() => around(
-                part_from_cylinder.position,
-                half_height.abs() + radius.abs(),
-            ),
-            Self::Hull { points } if points.iter().all(|point| point.is_finite()) => points
-                .iter()
-                .map(|point| point.abs().max_element())
-                .fold(0.0, f32::max),
-            Self::ExactMesh => 0.0,
-            _ => return false,
-        };
-        far_m <= reach_m
+            } => {
+                pose("part_from_cylinder", part_from_cylinder)?;
+                let smallest = half_height.min(*radius);
+                let found = format!("{half_height}, {radius}");
+                size("half_height, radius", smallest, found)?;
+                let center = part_from_cylinder.position;
+                let field = "part_from_cylinder, half_height, radius";
+                near(field, center, half_height + radius)
+            }
+            Self::Hull { points } => {
+                let far = points
+                    .iter()
+                    .find(|point| !(point.is_finite() && point.abs().max_element() <= reach_m));
+                let far = far.map_or(0.0, |point| point.abs().max_element());
+                near("points", Vec3::splat(far), 0.0)
+            }
+            Self::ExactMesh => Ok(()),
+        }
     }
 
     /// A box with the given corners.

@@ -57,6 +57,16 @@ impl SceneNode {
             NodeRole::Object => None,
         }
     }
+
+    /// Returns whether its transform leaves it a volume; one that does not is reported.
+    fn keeps_volume(&self, at: &FileLocation, report: &mut LoadReport) -> bool {
+        let keeps = !space::flattens(&self.world_from_mesh.matrix3);
+        if !keeps {
+            let reason = "it flattens space".to_owned();
+            report.warn(at.field(&self.name), WarningKind::BadTransform { reason });
+        }
+        keeps
+    }
 }
 
 /// A room that a file names.
@@ -134,6 +144,7 @@ impl ImportedScene {
         let (structure, objects): (Vec<_>, Vec<_>) = things
             .into_iter()
             .filter(|thing| !thing.mesh.triangles.is_empty())
+            .filter(|thing| thing.keeps_volume(at, report))
             .partition(|thing| thing.structure_kind().is_some());
         let alone = structure.is_empty() && given.is_empty() && objects.len() == 1;
         for thing in structure {
@@ -151,6 +162,9 @@ impl ImportedScene {
         }
         builder.settle(alone, known);
         lamps::hang(self.lamps, &mut builder.data, &builder.bounds);
+        if builder.data.structure.is_empty() && builder.data.objects.is_empty() {
+            return Err(HousesError::empty(at, report));
+        }
         House::new(builder.data).map_err(HousesError::scene(at))
     }
 }
@@ -256,9 +270,10 @@ pub(crate) fn room_over_floors(data: &mut HouseData) {
     let bounds = data.levels[LEVEL].bounds;
     let ceiling_y = of(StructureKind::Ceiling)
         .map(|mesh| mesh.bounds().min.y)
+        .filter(|ceiling_y| *ceiling_y >= floor_y)
         .reduce(f32::min)
         .unwrap_or(bounds.max.y);
-    let room = Room {
+    let mut room = Room {
         name: "room_1".to_owned(),
         level: LEVEL,
         kinds: Vec::new(),
@@ -267,6 +282,7 @@ pub(crate) fn room_over_floors(data: &mut HouseData) {
         ceiling_y,
         bounds,
     };
+    room.repair();
     let id = data.rooms.push(room);
     data.structure
         .iter_mut()
@@ -304,7 +320,7 @@ impl HouseBuilder {
             bounds.add_point(Vec3::new(p.x, room.floor_y, p.y));
             bounds.add_point(Vec3::new(p.x, room.ceiling_y, p.y));
         }
-        self.data.rooms.push(Room {
+        let mut room = Room {
             name: self.room_names.unique(&room.name),
             level: LevelId(room.level as u32),
             kinds: room.kinds,
@@ -312,7 +328,9 @@ impl HouseBuilder {
             floor_y: room.floor_y,
             ceiling_y: room.ceiling_y,
             bounds,
-        });
+        };
+        room.repair();
+        self.data.rooms.push(room);
     }
 
     fn structure(&mut self, thing: SceneNode) {

@@ -296,7 +296,7 @@ impl ProcThorReader<'_> {
                 WarningKind::DuplicateId { id, renamed },
             );
         }
-        let id = self.assembly.data.rooms.push(Room {
+        let mut built = Room {
             name: name.clone(),
             level: self.assembly.level,
             kinds: if kind.is_empty() {
@@ -308,7 +308,9 @@ impl ProcThorReader<'_> {
             floor_y,
             ceiling_y,
             bounds,
-        });
+        };
+        built.repair();
+        let id = self.assembly.data.rooms.push(built);
         let floor = self.finish(&room.floor_material, &format!("{at}.floorMaterial"));
         let above = &file.procedural_parameters.ceiling_material;
         let ceiling = self.finish(above, "proceduralParameters.ceilingMaterial");

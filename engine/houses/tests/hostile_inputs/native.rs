@@ -18,6 +18,23 @@ pub(crate) fn native(folder: &Path, change: impl FnOnce(Value) -> Value) -> Path
     path
 }
 
+/// A furnished house in our form, with a field of its first part, of that part's first collider or of its first receptacle set.
+fn furnished(folder: &Path, what: &str, field: &str, value: Value) -> PathBuf {
+    let (house, _) = dwell_houses::open("builtin:studio").unwrap();
+    let path = folder.join("a.dwell");
+    dwell_houses::native::write(&house, &path).unwrap();
+    let text = std::fs::read(path.join("house.json")).unwrap();
+    let file = serde_json::from_slice(&text).unwrap();
+    let place = match what {
+        "collider" => "/house/parts/0/colliders/0",
+        "part" => "/house/parts/0",
+        _ => "/house/receptacles/0",
+    };
+    let file = with(file, &format!("{place}/{field}"), value);
+    put(&path, "house.json", file.to_string());
+    path
+}
+
 pub(crate) const CASES: &[Case] = &[
     fails(
         "a later version",
@@ -146,4 +163,76 @@ pub(crate) const CASES: &[Case] = &[
         },
         &["house.json:1", "invalid type: sequence"],
     ),
+    fails(
+        "a ceiling below the floor",
+        |d| native(d, |file| with(file, "/house/rooms/0/ceiling_y", json!(-3))),
+        &[
+            "house.json",
+            "rooms[0]",
+            "ceiling_y is -3 with floor_y 0",
+            "at least floor_y",
+        ],
+    ),
+    fails(
+        "a floor of lines",
+        |d| {
+            let line = json!([[[0, 0], [1, 1], [1, 1]]]);
+            native(d, |file| with(file, "/house/rooms/0/footprint", line))
+        },
+        &["rooms[0]", "footprint is a triangle without area at [0]"],
+    ),
+    fails(
+        "a storey whose corners changed places",
+        |d| {
+            native(d, |file| {
+                with(file, "/house/levels/0/bounds/min", json!([9, 0, 0]))
+            })
+        },
+        &["levels[0]", "bounds is [9, 0, 0] to", "smallest corner"],
+    ),
+    fails(
+        "a room whose corners changed places",
+        |d| {
+            native(d, |file| {
+                with(file, "/house/rooms/0/bounds/min", json!([0, 99, 0]))
+            })
+        },
+        &["rooms[0]", "bounds is [0, 99, 0] to"],
+    ),
+    fails(
+        "a collider without a size",
+        |d| furnished(d, "collider", "half_extents", json!([0.4, 0, 0.1])),
+        &["colliders[0]", "half_extents is [0.4, 0, 0.1]", "above 0"],
+    )
+    .heavy(),
+    fails(
+        "a collider turned inside out",
+        |d| furnished(d, "collider", "half_extents", json!([0.4, -1, 0.1])),
+        &["colliders[0]", "half_extents is [0.4, -1, 0.1]", "above 0"],
+    )
+    .heavy(),
+    fails(
+        "a collider of 1e9 m",
+        |d| furnished(d, "collider", "half_extents", json!([1e9, 1, 1])),
+        &["part_from_box, half_extents is 1000000000", "32768 m"],
+    )
+    .heavy(),
+    fails(
+        "a mesh that is flattened",
+        |d| {
+            let flat = json!([1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0]);
+            furnished(d, "part", "part_from_mesh", flat)
+        },
+        &["objects[0]", "part_from_mesh", "flattens space"],
+    )
+    .heavy(),
+    fails(
+        "a shelf whose corners changed places",
+        |d| {
+            let space = json!({"min": [1, 0, 0], "max": [0, 1, 1]});
+            furnished(d, "receptacle", "space_in_part", space)
+        },
+        &["receptacles[0]", "space_in_part is [1, 0, 0] to [0, 1, 1]"],
+    )
+    .heavy(),
 ];

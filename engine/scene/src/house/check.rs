@@ -1,18 +1,20 @@
 //! The one check of a house's tables.
 
+use super::check_rooms;
 use super::data::{AgentStart, HouseData, Mobility, Room};
 use crate::articulation::Articulation;
 use crate::collider::Collider;
 use crate::error::{SceneError, range};
 use crate::fixtures::{LightShape, SoundFile};
 use crate::ids::{Id, IdVec, JointId, MaterialId, MeshId};
+use crate::space::flattens;
 use glam::Vec3A;
 use std::collections::BTreeSet;
 
 /// Largest coordinate of anything, m: beyond it f32 positions are coarser than 4 mm.
-const LARGEST_COORDINATE_M: f32 = 32_768.0;
+pub(super) const LARGEST_COORDINATE_M: f32 = 32_768.0;
 
-fn exists<I: Id, T>(
+pub(super) fn exists<I: Id, T>(
     at: &str,
     table: &'static str,
     items: &IdVec<I, T>,
@@ -70,7 +72,7 @@ fn slots(
     )
 }
 
-fn is_near(coordinate_m: f32) -> bool {
+pub(super) fn is_near(coordinate_m: f32) -> bool {
     coordinate_m.abs() <= LARGEST_COORDINATE_M
 }
 
@@ -112,22 +114,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
             exists(&at, "textures", &data.textures, texture)?;
         }
     }
-    for (id, room) in data.rooms.iter_ids() {
-        let at = format!("rooms[{}] {:?}", id.0, room.name);
-        exists(&at, "levels", &data.levels, room.level)?;
-        let footprint = room.footprint.iter().flatten();
-        let far = footprint
-            .flat_map(glam::Vec2::to_array)
-            .chain([room.floor_y, room.ceiling_y])
-            .find(|x| !is_near(*x));
-        range(
-            &at,
-            "footprint, floor_y, ceiling_y",
-            far.is_none(),
-            far.unwrap_or_default(),
-            "coordinates within 32768 m of the origin",
-        )?;
-    }
+    check_rooms::check(data)?;
     for (id, piece) in data.structure.iter_ids() {
         let at = format!("structure[{}] {:?}", id.0, piece.name);
         exists(&at, "levels", &data.levels, piece.level)?;
@@ -146,29 +133,9 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     objects(data)?;
-    boxes(data)?;
     joints(data)?;
     fixtures(data)?;
     data.sky.map_or(Ok(()), |sky| sky.check())
-}
-
-/// The boxes of storeys and rooms: grids over them are made.
-fn boxes(data: &HouseData) -> Result<(), SceneError> {
-    let levels = data.levels.iter_ids();
-    let levels = levels.map(|(id, level)| ("levels", id.0, &level.bounds));
-    let rooms = data.rooms.iter_ids();
-    let rooms = rooms.map(|(id, room)| ("rooms", id.0, &room.bounds));
-    for (table, id, bounds) in levels.chain(rooms) {
-        let far = bounds.min.abs().max(bounds.max.abs()).max_element();
-        range(
-            &format!("{table}[{id}]"),
-            "bounds",
-            bounds.is_empty() || far <= LARGEST_COORDINATE_M,
-            far,
-            "coordinates within 32768 m of the origin",
-        )?;
-    }
-    Ok(())
 }
 
 fn objects(data: &HouseData) -> Result<(), SceneError> {
@@ -234,6 +201,13 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
                 "not finite",
                 "finite numbers",
             )?;
+            range(
+                &at,
+                "part_from_mesh",
+                !flattens(&part.part_from_mesh.matrix3),
+                "a transform that flattens space",
+                "one that keeps a volume",
+            )?;
             if part.mesh.index() < data.meshes.len() {
                 let bounds = data.meshes[part.mesh].bounds();
                 let reach = Vec3A::from(bounds.min.abs().max(bounds.max.abs()));
@@ -278,12 +252,7 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             }
             for (k, collider) in part.colliders.iter().enumerate() {
                 let at = format!("{at} colliders[{k}]");
-                let (ok, found) = (
-                    collider.is_valid(LARGEST_COORDINATE_M),
-                    format!("{collider:?}"),
-                );
-                let allowed = "finite numbers, all within 32768 m of the part's origin";
-                range(&at, "shape", ok, found, allowed)?;
+                collider.check(&at, LARGEST_COORDINATE_M)?;
             }
             let exact = part.colliders.contains(&Collider::ExactMesh);
             range(
@@ -531,7 +500,17 @@ fn fixtures(data: &HouseData) -> Result<(), SceneError> {
             "0 to 86400",
         )?;
     }
+    receptacles(data)?;
     sounds_and_starts(data)
+}
+
+/// The free spaces of receptacles: things are laid into them.
+fn receptacles(data: &HouseData) -> Result<(), SceneError> {
+    for (k, receptacle) in data.receptacles.iter().enumerate() {
+        let at = format!("receptacles[{k}] {:?}", receptacle.name);
+        check_rooms::bounds(&at, "space_in_part", &receptacle.space_in_part)?;
+    }
+    Ok(())
 }
 
 fn sounds_and_starts(data: &HouseData) -> Result<(), SceneError> {

@@ -91,11 +91,12 @@ pub struct Room {
     pub level: LevelId,
     /// Kinds of room, in plain lower-case words (`"living room"`), most fitting first; may be empty.
     pub kinds: Vec<String>,
-    /// The floor seen from above as triangles of (x, z), m; they may overlap those of other rooms, but not each other.
+    /// The floor seen from above as triangles of (x, z) with an area, m; they may overlap those of other rooms, but not each
+    /// other.
     pub footprint: Vec<[Vec2; 3]>,
     /// Height of the walkable floor, m.
     pub floor_y: f32,
-    /// Height of the ceiling's lower face, m.
+    /// Height of the ceiling's lower face, m; at least `floor_y`.
     pub ceiling_y: f32,
     /// The box of the source file (it may stick out through doors), m.
     pub bounds: Aabb,
@@ -104,6 +105,15 @@ pub struct Room {
 impl Room {
     /// The largest number in a house, since a point is looked up in every room. Houses of SUNCG and ProcTHOR have some dozens.
     pub const MOST: usize = 500;
+
+    /// Puts right what importers cannot rule out: leaves triangles without area out of the footprint, and lifts a ceiling below
+    /// the floor to the floor. Returns the height of such a ceiling, m.
+    pub fn repair(&mut self) -> Option<f32> {
+        self.footprint.retain(super::check_rooms::has_area);
+        let below = (self.ceiling_y < self.floor_y).then_some(self.ceiling_y);
+        self.ceiling_y = self.ceiling_y.max(self.floor_y);
+        below
+    }
 }
 
 /// The kind of a structure piece.

@@ -1,6 +1,7 @@
 //! The house: everything that never changes while worlds run.
 
 mod check;
+mod check_rooms;
 mod data;
 mod fingerprint;
 mod footprint;
