@@ -213,6 +213,16 @@ pub enum WarningKind {
         /// The consequence.
         consequence: String,
     },
+    /// A metadata table that is there and cannot be read: nothing of it is known.
+    #[error("table {path:?} could not be read ({reason}); {consequence}")]
+    UnreadableTable {
+        /// Relative to the data root.
+        path: String,
+        /// Why.
+        reason: String,
+        /// What is not known because of it.
+        consequence: String,
+    },
     /// A metadata row that could not be read.
     #[error("a row could not be read ({reason}); left out")]
     BadRow {

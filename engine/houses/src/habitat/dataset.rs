@@ -32,6 +32,15 @@ pub(super) enum TemplateKind {
 }
 
 impl TemplateKind {
+    /// Where the data set's file lists the folders of such templates.
+    fn field(self) -> &'static str {
+        match self {
+            Self::Stage => "stages.paths",
+            Self::Object => "objects.paths",
+            Self::Articulated | Self::Urdf => "articulated_objects.paths",
+        }
+    }
+
     fn ending(self) -> &'static str {
         match self {
             Self::Stage => ".stage_config.json",
@@ -71,7 +80,10 @@ impl Dataset {
     /// # Errors
     /// [`HousesError::Io`], [`HousesError::TooLarge`], and [`HousesError::Syntax`] when the data set's file is no JSON of
     /// that form.
-    pub(super) fn around(path: &Path) -> Result<(Self, String), HousesError> {
+    pub(super) fn around(
+        path: &Path,
+        report: &mut LoadReport,
+    ) -> Result<(Self, String), HousesError> {
         let real = path.canonicalize().map_err(HousesError::io(path))?;
         let folder = real.parent().unwrap_or_else(|| Path::new("/"));
         let mut base = (folder.to_owned(), String::new());
@@ -110,7 +122,15 @@ impl Dataset {
             TemplateKind::Articulated,
             TemplateKind::Urdf,
         ] {
-            let files = dataset.files(&dataset.section(kind).paths, kind.ending());
+            // The paths of articulated objects are those of URDFs too, and reported once.
+            let mut again = LoadReport::new();
+            let report = if kind == TemplateKind::Urdf {
+                &mut again
+            } else {
+                &mut *report
+            };
+            let paths = &dataset.section(kind).paths;
+            let files = dataset.files(paths, kind.ending(), kind.field(), report);
             dataset.names.insert(kind.ending(), files);
         }
         Ok((dataset, scene))
@@ -124,16 +144,31 @@ impl Dataset {
         }
     }
 
-    /// Files that end in `ending` in the folders of `paths`, by the name before the ending.
+    /// Files that end in `ending` in the folders that `paths` names, by the name before the ending; patterns that are not followed
+    /// are reported at `field`.
     fn files(
         &self,
         paths: &BTreeMap<String, Vec<String>>,
         ending: &str,
+        field: &str,
+        report: &mut LoadReport,
     ) -> BTreeMap<String, Vec<String>> {
         let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let at = FileLocation::file(&self.path).field(field);
         for pattern in paths.values().flatten() {
-            for folder in self.folders(pattern) {
-                for name in self.root.names(&folder).unwrap_or_default() {
+            let refused = || WarningKind::PathRefused {
+                path: pattern.clone(),
+            };
+            let folders = self.folders(pattern).unwrap_or_else(|damage| {
+                report.warn(at.clone(), damage);
+                Vec::new()
+            });
+            for folder in folders {
+                let names = self.root.names(&folder);
+                if let Err(HousesError::PathLeavesRoot { .. }) = names {
+                    report.warn(at.clone(), refused());
+                }
+                for name in names.unwrap_or_default() {
                     let path = join(&folder, &name);
                     if let Some(stem) = name.strip_suffix(ending) {
                         found.entry(stem.to_owned()).or_default().push(path);
@@ -150,12 +185,20 @@ impl Dataset {
 
     /// The folders of a pattern: itself, or with `*` every folder of that place, and the place as well, whose files
     /// the star also matches.
-    fn folders(&self, pattern: &str) -> Vec<String> {
+    ///
+    /// # Errors
+    /// What is wrong with a pattern that is not followed.
+    fn folders(&self, pattern: &str) -> Result<Vec<String>, WarningKind> {
         let Ok(clean) = DataRoot::resolve("", pattern) else {
-            return Vec::new();
+            let path = pattern.to_owned();
+            return Err(WarningKind::PathRefused { path });
         };
-        if clean.split('/').count() > MAX_PATTERN_WORDS {
-            return Vec::new();
+        let words = clean.split('/').count();
+        if words > MAX_PATTERN_WORDS {
+            let what = format!(
+                "a pattern of {words} folders in each other is not followed; at most {MAX_PATTERN_WORDS} are"
+            );
+            return Err(WarningKind::Simplified { what });
         }
         let mut folders = vec![String::new()];
         for word in clean.split('/') {
@@ -169,10 +212,16 @@ impl Dataset {
                     next.push(join(folder, word));
                 }
             }
-            next.truncate(MAX_NODES);
+            if next.len() > MAX_NODES {
+                let found = next.len();
+                let what = format!(
+                    "pattern {pattern:?} is not followed: it means {found} folders; at most {MAX_NODES} are looked into"
+                );
+                return Err(WarningKind::Simplified { what });
+            }
             folders = next;
         }
-        folders
+        Ok(folders)
     }
 
     /// The template of `name`: one of the data set's own, else the file whose path ends in it.
@@ -245,7 +294,8 @@ impl Dataset {
         let table = &self.file.semantic_scene_descriptor_instances;
         let section: TemplateSection =
             serde_json::from_value(Value::Object(table.clone())).unwrap_or_default();
-        let files = self.files(&section.paths, ".semantic_config.json");
+        let field = "semantic_scene_descriptor_instances.paths";
+        let files = self.files(&section.paths, ".semantic_config.json", field, report);
         let path = files.get(scene).and_then(|paths| paths.first()).cloned();
         let mut rooms = SemanticFile::default();
         let mut at = FileLocation::file(&self.path);
@@ -265,9 +315,10 @@ impl Dataset {
                 }
                 Err(error) => report.warn(
                     at.clone(),
-                    WarningKind::MissingTable {
+                    WarningKind::UnreadableTable {
                         path,
-                        consequence: format!("rooms are not known ({})", error.reason()),
+                        reason: error.reason(),
+                        consequence: "rooms are not known".to_owned(),
                     },
                 ),
             }
@@ -287,13 +338,21 @@ impl Dataset {
                 Ok(file) => {
                     names.extend(file.classes.into_iter().map(|class| (class.id, class.name)));
                 }
-                Err(error) => report.warn(
-                    FileLocation::file(&path),
-                    WarningKind::MissingTable {
-                        path: path.clone(),
-                        consequence: format!("semantic ids have no names ({})", error.reason()),
-                    },
-                ),
+                Err(error) => {
+                    let consequence = "semantic ids have no names".to_owned();
+                    let at = FileLocation::file(&path);
+                    let damage = if self.root.exists(&path) {
+                        let reason = error.reason();
+                        WarningKind::UnreadableTable {
+                            path,
+                            reason,
+                            consequence,
+                        }
+                    } else {
+                        WarningKind::MissingTable { path, consequence }
+                    };
+                    report.warn(at, damage);
+                }
             }
         }
         (at, rooms, names)

@@ -42,7 +42,8 @@ pub(crate) fn recognizes(path: &Path) -> bool {
 /// that form, [`HousesError::TooLarge`] for more instances than are read, [`HousesError::Empty`] when no triangle is left,
 /// [`HousesError::Scene`] when the result breaks a rule of the scene. Everything else is reported.
 pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), HousesError> {
-    let (dataset, scene_path) = Dataset::around(path)?;
+    let mut report = LoadReport::new();
+    let (dataset, scene_path) = Dataset::around(path, &mut report)?;
     let at = FileLocation::file(&scene_path);
     let scene: SceneFile = dataset::read_json(&dataset.root, &scene_path)?;
     let count = scene.object_instances.len() + scene.articulated_object_instances.len();
@@ -56,7 +57,6 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
     }
     let name = scene_path.rsplit('/').next().unwrap_or(&scene_path);
     let name = name.strip_suffix(SCENE_ENDING).unwrap_or(name).to_owned();
-    let mut report = LoadReport::new();
     let (semantic_at, semantics, lexicon) = dataset.semantics(&name, &mut report);
     let regions = stage::regions(semantics, &semantic_at, &mut report);
     let mut reader = HabitatReader {
@@ -97,7 +97,8 @@ pub fn open(path: &Path, threads: Threads) -> Result<(House, LoadReport), Houses
             WarningKind::Simplified { what },
         );
     }
-    let data = reader.data;
+    let mut data = reader.data;
+    stage::grow_empty_storeys(&mut data);
     if data.meshes.iter().all(|mesh| mesh.triangles.is_empty()) {
         return Err(HousesError::empty(&at, &report));
     }
@@ -122,6 +123,12 @@ struct HabitatReader<'a> {
 impl HabitatReader<'_> {
     fn stage(&mut self, value: Value, regions: &[file::Region], at: &FileLocation) {
         let at = at.field("stage_instance");
+        if value.is_null() {
+            let consequence = "the scene has no walls and no floors".to_owned();
+            return self
+                .report
+                .warn(at, WarningKind::MissingField { consequence });
+        }
         let Some(instance) = self.instance(value, &at) else {
             return;
         };
@@ -131,14 +138,9 @@ impl HabitatReader<'_> {
         let Some(template) = self.parse::<Template>(&found) else {
             return;
         };
-        let placed = (
-            place::pose(&instance),
-            place::scale(&instance),
-            place::template_from_asset(&template),
-        );
-        let (Some(pose), Some(scale), Some(frame)) = placed else {
-            let reason = "numbers that are no place, no scale or no directions".to_owned();
-            return self.report.warn(at, WarningKind::BadTransform { reason });
+        let (pose, scale, frame) = match place::placement(&instance, &template) {
+            Ok(placement) => placement,
+            Err(reason) => return self.report.warn(at, WarningKind::BadTransform { reason }),
         };
         let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
             return;

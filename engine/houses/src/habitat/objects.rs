@@ -28,16 +28,13 @@ impl HabitatReader<'_> {
         let Some(template) = self.parse::<Template>(&found) else {
             return;
         };
-        let placed = (
-            place::pose(instance),
-            place::scale(instance),
-            place::template_from_asset(&template),
-        );
-        let (Some(pose), Some(scale), Some(frame)) = placed else {
-            let reason = "numbers that are no place, no scale or no directions".to_owned();
-            return self
-                .report
-                .warn(at.clone(), WarningKind::BadTransform { reason });
+        let (pose, scale, frame) = match place::placement(instance, &template) {
+            Ok(placement) => placement,
+            Err(reason) => {
+                return self
+                    .report
+                    .warn(at.clone(), WarningKind::BadTransform { reason });
+            }
         };
         let Some(path) = Assets::path(&found, &template.render_asset, self.report) else {
             return;

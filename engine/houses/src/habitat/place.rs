@@ -27,9 +27,33 @@ pub(super) fn scale(instance: &SceneInstance) -> Option<Vec3> {
     scale.to_array().into_iter().all(usable).then_some(scale)
 }
 
-/// The transform from an asset's own axes to the template's (+Y up, -Z front), with its scale; `None` when the template's directions are
-/// invalid or its scale is not usable.
-pub(super) fn template_from_asset(template: &Template) -> Option<Affine3A> {
+/// Where an instance stands, its scale, and [`template_from_asset`].
+///
+/// # Errors
+/// The field that is not usable, and what it holds.
+pub(super) fn placement(
+    instance: &SceneInstance,
+    template: &Template,
+) -> Result<(Pose, Vec3, Affine3A), String> {
+    let pose = pose(instance).ok_or_else(|| {
+        let (to, turn) = (instance.translation, instance.rotation);
+        format!("translation is {to:?} and rotation {turn:?}")
+    })?;
+    let scale = scale(instance).ok_or_else(|| {
+        let (all, each) = (instance.uniform_scale, instance.non_uniform_scale);
+        format!("uniform_scale is {all} and non_uniform_scale {each:?}")
+    })?;
+    let frame = template_from_asset(template).ok_or_else(|| {
+        let (up, front) = (template.up, template.front);
+        let (scale, units) = (template.scale, template.units_to_meters);
+        format!("in its template up is {up:?}, front {front:?}, scale {scale:?} and units_to_meters {units}")
+    })?;
+    Ok((pose, scale, frame))
+}
+
+/// From an asset's own axes to the template's (+Y up, -Z front), with its scale; `None` when the template's directions are
+/// none or its scale is not usable.
+fn template_from_asset(template: &Template) -> Option<Affine3A> {
     let up = Vec3::from_array(template.up).try_normalize()?;
     let front = Vec3::from_array(template.front);
     let front = (front - up * front.dot(up)).try_normalize()?;

@@ -172,15 +172,18 @@ pub(super) fn rooms(
     heights.sort_by(f32::total_cmp);
     heights.dedup_by(|upper, lower| *upper - *lower < STOREY_M);
     if heights.is_empty() {
-        heights.push(bounds.min.y);
+        heights.push(if bounds.is_empty() { 0.0 } else { bounds.min.y });
     }
     for k in 0..heights.len() {
         let top = heights.get(k + 1).copied().unwrap_or(bounds.max.y);
         let low = if k == 0 { bounds.min.y } else { heights[k] };
-        data.levels.push(Level {
-            name: k.to_string(),
-            bounds: Aabb::new(bounds.min.with_y(low), bounds.max.with_y(top.max(low))),
-        });
+        let bounds = if bounds.is_empty() {
+            Aabb::EMPTY
+        } else {
+            Aabb::new(bounds.min.with_y(low), bounds.max.with_y(top.max(low)))
+        };
+        let name = k.to_string();
+        data.levels.push(Level { name, bounds });
     }
     let level_of = |y: f32| {
         let below = heights.iter().rposition(|floor| *floor <= y + FLOOR_M);
@@ -217,7 +220,7 @@ pub(super) fn rooms(
                 Vec::from_iter((!plain.is_empty()).then_some(plain))
             }
         };
-        data.rooms.push(Room {
+        let mut room = Room {
             name: names.unique(&region.name),
             level: level_of(floor_y),
             kinds,
@@ -225,10 +228,31 @@ pub(super) fn rooms(
             floor_y,
             ceiling_y,
             bounds,
-        });
+        };
+        room.repair();
+        data.rooms.push(room);
     }
     if regions.is_empty() {
         one_room(data, bounds);
+    }
+}
+
+/// Gives storeys without a building the box of what stands on them.
+pub(super) fn grow_empty_storeys(data: &mut HouseData) {
+    for level in data.levels.ids().collect::<Vec<_>>() {
+        if !data.levels[level].bounds.is_empty() {
+            continue;
+        }
+        let here = data
+            .parts
+            .iter()
+            .filter(|part| data.objects[part.object].level == level);
+        let boxes = here.map(|part| {
+            let map = part.world_from_part.to_affine() * part.part_from_mesh;
+            data.meshes[part.mesh].bounds().transformed(&map)
+        });
+        let bounds = boxes.fold(Aabb::EMPTY, |all, own| all.union(&own));
+        data.levels[level].bounds = bounds;
     }
 }
 
@@ -251,7 +275,7 @@ fn one_room(data: &mut HouseData, bounds: Aabb) {
             }
         }
     }
-    data.rooms.push(Room {
+    let mut room = Room {
         name: "room_1".to_owned(),
         level: LevelId(0),
         kinds: Vec::new(),
@@ -259,5 +283,7 @@ fn one_room(data: &mut HouseData, bounds: Aabb) {
         floor_y,
         ceiling_y: bounds.max.y,
         bounds,
-    });
+    };
+    room.repair();
+    data.rooms.push(room);
 }

@@ -9,7 +9,7 @@ use dwell_furniture::model_cache::cached_model;
 use dwell_furniture::shapes::{block, turn};
 use dwell_furniture::style::STYLES;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{Mobility, Pose};
+use dwell_scene::{Aabb, Mobility, Pose, RoomId};
 use glam::Vec3;
 use serde::Deserialize;
 
@@ -24,6 +24,9 @@ use crate::warning_kind::{UnmappedKind, WarningKind};
 const HALF_TURN: f32 = std::f32::consts::PI;
 /// Stretching beyond which, or below the inverse of which, it is reported.
 const ODD_STRETCH: f32 = 3.0;
+
+/// How far outside of a room's box the middle of a thing of that room may be, m: things hang in and on walls.
+const OUTSIDE_M: f32 = 0.5;
 
 /// A row of `assets/ai2thor_types.csv`.
 #[derive(Deserialize)]
@@ -129,6 +132,21 @@ impl ProcThorReader<'_> {
         let pose = Pose::new(middle, facing) * Pose::from_position(-center);
         self.assembly.place(kind, pose, room, 0.0);
         self.name_last(&object.id, &object.asset_id, at);
+        self.check_last(room, middle, at);
+    }
+
+    /// Takes the room from the object placed last where its middle lies outside of it, beyond walls, floor and ceiling.
+    fn check_last(&mut self, room: RoomId, middle: Vec3, at: &str) {
+        let data = &mut self.assembly.data;
+        let around = data.rooms[room].bounds;
+        let margin = Vec3::splat(OUTSIDE_M);
+        if Aabb::new(around.min - margin, around.max + margin).contains(middle) {
+            return;
+        }
+        if let Some(object) = data.objects.as_mut_slice().last_mut() {
+            object.room = None;
+        }
+        self.warn(at, WarningKind::OutsideRooms);
     }
 
     /// The model of an asset; `None` for an unknown one.

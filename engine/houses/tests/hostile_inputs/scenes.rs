@@ -183,6 +183,51 @@ pub(crate) const HABITAT: &[Case] = &[
         |d| habitat(d, BLOCK, "\"block.gltf\"", "[1]"),
         &[BLOCK, "invalid type"],
     ),
+    fails(
+        "no stage and nothing else",
+        |d| {
+            habitat_set::write(d);
+            put(d, SCENE, "{}")
+        },
+        &["the house is empty", "stage_instance: missing"],
+    ),
+    warns(
+        "no stage, but things",
+        |d| {
+            let stage = "\"stage_instance\": {\"template_name\": \"stages/room\"},";
+            habitat(d, SCENE, stage, "")
+        },
+        &[SCENE, "stage_instance: missing", "no walls and no floors"],
+    ),
+    warns(
+        "units of nothing",
+        |d| habitat(d, BLOCK, "{", "{\"units_to_meters\": 0, "),
+        &[SCENE, "object_instances[0]", "units_to_meters 0"],
+    ),
+    warns(
+        "folders out of the data set",
+        |d| habitat(d, DATASET, "objects/*", "../*"),
+        &[
+            DATASET,
+            "objects.paths",
+            "\"../*\" leaves the house's folder",
+        ],
+    ),
+    warns(
+        "folders from the root",
+        |d| habitat(d, DATASET, "[\"stages\"]", "[\"/etc\", \"stages\"]"),
+        &[DATASET, "stages.paths", "\"/etc\" leaves"],
+    ),
+    warns(
+        "13 folders in each other",
+        |d| habitat(d, DATASET, "urdf/*", &["*"; 13].join("/")),
+        &[
+            DATASET,
+            "articulated_objects.paths",
+            "13 folders in each other",
+            "at most 12",
+        ],
+    ),
 ];
 
 /// ProcTHOR's sample with one value set.
@@ -329,6 +374,11 @@ pub(crate) const PROCTHOR: &[Case] = &[
             house
         },
         &["asset-database.json"],
+    ),
+    warns(
+        "a thing 100 m below the floor",
+        |d| procthor(d, "/objects/0/position/y", json!(-100)),
+        &["home.json", "objects[0]", "stands outside of every room"],
     ),
 ];
 
