@@ -31,6 +31,8 @@ pub struct SuncgFiles {
     pub house: SuncgHouse,
     /// OBJ files by path relative to the root, with their materials; those that do not exist are absent.
     pub meshes: BTreeMap<String, MeshFiles>,
+    /// Paths of the OBJ files that are there and could not be read; the report says why.
+    pub unreadable: BTreeSet<String>,
     /// `arch.json` with its path, when the house has no room meshes.
     pub arch: Option<(String, ArchFile)>,
     /// Images by path relative to the root; those that do not exist or cannot be read are absent.
@@ -46,10 +48,23 @@ pub struct SuncgFiles {
 /// Paths of the files of a house, relative to the root.
 pub(super) mod paths {
     use super::NodeFile;
+    use crate::warning_kind::WarningKind;
 
     /// Returns whether an id can be the name of a file: it comes from the file and must not lead anywhere else.
     pub(in super::super) fn is_plain(id: &str) -> bool {
-        !id.is_empty() && id != "." && id != ".." && !id.contains(['/', '\\', ':', '\0'])
+        refusal(id).is_none()
+    }
+
+    /// Returns why an id is no name of a file, if it is none.
+    pub(in super::super) fn refusal(id: &str) -> Option<WarningKind> {
+        if id == ".." || id.contains(['/', '\\', ':']) {
+            let path = id.to_owned();
+            return Some(WarningKind::PathRefused { path });
+        }
+        (id.is_empty() || id == "." || id.contains('\0')).then(|| WarningKind::BadField {
+            found: format!("{id:?}"),
+            expected: "the name of a file".to_owned(),
+        })
     }
 
     /// The mesh of a model, or of its second state.
@@ -113,7 +128,7 @@ impl SuncgFiles {
         } else {
             folder.to_owned()
         };
-        let meshes = {
+        let (meshes, unreadable) = {
             let _span = debug_span!("meshes").entered();
             read_meshes(root, &scene_id, &house, threads, report)
         };
@@ -129,6 +144,7 @@ impl SuncgFiles {
             house_path: house_path.to_owned(),
             house,
             meshes,
+            unreadable,
             arch,
             textures,
             categories: CategoryTable::default(),
@@ -188,7 +204,7 @@ fn read_meshes(
     house: &SuncgHouse,
     threads: Threads,
     report: &mut LoadReport,
-) -> BTreeMap<String, MeshFiles> {
+) -> (BTreeMap<String, MeshFiles>, BTreeSet<String>) {
     let wanted: BTreeSet<String> = nodes(house)
         .flat_map(|node| paths::of_node(scene_id, node))
         .collect();
@@ -201,14 +217,16 @@ fn read_meshes(
         let files = read_mesh(root, &wanted[k], &mut report);
         (files, report)
     });
-    let mut meshes = BTreeMap::new();
+    let (mut meshes, mut unreadable) = (BTreeMap::new(), BTreeSet::new());
     for (path, (files, own)) in wanted.into_iter().zip(read) {
         report.append(own);
         if let Some(files) = files {
             meshes.insert(path, files);
+        } else {
+            unreadable.insert(path);
         }
     }
-    meshes
+    (meshes, unreadable)
 }
 
 /// The walls of the second release, where no room mesh is there.

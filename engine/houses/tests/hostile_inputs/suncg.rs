@@ -339,7 +339,11 @@ pub(crate) const CASES: &[Case] = &[
             put(d, "metadata/ModelCategoryMapping.csv", bytes);
             house(d, r#"{"id": "0_1", "type": "None"}"#)
         },
-        &["metadata/ModelCategoryMapping.csv:1", "invalid UTF-8"],
+        &[
+            "metadata/ModelCategoryMapping.csv",
+            "could not be read (",
+            "no object has a category",
+        ],
     ),
     warns(
         "classes that nobody knows",
@@ -361,5 +365,67 @@ pub(crate) const CASES: &[Case] = &[
             house(d, r#"{"id": "0_1", "type": "None"}"#)
         },
         &["metadata/suncgModelLights.json"],
+    ),
+    warns(
+        "categories in UTF-16",
+        |d| {
+            put(d, "metadata/ModelCategoryMapping.csv", b"\xff\xfem\0o\0");
+            house(d, "")
+        },
+        &[
+            "table \"metadata/ModelCategoryMapping.csv\" could not be read",
+            "UTF-16",
+            "no object has a category",
+        ],
+    ),
+    warns(
+        "categories parted by semicolons",
+        |d| {
+            let text = "model_id;fine_grained_class\n7;chair\n";
+            put(d, "metadata/ModelCategoryMapping.csv", text);
+            house(d, "")
+        },
+        &["could not be read", "no column", "parted by commas"],
+    ),
+    warns(
+        "a stray quote in categories",
+        |d| {
+            let text = "model_id,fine_grained_class\n7,\"chair\n8,table\n9,lamp\n";
+            put(d, "metadata/ModelCategoryMapping.csv", text);
+            house(d, "")
+        },
+        &["ModelCategoryMapping.csv", "over 3 more lines", "not read"],
+    ),
+    warns(
+        "lights that are a list",
+        |d| {
+            put(d, "metadata/suncgModelLights.json", "[]");
+            house(d, "")
+        },
+        &[
+            "suncgModelLights.json\" could not be read",
+            "no lamp shines",
+        ],
+    ),
+    warns(
+        "sounds that are cut",
+        |d| {
+            put(d, "metadata/sounds.json", "[{");
+            house(d, "")
+        },
+        &["metadata/sounds.json\" could not be read", "sounds"],
+    ),
+    warns(
+        "a model without a name",
+        |d| object(d, ""),
+        &[
+            "nodes[1].modelId",
+            "found \"\", expected the name of a file",
+        ],
+    ),
+    warns(
+        "a model named by a NUL",
+        |d| object(d, "a\0b"),
+        &["nodes[1].modelId", "expected the name of a file"],
     ),
 ];

@@ -42,13 +42,8 @@ impl<'a> Converter<'a> {
             };
             return self.report.warn(at.field("modelId"), damage);
         };
-        if !paths::is_plain(model) {
-            return self.report.warn(
-                at.field("modelId"),
-                WarningKind::PathRefused {
-                    path: model.to_owned(),
-                },
-            );
+        if let Some(damage) = paths::refusal(model) {
+            return self.report.warn(at.field("modelId"), damage);
         }
         let Some((pose, part_from_mesh)) = self.placement(node, &at) else {
             return;
@@ -133,7 +128,7 @@ impl<'a> Converter<'a> {
             return Some(base);
         }
         // An empty or unreadable file was reported when it was read.
-        if !self.files.meshes.contains_key(&path) {
+        if !self.files.meshes.contains_key(&path) && !self.files.unreadable.contains(&path) {
             self.report
                 .warn(at.clone(), WarningKind::MissingMesh { path });
         }

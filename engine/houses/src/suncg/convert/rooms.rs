@@ -94,16 +94,12 @@ impl<'a> Converter<'a> {
                     WarningKind::MissingField { consequence },
                 );
             }
-            Some(id) if !paths::is_plain(id) => {
-                self.report.warn(
-                    at.field("modelId"),
-                    WarningKind::PathRefused {
-                        path: id.to_owned(),
-                    },
-                );
-                return None;
+            Some(id) => {
+                if let Some(damage) = paths::refusal(id) {
+                    self.report.warn(at.field("modelId"), damage);
+                    return None;
+                }
             }
-            Some(_) => {}
         }
         model
     }
@@ -141,12 +137,12 @@ impl<'a> Converter<'a> {
         at: &FileLocation,
     ) {
         let Some((path, files)) = self.files.meshes.get_key_value(path) else {
-            self.report.warn(
-                at.clone(),
-                WarningKind::MissingMesh {
-                    path: path.to_owned(),
-                },
-            );
+            // One that could not be read was reported when it was.
+            if !self.files.unreadable.contains(path) {
+                let path = path.to_owned();
+                self.report
+                    .warn(at.clone(), WarningKind::MissingMesh { path });
+            }
             return;
         };
         let mesh_at = FileLocation::file(path);
@@ -310,7 +306,7 @@ impl<'a> Converter<'a> {
             top = 0.0;
         }
         let ceiling_y = ceiling_y.unwrap_or(if bounds.is_empty() { 0.0 } else { bounds.max.y });
-        Room {
+        let mut room = Room {
             name,
             level,
             kinds,
@@ -318,7 +314,15 @@ impl<'a> Converter<'a> {
             floor_y: top,
             ceiling_y,
             bounds,
+        };
+        if let Some(below) = room.repair() {
+            let what = format!(
+                "the ceiling is at {below} m, below the floor at {top} m; taken for at the floor"
+            );
+            self.report
+                .warn(at.clone(), WarningKind::Simplified { what });
         }
+        room
     }
 }
 

@@ -36,6 +36,7 @@ impl VoteTable {
             text,
             &["sceneId", "level", "posvote", "negvote"],
             &at,
+            "no storey has votes",
             report,
         ) else {
             return table;

@@ -40,7 +40,8 @@ impl CategoryTable {
             "wnsynsetid",
         ];
         let mut table = Self::default();
-        let Some(rows) = CsvRows::new(text, &names, &at, report) else {
+        let consequence = "no object has a category";
+        let Some(rows) = CsvRows::new(text, &names, &at, consequence, report) else {
             return table;
         };
         rows.each(&at, report, |row| {

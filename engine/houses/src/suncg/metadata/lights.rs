@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::base_model;
+use super::{base_model, unreadable};
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -54,10 +54,8 @@ impl LightTable {
         let models: BTreeMap<String, Value> = match crate::json::from_slice(text) {
             Ok(models) => models,
             Err(error) => {
-                let damage = WarningKind::BadRow {
-                    reason: crate::plain_parse_error(&error),
-                };
-                report.warn(at.line(error.line() as u32), damage);
+                let reason = crate::plain_parse_error(&error);
+                unreadable(&at, reason, "no lamp shines", report);
                 return table;
             }
         };

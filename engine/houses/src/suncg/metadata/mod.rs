@@ -36,17 +36,21 @@ pub(crate) fn read_table<'a>(
     match root.read(path, MAX_TEXT_BYTES) {
         Ok(bytes) => Some((path, bytes)),
         Err(error) => {
-            let consequence = format!("{consequence} ({})", error.reason());
-            report.warn(
-                FileLocation::file(*path),
-                WarningKind::MissingTable {
-                    path: (*path).to_owned(),
-                    consequence,
-                },
-            );
+            let at = FileLocation::file(*path);
+            unreadable(&at, error.reason(), consequence, report);
             None
         }
     }
+}
+
+/// Reports a table of which nothing could be read.
+fn unreadable(at: &FileLocation, reason: String, consequence: &str, report: &mut LoadReport) {
+    let damage = WarningKind::UnreadableTable {
+        path: at.file.clone(),
+        reason,
+        consequence: consequence.to_owned(),
+    };
+    report.warn(at.clone(), damage);
 }
 
 /// The id of the model that a variant belongs to: `122` of `122_0`.

@@ -46,7 +46,8 @@ impl ModelTable {
             "aligned.dims",
         ];
         let mut table = Self::default();
-        let Some(rows) = CsvRows::new(text, &names, &at, report) else {
+        let consequence = "no model has a size";
+        let Some(rows) = CsvRows::new(text, &names, &at, consequence, report) else {
             return table;
         };
         rows.each(&at, report, |row| {

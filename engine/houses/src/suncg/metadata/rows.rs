@@ -1,5 +1,6 @@
 //! Rows of a CSV table by column name.
 
+use super::unreadable;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -40,36 +41,37 @@ impl CsvRow<'_> {
 }
 
 impl<'a> CsvRows<'a> {
-    /// A table with the columns `names`; the first must exist.
+    /// A table with the columns `names`; the first must exist. `consequence`: what is not known without the table.
     pub(super) fn new(
         text: &'a [u8],
         names: &[&str],
         at: &FileLocation,
+        consequence: &str,
         report: &mut LoadReport,
     ) -> Option<Self> {
+        Self::read_head(text, names)
+            .map_err(|reason| unreadable(at, reason, consequence, report))
+            .ok()
+    }
+
+    fn read_head(text: &'a [u8], names: &[&str]) -> Result<Self, String> {
+        if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
+            return Err("it is UTF-16; save it as UTF-8".to_owned());
+        }
         let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text);
-        let headers = match reader.headers() {
-            Ok(headers) => headers.clone(),
-            Err(error) => {
-                let reason = error.to_string();
-                report.warn(at.line(1), WarningKind::BadRow { reason });
-                return None;
-            }
-        };
+        let headers = reader.headers().map_err(crate::plain_parse_error)?.clone();
         let columns: Vec<_> = names
             .iter()
             .map(|name| headers.iter().position(|header| header.trim() == *name))
             .collect();
         if columns.first().is_none_or(Option::is_none) {
-            let reason = format!(
-                "no column {:?} in {:?}",
-                names.first().unwrap_or(&""),
-                headers.iter().take(8).collect::<Vec<_>>()
-            );
-            report.warn(at.line(1), WarningKind::BadRow { reason });
-            return None;
+            let first = names.first().unwrap_or(&"");
+            let found: Vec<String> = headers.iter().take(8).map(shortened).collect();
+            return Err(format!(
+                "no column {first:?} in {found:?}; cells are parted by commas, and a quote has an end"
+            ));
         }
-        Some(Self { reader, columns })
+        Ok(Self { reader, columns })
     }
 
     /// Calls `row` for every row; rows that cannot be read, and those for which it returns an error, are reported.
@@ -86,11 +88,16 @@ impl<'a> CsvRows<'a> {
             }
             let result = match self.reader.read_record(&mut record) {
                 Ok(false) => return,
-                Ok(true) => row(&CsvRow {
-                    record: &record,
-                    columns: &self.columns,
-                })
-                .map_err(str::to_owned),
+                Ok(true) => match lines_of_cells(&record) {
+                    0 => row(&CsvRow {
+                        record: &record,
+                        columns: &self.columns,
+                    })
+                    .map_err(str::to_owned),
+                    lines => Err(format!(
+                        "a quote opens a cell that goes on over {lines} more lines; the rows there are not read"
+                    )),
+                },
                 Err(error) => Err(crate::plain_parse_error(&error)),
             };
             if let Err(reason) = result {
@@ -101,4 +108,17 @@ impl<'a> CsvRows<'a> {
             }
         }
     }
+}
+
+/// Ends of lines in the cells of a row: no cell of these tables has one.
+fn lines_of_cells(record: &csv::StringRecord) -> usize {
+    record
+        .iter()
+        .map(|cell| cell.bytes().filter(|byte| *byte == b'\n').count())
+        .sum()
+}
+
+/// The first 40 characters of a cell, for a message.
+fn shortened(cell: &str) -> String {
+    cell.chars().take(40).collect()
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::unreadable;
 use crate::report::{FileLocation, LoadReport};
-use crate::warning_kind::WarningKind;
 
 /// One entry: a category, or single models of it, and the sounds by event.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,10 +57,10 @@ impl SoundTable {
         match crate::json::from_slice(text) {
             Ok(entries) => Self { entries },
             Err(error) => {
-                let damage = WarningKind::BadRow {
-                    reason: crate::plain_parse_error(&error),
-                };
-                report.warn(FileLocation::file(file).line(error.line() as u32), damage);
+                let at = FileLocation::file(file);
+                let reason = crate::plain_parse_error(&error);
+                let consequence = "its sounds are not known";
+                unreadable(&at, reason, consequence, report);
                 Self::default()
             }
         }
