@@ -17,11 +17,7 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     if bytes.is_empty() {
         return Err("the file is empty; expected a GLB, or glTF 2.0 as JSON".to_owned());
     }
-    let (text, blob) = if bytes.starts_with(b"glTF") {
-        chunks(bytes)?
-    } else {
-        (without_mark(bytes), &[][..])
-    };
+    let (text, blob) = text_and_blob(bytes)?;
     if text.len() as u64 > MAX_TEXT_BYTES {
         return Err(format!(
             "{} bytes of JSON; {MAX_TEXT_BYTES} are read",
@@ -42,6 +38,18 @@ pub(super) fn split(bytes: &[u8]) -> Result<(Root, &[u8]), String> {
     };
     json.extensions_required.retain(|name| name != BASISU);
     Ok((json, blob))
+}
+
+/// The text of the tables, and the binary chunk.
+///
+/// # Errors
+/// A sentence when the bytes begin as a GLB and are none.
+pub(super) fn text_and_blob(bytes: &[u8]) -> Result<(&[u8], &[u8]), String> {
+    if bytes.starts_with(b"glTF") {
+        chunks(bytes)
+    } else {
+        Ok((without_mark(bytes), &[]))
+    }
 }
 
 /// Textures whose image is compressed by Basis Universal, as in Habitat's and other data sets.

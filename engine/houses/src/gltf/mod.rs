@@ -4,7 +4,7 @@ mod accessor;
 mod buffers;
 mod container;
 mod convert;
-mod extras;
+mod faults;
 mod geometry;
 mod glb;
 mod indices;
@@ -116,8 +116,12 @@ fn read(
     check_version(&json.asset, &at)?;
     check_positions(&json, &at)?;
     // The crate's document checks every index and required field.
-    let document = ::gltf::Document::from_json(json)
-        .map_err(|error| syntax(format!("no valid glTF 2.0: {error}")))?;
+    let document = ::gltf::Document::from_json(json).map_err(|error| {
+        syntax(format!(
+            "no valid glTF 2.0: {}",
+            faults::told(&error, bytes)
+        ))
+    })?;
     let json = document.into_json();
     let buffers = buffers::Buffers::load(&json, blob, root, &at, report)?;
     convert::convert(&json, &buffers, root, name, trusted, threads, report)

@@ -1,5 +1,7 @@
 //! The node tree, flattened, with `extras.dwell` of our own files.
 
+use std::fmt;
+
 use ::gltf::json::{Index, Node, Root};
 use dwell_scene::{Sky, StructureKind};
 use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
@@ -74,6 +76,8 @@ struct DwellNodeExtras {
 /// A node in the traversal.
 struct PendingNode {
     node: usize,
+    /// Where the file names it.
+    named: NodeReference,
     world_from_parent: Affine3A,
     /// The name of the topmost node above, which is a storey's in our files.
     top: Option<usize>,
@@ -84,6 +88,27 @@ struct PendingNode {
     object: Option<usize>,
 }
 
+/// The place in the file that names a node.
+#[derive(Clone, Copy)]
+enum NodeReference {
+    /// A scene's list, by scene and position.
+    Scene(usize, usize),
+    /// The table of nodes itself: there are no scenes.
+    Table(usize),
+    /// A node's children, by node and position.
+    Child(usize, usize),
+}
+
+impl fmt::Display for NodeReference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(scene, k) => write!(f, "scenes[{scene}].nodes[{k}]"),
+            Self::Table(node) => write!(f, "nodes[{node}]"),
+            Self::Child(node, k) => write!(f, "nodes[{node}].children[{k}]"),
+        }
+    }
+}
+
 /// All nodes of the default scene (of all scenes when none is the default), parents first. `trusted`: whether what `extras` say
 /// of objects counts.
 pub(super) fn tree(
@@ -92,15 +117,18 @@ pub(super) fn tree(
     at: &FileLocation,
     report: &mut LoadReport,
 ) -> NodeTree {
-    let scenes: Vec<_> = match json.scene.and_then(|scene| json.scenes.get(scene.value())) {
+    let own = json.scene.map(|scene| scene.value());
+    let scenes: Vec<_> = match own.and_then(|k| Some((k, json.scenes.get(k)?))) {
         Some(scene) => vec![scene],
-        None => json.scenes.iter().collect(),
+        None => json.scenes.iter().enumerate().collect(),
     };
-    let roots = scenes
-        .iter()
-        .flat_map(|scene| scene.nodes.iter().map(Index::value));
-    let root = |node: usize| PendingNode {
+    let roots = scenes.iter().flat_map(|(s, scene)| {
+        let nodes = scene.nodes.iter().map(Index::value).enumerate();
+        nodes.map(|(k, node)| (node, NodeReference::Scene(*s, k)))
+    });
+    let root = |(node, named): (usize, NodeReference)| PendingNode {
         node,
+        named,
         world_from_parent: Affine3A::IDENTITY,
         top: None,
         room: None,
@@ -109,7 +137,7 @@ pub(super) fn tree(
     };
     let mut open: Vec<PendingNode> = roots.map(root).collect();
     if json.scenes.is_empty() {
-        open.extend((0..json.nodes.len()).map(root));
+        open.extend((0..json.nodes.len()).map(|node| root((node, NodeReference::Table(node)))));
     }
     open.reverse();
     let mut seen = vec![false; json.nodes.len()];
@@ -118,6 +146,7 @@ pub(super) fn tree(
     let mut tops: Vec<usize> = Vec::new();
     while let Some(PendingNode {
         node: index,
+        named,
         world_from_parent,
         top,
         room,
@@ -134,7 +163,7 @@ pub(super) fn tree(
                 found: index.to_string(),
                 reason: "a node that was reached already".to_owned(),
             };
-            report.warn(at.field(format_args!("nodes[{index}]")), damage);
+            report.warn(at.field(named), damage);
             continue;
         }
         let parent_from_node = if let Some(numbers) = node.matrix {
@@ -240,15 +269,22 @@ pub(super) fn tree(
             let what = "skins are not read; the mesh stands in its rest pose".to_owned();
             report.warn(node_at, WarningKind::Simplified { what });
         }
-        let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| PendingNode {
-            node: child.value(),
-            world_from_parent: world_from_mesh,
-            top: Some(top),
-            room,
-            of_object,
-            object,
-        }));
+        let children = node.children.as_deref().unwrap_or_default();
+        open.extend(
+            children
+                .iter()
+                .enumerate()
+                .rev()
+                .map(|(k, child)| PendingNode {
+                    node: child.value(),
+                    named: NodeReference::Child(index, k),
+                    world_from_parent: world_from_mesh,
+                    top: Some(top),
+                    room,
+                    of_object,
+                    object,
+                }),
+        );
     }
     for object in &mut found.objects {
         object.level = tops.iter().position(|top| Some(*top) == object.level);

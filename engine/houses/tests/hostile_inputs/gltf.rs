@@ -253,7 +253,7 @@ pub(crate) const CASES: &[Case] = &[
             let file = with(triangle(), "/nodes/0/children", json!([0, 0]));
             put_glb(d, &with(file, "/animations", json!([])))
         },
-        &["a.glb", "nodes[0]", "reached already"],
+        &["a.glb: nodes[1].children[0]", "reached already"],
     ),
     fails(
         "a place of 1e39",
@@ -432,5 +432,52 @@ pub(crate) const CASES: &[Case] = &[
             )
         },
         &["a.gltf", "not one triangle"],
+    ),
+    fails(
+        "a thing of no size and nothing else",
+        |d| {
+            let mut file = triangle();
+            file["nodes"][0]["name"] = json!("box");
+            put_glb(d, &with(file, "/nodes/0/scale", json!([0, 0, 0])))
+        },
+        &["a.glb: the house is empty", "box: no usable transform"],
+    ),
+    fails(
+        "a wall of no size and nothing else",
+        |d| put_glb(d, &with(triangle(), "/nodes/0/scale", json!([1, 1, 0]))),
+        &["the house is empty", "floor: no usable transform"],
+    ),
+    fails(
+        "a mode that there is not",
+        |d| {
+            put_glb(
+                d,
+                &with(triangle(), "/meshes/0/primitives/0/mode", json!(77)),
+            )
+        },
+        &[
+            "meshes[0].primitives[0].mode",
+            "found 77; allowed is 0 to 6",
+        ],
+    ),
+    fails(
+        "a scene that there is not",
+        |d| put_glb(d, &with(triangle(), "/scene", json!(5))),
+        &["scene: index out of bounds; found 5; allowed is"],
+    ),
+    fails(
+        "a stride of one byte",
+        |d| put_glb(d, &with(triangle(), "/bufferViews/0/byteStride", json!(1))),
+        &["bufferViews[0].byteStride", "found 1; allowed is 4 to 252"],
+    ),
+    fails(
+        "a mode of transparency that there is not",
+        |d| {
+            put_glb(
+                d,
+                &with(triangle(), "/materials/0/alphaMode", json!("WRONG")),
+            )
+        },
+        &["materials[0].alphaMode", "found \"WRONG\"", "\"OPAQUE\""],
     ),
 ];
