@@ -268,7 +268,8 @@ class House:
         """Writes the house as it starts.
 
         Args:
-            path: What shall be there afterwards: a new folder, or for ``glb`` a file.
+            path: What shall be there afterwards: a new folder, for ``dwell`` one whose name ends in
+                ``.dwell``, or for ``glb`` a file whose name ends in ``.glb``.
             form: ``dwell`` (exact), ``suncg`` (a data root of that data set), ``glb`` (one glTF 2.0
                 file with lights, node names, and meaning in ``extras.dwell``).
 

@@ -180,10 +180,15 @@ impl HousesError {
         self
     }
 
-    /// The same of the user's file `name`: an [`HousesError::Spec`] names it, as all others do.
+    /// The same of the user's file `name`: an [`HousesError::Spec`] and what is wrong with the edits as a whole name it, as all
+    /// others do.
     pub(crate) fn in_file(mut self, name: &str) -> Self {
-        if let Self::Spec { field, .. } = &mut self {
-            *field = format!("{name}: {field}");
+        match &mut self {
+            Self::Spec { field, .. } => *field = format!("{name}: {field}"),
+            Self::TooLarge { at, .. } | Self::Scene { at, .. } if at.file == "edits" => {
+                at.file = format!("{name}: edits");
+            }
+            _ => {}
         }
         self
     }

@@ -21,7 +21,12 @@ pub(crate) fn parse<'a>(text: &'a str, at: &FileLocation) -> Result<Document<'a>
     };
     Document::parse_with_options(text, options).map_err(|error| HousesError::Syntax {
         at: at.line(error.pos().row),
-        message: error.to_string(),
+        message: match error {
+            roxmltree::Error::DtdDetected => {
+                "a document type (<!DOCTYPE ...>) was found; allowed is XML without one".to_owned()
+            }
+            error => error.to_string(),
+        },
     })
 }
 

@@ -260,3 +260,79 @@ fn deep_nesting_is_refused() {
         "{error}"
     );
 }
+
+/// A link may stand for the file that the user named, in every format; what it refers to lies beside the link.
+#[cfg(unix)]
+#[test]
+fn an_obj_file_may_be_a_link_to_elsewhere() {
+    let (folder, elsewhere) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let real = elsewhere.path().join("real.obj");
+    std::fs::write(&real, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let link = folder.path().join("a.obj");
+    std::os::unix::fs::symlink(&real, &link).unwrap();
+    let (house, report) = open(&link.to_string_lossy()).unwrap();
+    assert_eq!(house.triangle_count(), 1);
+    assert!(report.is_empty(), "{report}");
+}
+
+/// What is there and cannot be read is told once, and not as missing.
+#[cfg(unix)]
+#[test]
+fn what_cannot_be_read_is_not_told_to_be_missing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        path
+    };
+    let house = r#"{"id": "h", "levels": [{"nodes": [
+        {"id": "0_0", "type": "Box", "dimensions": [1, 1, 1], "transform": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]},
+        {"id": "0_1", "type": "Room", "modelId": "r"}]}]}"#;
+    let path = at("house/h/house.json");
+    std::fs::write(&path, house).unwrap();
+    std::os::unix::fs::symlink("/etc/passwd", at("room/h/rf.obj")).unwrap();
+    let pipe = at("metadata/ModelCategoryMapping.csv");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.unwrap().success());
+    let (_, report) = open(&path.to_string_lossy()).unwrap();
+    let told: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    let of = |name: &str| -> Vec<&String> { told.iter().filter(|t| t.contains(name)).collect() };
+    assert_eq!(of("room/h/rf.obj").len(), 1, "{told:?}");
+    let table = of("ModelCategoryMapping.csv");
+    assert_eq!(table.len(), 1, "{told:?}");
+    assert!(
+        table[0].contains("could not be read (is a named pipe"),
+        "{told:?}"
+    );
+}
+
+/// A thing below all floors belongs to no room.
+#[test]
+fn a_thing_outside_of_every_room_has_none() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut file = common::procthor_set::file();
+    file["objects"][0]["position"]["y"] = serde_json::json!(-100);
+    let id = file["objects"][0]["id"].as_str().unwrap().to_owned();
+    let path = folder.path().join("home.json");
+    std::fs::write(&path, file.to_string()).unwrap();
+    let (house, _) = open(&path.to_string_lossy()).unwrap();
+    let thing = house.objects.iter().find(|object| object.source_id == id);
+    assert_eq!(thing.unwrap().room, None);
+    assert!(house.objects.iter().any(|object| object.room.is_some()));
+}
+
+/// Some scenes of several storeys have ceilings below the highest floor; what is no ceiling of that floor is none of the room.
+#[test]
+fn a_ceiling_below_the_floor_is_no_ceiling_of_the_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let quad = |name: &str, y: f32, first: u32| {
+        let [a, b, c, d] = [first, first + 1, first + 2, first + 3];
+        format!("o {name}\nv 0 {y} 0\nv 0 {y} 4\nv 4 {y} 4\nv 4 {y} 0\nf {a} {b} {c} {d}\n")
+    };
+    let text = quad("floor_0", 0.0, 1) + &quad("ceiling_0", 2.5, 5) + &quad("floor_1", 3.0, 9);
+    let path = folder.path().join("a.obj");
+    std::fs::write(&path, text + &quad("ceiling_1", 5.5, 13)).unwrap();
+    let (house, _) = open(&path.to_string_lossy()).unwrap();
+    let room = house.rooms.iter().next().unwrap();
+    assert_eq!((room.floor_y, room.ceiling_y), (3.0, 5.5));
+}

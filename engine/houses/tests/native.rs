@@ -271,3 +271,17 @@ fn positions_keep_the_sign_of_zero() {
             .is_sign_negative()
     );
 }
+
+#[test]
+fn a_house_is_written_under_names_that_open_knows_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let house = shoebox();
+    let told = native::write(&house, &folder.path().join("noext")).unwrap_err();
+    assert!(
+        told.to_string().contains("does not end in .dwell"),
+        "{told}"
+    );
+    let told = dwell_houses::gltf::write(&house, &folder.path().join("a.dwell")).unwrap_err();
+    assert!(told.to_string().contains("does not end in .glb"), "{told}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}

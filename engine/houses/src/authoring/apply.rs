@@ -262,8 +262,9 @@ impl<'a> EditSession<'a> {
     }
 
     fn rename(&mut self, change: &Rename) -> Result<(), HousesError> {
-        if change.to.trim().is_empty() {
-            return Err(fault("to", format_args!("{:?}", change.to), "a name"));
+        if change.to.trim().is_empty() || change.to.contains(char::is_control) {
+            let allowed = "a name, without control characters";
+            return Err(fault("to", format_args!("{:?}", change.to), allowed));
         }
         if change.kind.is_some() && change.room.is_none() {
             return Err(fault("kind", "a kind without a room", "`room` and `kind`"));
@@ -305,7 +306,8 @@ impl<'a> EditSession<'a> {
 
     /// Refuses an object's name that is empty or taken.
     pub(super) fn free_name(&self, field: &str, name: &str) -> Result<(), HousesError> {
-        if name.trim().is_empty() || self.object_index.find(name).is_some() {
+        let is_name = !name.trim().is_empty() && !name.contains(char::is_control);
+        if !is_name || self.object_index.find(name).is_some() {
             let possible = "a name that no other object has";
             return Err(fault(field, format_args!("{name:?}"), possible));
         }

@@ -174,7 +174,11 @@ pub(crate) fn open(house: &str) -> Opened {
     let (number, fields) = wanted.split_once('?').unwrap_or((wanted, ""));
     let seed = number.parse().map_err(|_| HousesError::Spec {
         field: "seed".to_owned(),
-        found: number.to_owned(),
+        found: if number.is_empty() {
+            "nothing".to_owned()
+        } else {
+            number.to_owned()
+        },
         possible: "a whole number from 0 to 18446744073709551615; A..B only where several houses are taken"
             .to_owned(),
     })?;

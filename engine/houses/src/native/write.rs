@@ -12,13 +12,24 @@ use crate::error::HousesError;
 use crate::gltf::{Storage, encode};
 use crate::limits::MAX_TEXT_BYTES;
 
+/// Returns whether a house may be written to `path`: by its name it is what [`open`](super::open) takes.
+fn check_name(path: &Path) -> Result<(), HousesError> {
+    if super::recognizes(path) {
+        return Ok(());
+    }
+    Err(HousesError::Unwritable {
+        path: path.to_owned(),
+        message: "its name does not end in .dwell, by which it is known again".to_owned(),
+    })
+}
+
 /// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
 ///
 /// # Errors
-/// [`HousesError::Unwritable`] when the house holds a number that is not finite outside of its meshes, when its geometry
-/// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`;
-/// [`HousesError::Io`] when the system refuses.
+/// [`HousesError::Unwritable`] when the name is not that of a `.dwell`, when the house holds a number that is not finite outside of its meshes, when its geometry
+/// exceeds 4 GiB, when its tables exceed what is read again, or when something else stands at `path`; [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
+    check_name(path)?;
     write_as(house, path, Storage::Inside)
 }
 

@@ -10,7 +10,7 @@ use dwell_scene::{House, MaterialId, Mesh, TextureId};
 use glam::Affine3A;
 
 use super::file::FaceGroup;
-use super::load::{MeshFiles, read_mesh};
+use super::load::{MeshFiles, mesh_files};
 use super::read_obj;
 use super::shape::{MaterialSlots, PartShape, shape_of};
 use crate::data_root::DataRoot;
@@ -19,7 +19,7 @@ use crate::import::{
     ImportedMaterial, ImportedScene, MaterialTableBuilder, NodeRole, SceneNode, read_images,
     substance_of, texture_name,
 };
-use crate::limits::MAX_NODES;
+use crate::limits::{MAX_MESH_BYTES, MAX_NODES};
 use crate::report::{FileLocation, LoadReport};
 
 /// Returns whether `path` names an OBJ file.
@@ -54,7 +54,8 @@ pub(crate) fn read_scene(
     std::fs::metadata(path).map_err(HousesError::io(path))?;
     let (root, inside) = locate(path)?;
     let at = FileLocation::file(&inside);
-    let files = read_mesh(&root, &inside, report).unwrap_or_default();
+    let bytes = root.read_named(&inside, MAX_MESH_BYTES)?;
+    let files = mesh_files(&bytes, &root, &inside, report);
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
     let images = read_images(&root, wanted, threads, report);
     let slots = MaterialSlots::of(&files.obj, &files.mtl, &at, report);

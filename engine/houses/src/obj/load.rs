@@ -22,19 +22,28 @@ pub struct MeshFiles {
 
 /// Reads an OBJ file with its MTL files.
 pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) -> Option<MeshFiles> {
-    let bytes = match root.read(path, MAX_MESH_BYTES) {
-        Ok(bytes) => bytes,
+    match root.read(path, MAX_MESH_BYTES) {
+        Ok(bytes) => Some(mesh_files(&bytes, root, path, report)),
         Err(error) => {
             let damage = WarningKind::UnreadableMesh {
                 path: path.to_owned(),
                 reason: error.reason(),
             };
             report.warn(FileLocation::file(path), damage);
-            return None;
+            None
         }
-    };
+    }
+}
+
+/// The same from the bytes of an OBJ file; its MTL files are read from `root`.
+pub(crate) fn mesh_files(
+    bytes: &[u8],
+    root: &DataRoot,
+    path: &str,
+    report: &mut LoadReport,
+) -> MeshFiles {
     let mut files = MeshFiles {
-        obj: read_obj(&bytes, path, report),
+        obj: read_obj(bytes, path, report),
         ..MeshFiles::default()
     };
     let folder = folder_of(path);
@@ -88,5 +97,5 @@ pub(crate) fn read_mesh(root: &DataRoot, path: &str, report: &mut LoadReport) ->
         }
         files.mtl.materials.extend(mtl.materials);
     }
-    Some(files)
+    files
 }

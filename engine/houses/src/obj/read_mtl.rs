@@ -48,18 +48,21 @@ fn statement(material: &mut MtlMaterial, keyword: &[u8], rest: &[u8]) -> bool {
         b"Kd" => set(&mut material.diffuse, color(rest)),
         b"Ks" => set(&mut material.specular, color(rest)),
         b"Ke" => set(&mut material.emission, color(rest)),
-        b"Ns" => set(&mut material.shininess, scalar(rest)),
+        b"Ns" => set(
+            &mut material.shininess,
+            scalar(rest).filter(|exponent| *exponent >= 0.0),
+        ),
         b"illum" => set(
             &mut material.illumination,
             integer(rest).and_then(|i| i32::try_from(i).ok()),
         ),
         b"d" => set(
             &mut material.opacity,
-            scalar(rest.strip_prefix(b"-halo").unwrap_or(rest)),
+            share(rest.strip_prefix(b"-halo").unwrap_or(rest)),
         ),
         // `d` and `Tr` state the same; `d` counts when both are there.
         b"Tr" => {
-            material.opacity.is_some() || set(&mut material.opacity, scalar(rest).map(|t| 1.0 - t))
+            material.opacity.is_some() || set(&mut material.opacity, share(rest).map(|t| 1.0 - t))
         }
         _ if keyword.eq_ignore_ascii_case(b"map_kd") => {
             set(&mut material.diffuse_map, map_path(rest))
@@ -75,6 +78,11 @@ fn statement(material: &mut MtlMaterial, keyword: &[u8], rest: &[u8]) -> bool {
 
 fn scalar(rest: &[u8]) -> Option<f32> {
     words(rest).next().and_then(float)
+}
+
+/// A number from 0 to 1.
+fn share(rest: &[u8]) -> Option<f32> {
+    scalar(rest).filter(|share| (0.0..=1.0).contains(share))
 }
 
 /// Three numbers, or one for a grey.

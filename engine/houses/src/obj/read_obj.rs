@@ -115,6 +115,13 @@ impl ObjReader<'_> {
             self.obj.normals.len(),
         ];
         for word in words(rest) {
+            if word.iter().filter(|&&b| b == b'/').count() > 2 {
+                let reason = format!(
+                    "corner {:?} has more than three indices, those of a vertex, a texture coordinate and a normal",
+                    shorten(word)
+                );
+                return self.bad_face(number, &reason);
+            }
             let mut indices = [NONE; 3];
             for ((slot, part), count) in indices
                 .iter_mut()
@@ -133,7 +140,11 @@ impl ObjReader<'_> {
                 if index < 0 || index >= i64::from(NONE) {
                     return self.bad_face(
                         number,
-                        &format!("index {:?} in {:?}", shorten(part), shorten(word)),
+                        &format!(
+                            "index {:?} in {:?}; they count from 1, or back from -1, to at most {count} so far",
+                            shorten(part),
+                            shorten(word)
+                        ),
                     );
                 }
                 *slot = index as u32;
@@ -143,7 +154,7 @@ impl ObjReader<'_> {
                 return self.bad_face(number, &format!("no vertex in {:?}", shorten(word)));
             }
             if self.pending.len() == MAX_CORNERS {
-                return self.bad_face(number, "too many corners");
+                return self.bad_face(number, &format!("more than {MAX_CORNERS} corners"));
             }
             self.pending.push(FaceCorner {
                 position,
@@ -155,7 +166,7 @@ impl ObjReader<'_> {
             return self.bad_face(number, "fewer than three corners");
         }
         if self.obj.corners.len() + self.pending.len() >= NONE as usize {
-            return self.bad_face(number, "too many faces");
+            return self.bad_face(number, &format!("faces of more than {NONE} corners in all"));
         }
         self.obj.corners.append(&mut self.pending);
         self.obj.face_ends.push(self.obj.corners.len() as u32);

@@ -48,7 +48,28 @@ pub(crate) const CASES: &[Case] = &[
             let faces = "f 0 1 2\nf -9 1 2\nf 99999999999999999999 1 2\n";
             put(d, "a.obj", format!("{}{faces}", obj_of("a.mtl")))
         },
-        &["a.obj:8", "a face is left out"],
+        &["a.obj:8", "index \"0\"", "count from 1, or back from -1"],
+    ),
+    warns(
+        "a corner of five indices",
+        |d| put(d, "a.obj", format!("{}f 1/2/3/4/5 2 3\n", obj_of("a.mtl"))),
+        &["a.obj:8", "\"1/2/3/4/5\" has more than three indices"],
+    ),
+    warns(
+        "an opacity of 7",
+        |d| {
+            put(d, "a.mtl", "newmtl a\nd 7\n");
+            put(d, "a.obj", obj_of("a.mtl"))
+        },
+        &["a.mtl:2", "\"d 7\""],
+    ),
+    warns(
+        "a shininess below 0",
+        |d| {
+            put(d, "a.mtl", "newmtl a\nNs -1e30\n");
+            put(d, "a.obj", obj_of("a.mtl"))
+        },
+        &["a.mtl:2", "\"Ns -1e30\""],
     ),
     warns(
         "a face of 100,001 corners",
@@ -59,7 +80,7 @@ pub(crate) const CASES: &[Case] = &[
                 format!("{}f{}\n", obj_of("a.mtl"), " 1".repeat(100_001)),
             )
         },
-        &["a.obj:8", "too many corners"],
+        &["a.obj:8", "more than 100000 corners"],
     ),
     warns(
         "a line that goes on without end",

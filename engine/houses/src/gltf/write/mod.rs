@@ -45,10 +45,15 @@ pub(crate) enum Storage {
 /// # Errors
 /// [`HousesError::Unwritable`] beyond the format's 4 GiB, [`HousesError::Io`] when the system refuses.
 pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError> {
-    let written = encode(house, Storage::Inside).map_err(|message| HousesError::Unwritable {
+    let unwritable = |message: String| HousesError::Unwritable {
         path: path.to_owned(),
         message,
-    })?;
+    };
+    if !super::recognizes(path) {
+        let message = "its name does not end in .glb, by which it is known again";
+        return Err(unwritable(message.to_owned()));
+    }
+    let written = encode(house, Storage::Inside).map_err(unwritable)?;
     crate::atomic::write_file(path, &written.file)?;
     Ok(losses(house))
 }
