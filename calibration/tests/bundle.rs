@@ -286,3 +286,34 @@ fn faults_of_drives_are_named() {
         "{told}"
     );
 }
+
+/// Flights of the example with their heights in feet, and with three seconds missing.
+#[test]
+fn feet_and_gaps_are_refused() {
+    let each = |folder: &Path, change: fn(usize, &str, f64, f64) -> (f64, f64)| {
+        let path = folder.join("trajectory.csv");
+        let text = fs::read_to_string(&path).unwrap();
+        let mut lines = text.lines();
+        let mut changed = format!("{}\n", lines.next().unwrap());
+        for (k, line) in lines.enumerate() {
+            let cells: Vec<&str> = line.split(',').collect();
+            let (t, value) = (cells[1].parse().unwrap(), cells[4].parse().unwrap());
+            let (t, value) = change(k, cells[0], t, value);
+            let (episode, entity, channel) = (cells[0], cells[2], cells[3]);
+            writeln!(changed, "{episode},{t:.9},{entity},{channel},{value:.9}").unwrap();
+        }
+        fs::write(path, changed).unwrap();
+    };
+    let told = after(|folder| each(folder, |_, _, t, value| (t, value / 0.3048)));
+    assert!(told.contains("lengths in feet? Divide by 3.2808"), "{told}");
+    let told = after(|folder| {
+        each(folder, |k, _, t, value| {
+            (if k < 12 { t } else { t + 3.0 }, value)
+        })
+    });
+    assert!(
+        told.contains("less than 0.5 s from sample to sample"),
+        "{told}"
+    );
+    assert!(told.contains("fill the gap in"), "{told}");
+}

@@ -250,13 +250,21 @@ fn falls(at: &str, manifest: &Manifest, all: &[[CoordinateTrack; 3]]) -> UnitChe
         found.sort_by(f64::total_cmp);
         found[1]
     };
-    if g == 0.0 || share((1, -1, 0)) >= FALLING_SHARE {
+    if g == 0.0 {
         return Ok(());
     }
+    let in_metres = share((1, -1, 0));
     let keys = (0..3).flat_map(|axis| [-1, 1].map(|sign| (axis, sign)));
     let keys = keys.flat_map(|(axis, sign)| (0..=LENGTHS.len()).map(move |k| (axis, sign, k)));
     let best = keys.max_by(|a, b| telling(*a).total_cmp(&telling(*b)));
-    let Some((axis, sign, k)) = best.filter(|key| telling(*key) >= TELLING_SHARE) else {
+    // What drag slows in another unit passes through the metres' range too: then more must fall in that unit.
+    let explains = |(axis, sign, k): &(usize, i8, usize)| {
+        let share = telling((*axis, *sign, *k));
+        let falls_along_y = (*axis, *sign) == (1, -1) && *k > 0;
+        share >= TELLING_SHARE
+            && (in_metres < FALLING_SHARE || (falls_along_y && share > in_metres))
+    };
+    let Some((axis, sign, k)) = best.filter(explains) else {
         return Ok(());
     };
     let unit = k.checked_sub(1).map(|k| LENGTHS[k]);
@@ -301,7 +309,7 @@ fn suggested_fix((axis, sign, unit): AxisGuess, kind: BundleKind) -> String {
     told
 }
 
-/// Refuses samples of an episode at one time, and those too far apart to show a motion. `times`: of one channel, rising.
+/// Refuses samples of an episode at one time, those too far apart to show a motion, and gaps. `times`: of one channel, rising.
 pub(super) fn clock(at: &str, times: &[f64]) -> UnitCheck {
     let mut pairs = times.iter().zip(times.iter().skip(1));
     if let Some((twice, _)) = pairs.find(|(a, b)| a == b) {
@@ -311,8 +319,16 @@ pub(super) fn clock(at: &str, times: &[f64]) -> UnitCheck {
         return Err(CalibrationError::field(at, "t_s", found, allowed));
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let gap = steps.iter().position(|step| *step >= LONGEST_STEP_S);
     let Some(step) = median(&mut steps).filter(|step| *step >= LONGEST_STEP_S) else {
-        return Ok(());
+        return gap.map_or(Ok(()), |k| {
+            let found = format!("{} after {}", times[k + 1], times[k]);
+            let allowed = format!(
+                "less than {LONGEST_STEP_S} s from sample to sample: fill the gap in, or end the episode there and give the rows \
+                 after it another episode's name"
+            );
+            Err(CalibrationError::field(at, "t_s", found, allowed))
+        });
     };
     let unit = if steps.iter().all(|step| *step == 1.0) {
         "; are frames counted? Divide by the frames a second, or import with \"seconds_per_unit\" in the map's table (1/60 is \
