@@ -14,9 +14,13 @@ import math
 import os
 import shutil
 import stat
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any, BinaryIO, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
 
 from dwell import _native
 
@@ -104,8 +108,8 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
     """The value of a JSON text in UTF-8.
 
     Raises:
-        ValueError: It is none, is nested too deep, or holds more than is read; the message begins
-            with ``at``.
+        ValueError: It is none, names a key twice in one object, is nested too deep, or holds more
+            than is read; the message begins with ``at``.
     """
     depth, values = _native.json_extent(text)
     if depth > _MOST_DEPTH:
@@ -115,7 +119,11 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
     try:
         decoded = text.decode("utf-8-sig")
         value = json.loads(
-            decoded, parse_int=_whole, parse_float=_finite, parse_constant=_refuse_constant
+            decoded,
+            parse_int=_whole,
+            parse_float=_finite,
+            parse_constant=_refuse_constant,
+            object_pairs_hook=_once,
         )
         if "\\u" in decoded:
             # Half of a pair of surrogates is no character, and comes from such an escape alone.
@@ -127,6 +135,8 @@ def parse_json(text: bytes, at: str) -> Any:  # noqa: ANN401 - any JSON value
         raise ValueError(f"{at}: no JSON: byte {error.start} is not UTF-8") from None
     except UnicodeEncodeError:
         raise ValueError(f"{at}: no JSON: half of a pair of surrogates") from None
+    except _TwiceError as error:
+        raise ValueError(f"{at}: {error}") from None
     except ValueError as error:
         raise ValueError(f"{at}: no JSON: {error}") from None
     return value
@@ -163,7 +173,41 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         is_ours = named is None or any(is_draft(name) for name in (named.name, named.parent.name))
         if is_ours and error.errno is not None:
             error.filename, error.filename2 = os.fspath(path), None
+        elif is_ours:
+            # Some libraries say what went wrong in words alone.
+            raise OSError(errno.EIO, f"cannot be written: {error}", os.fspath(path)) from error
         raise
+
+
+def save_array(path: Path, array: NDArray[Any]) -> None:
+    """Writes an array as NPY.
+
+    Raises:
+        OSError: The system refuses, and says why: what NumPy says of files itself does not.
+    """
+    with path.open("wb") as file:
+        np.lib.format.write_array(_Bytes(file), array, allow_pickle=False)
+
+
+class _Bytes:
+    """A file that NumPy writes to by its own method alone."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self.write = file.write
+
+
+def check_place(path: _Name) -> None:
+    """Refuses what :func:`atomic_write` would refuse, before anything is computed; makes nothing.
+
+    Raises:
+        OSError: No file can stand there.
+    """
+    place = _place(Path(path))
+    for above in place.parents:
+        if os.path.lexists(above):
+            if not above.is_dir():
+                raise NotADirectoryError(errno.ENOTDIR, "is no folder", os.fspath(above))
+            return
 
 
 def is_draft(name: str) -> bool:
@@ -323,7 +367,8 @@ def _place(path: Path) -> Path:
     """
     try:
         facts = path.lstat()
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
+        # Of what stands above it, whoever makes the folders says more.
         return path
     if not stat.S_ISLNK(facts.st_mode):
         _refuse_irregular(facts, os.fspath(path))
@@ -361,6 +406,19 @@ def _refuse_irregular(facts: os.stat_result, name: str) -> None:
 
 def _refuse_large(name: str, found: int, allowed: int) -> NoReturn:
     raise ValueError(f"{name}: {found} bytes; at most {allowed} are read")
+
+
+class _TwiceError(ValueError):
+    """A key that stands twice in one object: which value is meant nobody knows."""
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        counts = Counter(name for name, _ in pairs)
+        twice = next(name for name, count in counts.items() if count > 1)
+        raise _TwiceError(f"key {twice!r:.60} stands twice in one object; once is allowed")
+    return found
 
 
 def _whole(text: str) -> int:

@@ -259,3 +259,18 @@ def test_what_cannot_be_asked_for_begins_no_folder(
     (out / "letter").write_text("dear")
     assert main(["ir", HOUSE, "--out", str(out), *FEW, *options]) == 1
     assert "holds something else" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("form", ["hdf5", "sofa"])
+def test_a_finished_file_that_was_cut_is_made_again(tmp_path: Path, form: str) -> None:
+    pytest.importorskip("h5py", reason="HDF5 needs h5py")
+    assert _grid(tmp_path, "--format", form) == 0
+    (path,) = [*tmp_path.glob("*.h5"), *tmp_path.glob("*.sofa")]
+    whole, changed_ns = path.stat().st_size, path.stat().st_mtime_ns
+    assert _grid(tmp_path, "--format", form) == 0
+    assert path.stat().st_mtime_ns == changed_ns
+    for length in (whole // 2, 50, 0):
+        with path.open("r+b") as file:
+            file.truncate(length)
+        assert _grid(tmp_path, "--format", form) == 0
+        assert path.stat().st_size == whole

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
 from dwell.cli.job_journal import claim, refuse_other
-from dwell.files import atomic_write, open_alone, read, read_json
+from dwell.files import atomic_write, open_alone, open_file, read, read_json, save_array
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
     from dwell.house import House
     from dwell.responses.dataset import hdf5_module
 
-    hdf5_module(args.format.upper())
+    hdf5 = hdf5_module(args.format.upper())
     if args.out is None:
         raise ValueError("--out is needed: the folder for the files")
     houses = House.expand(args.house)
@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     refuse_other(args.out, dataset)
     made, failed, started = 0, [], time.perf_counter()
     for house, file in files.items():
-        if file.exists():
+        if file.exists() and _is_whole(file, hdf5):
             continue
         try:
             made += _house(args, house, file, job, dataset)
@@ -163,8 +163,8 @@ def _house(
 
             found = _source(scene, source, receivers, args, told)
             # What is there is whole: a file gets its name when it is written.
-            with atomic_write(part) as path, path.open("wb") as file:
-                np.save(file, found)
+            with atomic_write(part) as path:
+                save_array(path, found)
             made += len(receivers)
         radius = None if args.head is None else args.head.about
         data = Dataset(
@@ -187,6 +187,20 @@ def _house(
             write(path, data)
         shutil.rmtree(parts)
         return made
+
+
+def _is_whole(file: Path, hdf5: Any) -> bool:  # noqa: ANN401 - the module h5py
+    """Whether a finished file has all the bytes that it says it has; else it is made again.
+
+    Raises:
+        OSError: The system refuses, or it is no regular file.
+    """
+    open_file(file).close()
+    try:
+        hdf5.File(file, "r").close()
+    except OSError:
+        return False
+    return True
 
 
 def _begin(parts: Path, job: dict[str, Any]) -> None:

@@ -54,6 +54,11 @@ def run(args: argparse.Namespace) -> int:
         rays=args.rays,
         image_order=args.image_order,
     )
+    storeys = scene.house.info()["levels"]
+    if args.map and args.level >= storeys:
+        # Before anything is computed.
+        storey = "storey" if storeys == 1 else "storeys"
+        raise ValueError(f"--level is {args.level}; the house has {storeys} {storey}, from 0")
     facts: dict[str, object]
     picture, facts = _map(scene, args) if args.map else _plot(scene, args)
     with atomic_write(args.out) as path:

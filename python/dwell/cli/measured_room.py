@@ -14,13 +14,20 @@ import numpy as np
 from dwell import ConfigError
 from dwell.arguments import finite, whole
 from dwell.cli.common import ProgressBar, print_json, refuse_other_suffix
-from dwell.files import MOST_TEXT_BYTES, atomic_write, read, read_json
+from dwell.files import MOST_TEXT_BYTES, atomic_write, check_place, read, read_json
 from dwell.listening import Receiver
 
 # Receivers this near are one array, of at most so many microphones.
 _ARRAY_M = 0.5
 _MOST_MICROPHONES = 128
-_AIR = {"temperature_c": 20.0, "humidity_pct": 50.0, "pressure_pa": 101325.0}
+#: What responses may last.
+_DURATION_S = (0.02, 20.0)
+#: Of the air: the usual value, the least and the largest, and the unit.
+_AIR = {
+    "temperature_c": (20.0, -40.0, 60.0, "°C"),
+    "humidity_pct": (50.0, 0.0, 100.0, "%"),
+    "pressure_pa": (101_325.0, 30_000.0, 200_000.0, "Pa"),
+}
 
 
 @dataclass(frozen=True)
@@ -50,10 +57,12 @@ class MeasuredRoom:
         return cls(
             path=path,
             rate_hz=whole(f"{path}: fs", file.get("fs", 48000), low=8000, high=192_000),
-            duration_s=finite(f"{path}: duration_s", file.get("duration_s", 2.0)),
+            duration_s=_within(
+                f"{path}: duration_s", file.get("duration_s", 2.0), *_DURATION_S, "s"
+            ),
             air={
-                name: finite(f"{path}: air.{name}", air.get(name, usual))
-                for name, usual in _AIR.items()
+                name: _within(f"{path}: air.{name}", air.get(name, usual), low, high, unit)
+                for name, (usual, low, high, unit) in _AIR.items()
             },
             sources=_places(path, "sources", file),
             receivers=_places(path, "receivers", file),
@@ -86,11 +95,21 @@ def is_measured_room(house: str) -> bool:
     return b'"materials"' in text and has_places and has_walls
 
 
+def _within(name: str, value: object, low: float, high: float, unit: str) -> float:
+    """A number of a range, told by the file's own name for it."""
+    found = finite(name, value)
+    if not low <= found <= high:
+        raise ValueError(f"{name} is {found:g}; allowed is {low:g} to {high:g} {unit}")
+    return found
+
+
 def run(args: argparse.Namespace) -> int:
     """Computes all responses, writes them, and prints what they took."""
     from dwell.acoustics import AcousticScene
 
     refuse_other_suffix(args.out, ".npz")
+    if args.out is not None:
+        check_place(args.out)
     room = MeasuredRoom.read(Path(args.house))
     sources = _picked("--sources", room.sources, args.sources)
     receivers = _picked("--receivers", room.receivers, args.receivers)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dwell.files import atomic_write
+from dwell.files import atomic_write, save_array
 
 if TYPE_CHECKING:
     from PIL import Image
@@ -30,8 +30,8 @@ def write_image(folder: Path, name: str, channel: str, image: np.ndarray[Any, An
         paths.append(save_picture(folder / f"{name}.png", picture(channel, image)))
     if channel != "rgb":
         path = folder / f"{name}.npy"
-        with atomic_write(path) as temporary, temporary.open("wb") as file:
-            np.save(file, image)
+        with atomic_write(path) as temporary:
+            save_array(temporary, image)
         paths.append(str(path))
     return paths
 
