@@ -55,8 +55,8 @@ def number(at: str, row: Mapping[str, object], column: str, delimiter: str) -> f
     if isinstance(told, str) and delimiter != "," and told.count(",") == 1 and "." not in told:
         told = told.replace(",", ".")
     try:
-        # To Python 3_9.9 is a number; to tables it is a slip.
-        is_slip = isinstance(told, str) and "_" in told
+        # To Python 3_9.9 and full-width digits are numbers; to tables they are slips.
+        is_slip = isinstance(told, str) and ("_" in told or not told.isascii())
         found = math.nan if is_slip else float(told)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         found = math.nan

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import csv
 import io
 import itertools
@@ -18,120 +17,29 @@ from typing import Any
 from dwell import csv_values
 from dwell.arguments import finite
 from dwell.files import make_folder, open_file, read_json
+from dwell.measured_draft import BundleDraft
+from dwell.measured_templates import TEMPLATES
 
 CsvRow = dict[str, Any]
 
+#: Of episodes that are left out, so many names are told.
+MOST_TOLD = 10
 #: A table has at most so many bytes, as for the reader of bundles.
 _MOST_BYTES = 256 * 2**20
-
-#: What ``--init`` prints. Keys that do not apply are left out; ``null`` is "not known". Times in
-#: milliseconds have ``seconds_per_unit`` 0.001, lengths in millimetres ``metres_per_unit`` 0.001,
-#: angles in degrees ``radians_per_unit`` 0.017453292519943295.
-TEMPLATE: CsvRow = {
-    "kind": "pose_trajectory",
-    "title": "what was measured, in a line",
-    "licence": "of the data",
-    "notes": "",
-    "up": "z",
-    "g_m_s2": None,
-    "body": {
-        "name": "cube",
-        "mass_kg": 0.37,
-        "half_extents_m": [0.0524, 0.0524, 0.0524],
-        "inertia_kg_m2": None,
-    },
-    "board": {"friction": 0.18, "restitution": 0.125},
-    "poses": {"rate_hz": 148.0, "angular_velocity": "body", "filtering": ""},
-    "table": {
-        "file": "data.parquet",
-        "episode": "toss",
-        "split_group": None,
-        "t_s": "t_s",
-        "seconds_per_unit": 1.0,
-        "metres_per_unit": 1.0,
-        "radians_per_unit": 1.0,
-        "position": ["px", "py", "pz"],
-        "quaternion_xyzw": ["qx", "qy", "qz", "qw"],
-        "velocity": ["vx", "vy", "vz"],
-        "angular_velocity": ["wx", "wy", "wz"],
-    },
-    "starts": {
-        "file": "index.csv",
-        "episode": "toss",
-        "sample": "eval_start_k",
-        "velocity": ["ic_vx", "ic_vy", "ic_vz"],
-        "angular_velocity": ["ic_wx", "ic_wy", "ic_wz"],
-    },
-}
-#: The same for flights of balls, one height or all three coordinates.
-FLIGHT: CsvRow = {
-    "kind": "trajectory",
-    "title": "what was measured, in a line",
-    "licence": "of the data",
-    "notes": "",
-    "g_m_s2": None,
-    "bodies": {
-        "file": "index.csv",
-        "episode": "episode",
-        "name": "ball",
-        "mass_kg": "mass_kg",
-        "diameter_m": "diameter_m",
-    },
-    "table": {
-        "file": "data.parquet",
-        "episode": "episode",
-        "split_group": None,
-        "t_s": "t_s",
-        "seconds_per_unit": 1.0,
-        "metres_per_unit": 1.0,
-        "channels": {"y": "height_m"},
-    },
-}
-
-#: The same for drives of a robot on two wheels; the ticks are counts since the sample before.
-DRIVE: CsvRow = {
-    "kind": "drive",
-    "title": "what was measured, in a line",
-    "licence": "of the data",
-    "notes": "",
-    "base": {
-        "wheel_radius_m": 0.042,
-        "wheel_base_m": 0.2,
-        "rate_hz": 20.0,
-        "ticks_per_turn": 2796.8,
-    },
-    "episodes": {
-        "file": "index.csv",
-        "episode": "episode",
-        "split_group": "set",
-        "conditions": "path",
-    },
-    "table": {
-        "file": "data.parquet",
-        "episode": "episode",
-        "t_s": "t_s",
-        "seconds_per_unit": 1.0,
-        "metres_per_unit": 1.0,
-        "radians_per_unit": 1.0,
-        "position": ["x", "y"],
-        "heading_rad": "theta",
-        "ticks_left": "ticks_left",
-        "ticks_right": "ticks_right",
-    },
-}
 
 
 def import_files(
     files: list[Path], map_file: Path, out: Path, progress: Callable[[float, str], None]
-) -> dict[str, int]:
+) -> dict[str, Any]:
     """Writes the bundle ``out`` whole, or nothing.
 
     Raises:
         ValueError: A map or a table that cannot be used; the message names file, column and row.
         FileExistsError: ``out`` is there already.
     """
-    if out.exists():
-        raise FileExistsError(f"{out}: is there already; remove it or choose another name")
+    if os.path.lexists(out):
+        found = "is there already" if out.exists() else "is a link that leads to nothing"
+        raise FileExistsError(f"{out}: {found}; remove it or choose another name")
     mapping = read_map(map_file)
     tables: dict[str, Path] = {}
     for path in files:
@@ -140,20 +48,26 @@ def import_files(
             raise ValueError(f"{path}: has the name of {other}, and maps name tables; rename one")
     make_folder(out.parent)
     part = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+    draft = BundleDraft(part, str(map_file))
     try:
-        counts = WRITERS[mapping["kind"]](mapping, str(map_file), tables, part, progress)
+        counts = WRITERS[mapping["kind"]](mapping, str(map_file), tables, draft, progress)
         from dwell import DwellError, _native
 
         progress(0.9, "checking the bundle")
         try:
             counts["episodes"] = _native.check_measured(str(part))
         except DwellError as error:
-            raise ValueError(str(error).replace(str(part), str(out))) from None
+            raise ValueError(draft.told(str(error), out)) from None
         part.chmod(0o755)
         os.rename(part, out)
-    except BaseException:
-        shutil.rmtree(part, ignore_errors=True)
+    except OSError as error:
+        # What people know is the name that they gave.
+        named = "" if error.filename is None else os.fsdecode(error.filename)
+        if error.errno is not None and (not named or named.startswith(str(part))):
+            error.filename, error.filename2 = os.fspath(out), None
         raise
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
     progress(1.0, "done")
     return counts
 
@@ -161,7 +75,11 @@ def import_files(
 def read_map(path: Path) -> CsvRow:
     """The map, with every key known."""
     mapping = read_json(path)
-    kind = mapping.get("kind") if isinstance(mapping, dict) else None
+    if not isinstance(mapping, dict):
+        raise ValueError(
+            f"{path}: found {mapping!r:.60}; an object with the keys of a map is needed"
+        )
+    kind = mapping.get("kind")
     if not isinstance(kind, str) or kind not in TEMPLATES:
         raise ValueError(f"{path}: kind is {kind!r}; allowed is one of {sorted(TEMPLATES)}")
     known_columns(mapping, TEMPLATES[kind], str(path))
@@ -208,6 +126,8 @@ class MeasuredTable:
         if name not in tables:
             raise ValueError(f"{at}: file {name!r} was not given; given are {sorted(tables)}")
         self.path = tables[name]
+        #: The row that was read last, from 1.
+        self.row = 0
         self.delimiter = ","
         if self.path.suffix == ".csv":
             self.delimiter = csv_values.delimiter_of(head_of(self.path))
@@ -216,6 +136,7 @@ class MeasuredTable:
     def __iter__(self) -> Iterator[tuple[str, CsvRow]]:
         """Places and rows."""
         for number, row in self._rows:
+            self.row = number
             yield f"{self.path} row {number}", row
 
     def has(self, names: list[str]) -> None:
@@ -337,18 +258,10 @@ def short(value: float) -> str:
     return f"{value:.9g}"
 
 
-@contextlib.contextmanager
-def table_file(folder: Path, name: str, head: str) -> Iterator[Callable[[list[str]], None]]:
-    """A CSV file that is written row by row."""
-    with (folder / name).open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(head.split(","))
-        yield writer.writerow
-
-
 def write_common(
     mapping: CsvRow,
-    folder: Path,
+    at: str,
+    draft: BundleDraft,
     scene: CsvRow,
     more: CsvRow,
     groups: dict[str, str],
@@ -364,8 +277,9 @@ def write_common(
         "notes": mapping.get("notes") or "",
         **more,
     }
-    (folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
-    with table_file(folder, "episodes.csv", "episode,split_group,conditions") as write:
+    draft.fields["scene.environment."] = f"{at}: "
+    (draft.folder / "manifest.json").write_text(json.dumps(manifest, indent=1) + "\n", "utf-8")
+    with draft.table("episodes.csv", "episode,split_group,conditions") as write:
         for episode, group in groups.items():
             write([episode, group, (conditions or {}).get(episode, "")])
 
@@ -374,9 +288,9 @@ def pose_bundle(
     mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
-    folder: Path,
+    draft: BundleDraft,
     progress: Callable[[float, str], None],
-) -> dict[str, int]:
+) -> dict[str, Any]:
     """Poses of a body, with their starts."""
     up = mapping.get("up", "y")
     if up not in ("y", "z"):
@@ -400,10 +314,14 @@ def pose_bundle(
     groups: dict[str, str] = {}
     head = "episode,t_s,entity,x,y,z,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz"
     rows = 0
-    with table_file(folder, "poses.csv", head) as write:
+    draft.measured(table, clock, episode)
+    draft.fields |= {"scene.bodies[0].": f"{at}: body.", "scene.board.": f"{at}: board."}
+    origin = pose_origin(up, [place, *rates]) | {"t_s": [clock], "episode": [episode]}
+    with draft.table("poses.csv", head, table, origin) as write:
         for where, row in table:
             name = text(row[episode])
             groups.setdefault(name, text(row[group]))
+            draft.begins(name)
             position = [metres * value for value in table.numbers(where, row, place)]
             rotation = table.numbers(where, row, quaternion)
             values = [*turned(position, up), *turned_rotation(rotation, up)]
@@ -421,17 +339,29 @@ def pose_bundle(
     if mapping.get("starts"):
         progress(0.7, "starts")
         units = (metres, radians)
-        write_starts(mapping["starts"], f"{at}: starts", tables, folder, (up, in_body), units)
+        write_starts(mapping["starts"], f"{at}: starts", tables, draft, (up, in_body), units)
     scene = {"bodies": [body], "board": require_columns(mapping, "board", at)}
-    write_common(mapping, folder, scene, {"poses": form}, groups)
+    write_common(mapping, at, draft, scene, {"poses": form}, groups)
     return {"rows": rows, "episodes": len(groups), "left_out": 0}
+
+
+def pose_origin(up: str, columns: list[list[str]]) -> dict[str, list[str]]:
+    """The user's columns of a pose's coordinates, by the bundle's names for them."""
+    order = (0, 2, 1) if up == "z" else (0, 1, 2)
+    fields = (("x", "y", "z"), ("vx", "vy", "vz"))
+    return {
+        name: [own[k]]
+        for names, own in zip(fields, columns, strict=False)
+        for name, k in zip(names, order, strict=True)
+        if own
+    }
 
 
 def write_starts(
     part: CsvRow,
     at: str,
     tables: Mapping[str, Path],
-    folder: Path,
+    draft: BundleDraft,
     frames: tuple[str, bool],
     units: tuple[float, float],
 ) -> None:
@@ -442,7 +372,8 @@ def write_starts(
     angular = columns_of(part, "angular_velocity", 3, at)
     episode, sample = require_columns(part, "episode", at), require_columns(part, "sample", at)
     table.has([episode, sample, *linear, *angular])
-    with table_file(folder, "starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz") as write:
+    origin = {"episode": [episode], "sample": [sample]}
+    with draft.table("starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz", table, origin) as write:
         for where, row in table:
             speed = [metres * value for value in table.numbers(where, row, linear)]
             spin = [radians * value for value in table.numbers(where, row, angular)]
@@ -455,9 +386,9 @@ def flight_bundle(
     mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
-    folder: Path,
+    draft: BundleDraft,
     progress: Callable[[float, str], None],
-) -> dict[str, int]:
+) -> dict[str, Any]:
     """Flights of balls; episodes whose ball has no mass or diameter are left out."""
     part, here = require_columns(mapping, "table", at), f"{at}: table"
     about, there = require_columns(mapping, "bodies", at), f"{at}: bodies"
@@ -474,6 +405,11 @@ def flight_bundle(
         body = text(row[names[1]])
         mass, diameter = (listed.number(where, row, name) for name in names[2:])
         found = {"name": body, "mass_kg": mass, "radius_m": 0.5 * diameter}
+        if body not in bodies:
+            field = f"scene.bodies[{len(bodies)}]."
+            draft.fields[f"{field}mass_kg"] = f"{where}: column {names[2]!r}"
+            draft.fields[f"{field}radius_m"] = f"{where}: half of column {names[3]!r}"
+            draft.fields[f"{field}name"] = f"{where}: column {names[1]!r}"
         known = bodies.setdefault(body, found)
         if known != found:
             raise ValueError(
@@ -503,15 +439,20 @@ def flight_bundle(
     times = csv_values.TimeParser(clock, scale(part, "seconds_per_unit", here))
     metres = scale(part, "metres_per_unit", here)
     groups: dict[str, str] = {}
-    left_out: set[str] = set()
+    left_out: dict[str, None] = {}
     rows = 0
-    with table_file(folder, "trajectory.csv", "episode,t_s,entity,channel,value") as write:
+    draft.measured(table, clock, episode)
+    origin = {"t_s": [clock], "episode": [episode], "value": [*channels.values()]}
+    origin |= {axis: [column] for axis, column in channels.items()}
+    head = "episode,t_s,entity,channel,value"
+    with draft.table("trajectory.csv", head, table, origin) as write:
         for where, row in table:
             name = text(row[episode])
             if name not in body_of:
-                left_out.add(name)
+                left_out[name] = None
                 continue
             groups.setdefault(name, text(row[group]))
+            draft.begins(name)
             stamp = times.stamp(where, name, table.number(where, row, clock))
             for channel, column in channels.items():
                 value = metres * table.number(where, row, column)
@@ -527,17 +468,22 @@ def flight_bundle(
         {"name": channel, "unit": "m", "clock": "tracker", "noise_sd": None} for channel in channels
     ]
     scene = {"bodies": list(bodies.values())}
-    write_common(mapping, folder, scene, {"channels": told}, groups)
-    return {"rows": rows, "episodes": len(groups), "left_out": len(left_out)}
+    write_common(mapping, at, draft, scene, {"channels": told}, groups)
+    return {
+        "rows": rows,
+        "episodes": len(groups),
+        "left_out": len(left_out),
+        **({"left_out_episodes": [*left_out][:MOST_TOLD]} if left_out else {}),
+    }
 
 
 def drive_bundle(
     mapping: CsvRow,
     at: str,
     tables: Mapping[str, Path],
-    folder: Path,
+    draft: BundleDraft,
     progress: Callable[[float, str], None],
-) -> dict[str, int]:
+) -> dict[str, Any]:
     """Drives of a robot on two wheels, with the sessions and paths that a second table lists."""
     part, here = require_columns(mapping, "table", at), f"{at}: table"
     base, listing = (
@@ -571,7 +517,18 @@ def drive_bundle(
     groups: dict[str, str] = {}
     rows = 0
     head = "episode,t_s,x,y,heading,left_rad,right_rad"
-    with table_file(folder, "drive.csv", head) as write:
+    draft.measured(table, clock, episode)
+    draft.fields["scene.base."] = f"{at}: base."
+    origin = {
+        "episode": [episode],
+        "t_s": [clock],
+        "x": place[:1],
+        "y": place[1:],
+        "heading": [heading],
+        "left_rad": wheels[:1],
+        "right_rad": wheels[1:],
+    }
+    with draft.table("drive.csv", head, table, origin) as write:
         for where, row in table:
             name = text(row[episode])
             if name not in rows_of:
@@ -580,6 +537,7 @@ def drive_bundle(
                     f"has {sorted(rows_of)[:3]}"
                 )
             groups.setdefault(name, text(rows_of[name][names[1]]))
+            draft.begins(name)
             seen = [metres * value for value in table.numbers(where, row, place)]
             seen.append(radians * table.number(where, row, heading))
             turned = [rad_per_tick * value for value in table.numbers(where, row, wheels)]
@@ -589,10 +547,9 @@ def drive_bundle(
             if rows % 4096 == 0:
                 progress(0.1, f"{rows} rows of {table.path.name}")
     conditions = {name: text(rows_of[name][names[2]]) for name in groups}
-    write_common(mapping, folder, {"base": base}, {}, groups, conditions)
+    write_common(mapping, at, draft, {"base": base}, {}, groups, conditions)
     return {"rows": rows, "episodes": len(groups), "left_out": 0}
 
 
-#: What each kind of map looks like, and what writes its bundle.
-TEMPLATES: dict[str, CsvRow] = {"pose_trajectory": TEMPLATE, "trajectory": FLIGHT, "drive": DRIVE}
+#: What writes the bundle of each kind of map.
 WRITERS = {"pose_trajectory": pose_bundle, "trajectory": flight_bundle, "drive": drive_bundle}

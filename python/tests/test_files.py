@@ -152,23 +152,23 @@ def test_links_are_followed_to_files_and_stay(tmp_path: Path) -> None:
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a", "link", "nowhere"]
 
 
-#: What writes to a path.
+#: What writes to a path, which ends as here.
 WRITES: list[tuple[str, Callable[[Path], object]]] = [
-    ("ir", lambda path: cli.main(["ir", *IR, "--out", str(path)])),
-    ("describe", lambda path: cli.main(["describe", "builtin:studio", "--out", str(path)])),
-    ("picture", lambda path: cli.main(["ir", *IR, "--plot", "decay", "--out", str(path)])),
+    ("wav", lambda path: cli.main(["ir", *IR, "--out", str(path)])),
+    ("jsonl", lambda path: cli.main(["describe", "builtin:studio", "--out", str(path)])),
+    ("png", lambda path: cli.main(["ir", *IR, "--plot", "decay", "--out", str(path)])),
     ("glb", lambda path: dwell.House.open("builtin:studio").write(path, "glb")),
     ("dwell", lambda path: dwell.House.open("builtin:studio").write(path, "dwell")),
-    ("map", lambda path: cli.main(["info", "builtin:studio", "--init-map", str(path)])),
+    ("toml", lambda path: cli.main(["info", "builtin:studio", "--init-map", str(path)])),
 ]
 IR = ("builtin:studio", "--source", "1,1,1", "--mic", "2,1,1", "--rays", "100")
 
 
-@pytest.mark.parametrize("write", [write for _, write in WRITES], ids=[name for name, _ in WRITES])
+@pytest.mark.parametrize(("suffix", "write"), WRITES, ids=[suffix for suffix, _ in WRITES])
 def test_nothing_but_regular_files_is_replaced(
-    write: Callable[[Path], object], tmp_path: Path
+    suffix: str, write: Callable[[Path], object], tmp_path: Path
 ) -> None:
-    device, pipe = tmp_path / "null.png", tmp_path / "pipe.png"
+    device, pipe = tmp_path / f"null.{suffix}", tmp_path / f"pipe.{suffix}"
     device.symlink_to("/dev/null")
     os.mkfifo(pipe)
     for path in (device, pipe):
@@ -493,7 +493,7 @@ def test_odd_names_are_refused_by_one_sentence(
 def test_odd_tables_are_refused_by_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    from dwell.measured_import import FLIGHT
+    from dwell.measured_templates import FLIGHT
 
     meaning, table = tmp_path / "map.json", tmp_path / "index.csv"
     meaning.write_text(json.dumps({**FLIGHT, "g_m_s2": 9.81}))
@@ -505,3 +505,65 @@ def test_odd_tables_are_refused_by_one_sentence(
         assert "index.csv" in told
         assert "bug of dwell" not in told
         assert len(told) < 1000
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        ('{"a": 1, "b": 2, "a": 3}', "a"),
+        ('[{"x": {"g_m_s2": 9.81, "g_m_s2": 1.62}}]', "g_m_s2"),
+        ('{"\\u0061": 1, "a": 1}', "a"),
+    ],
+)
+def test_a_key_that_stands_twice_is_named_with_its_file(
+    text: str, key: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "map.json"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=rf"map\.json: key '{key}' stands twice in one object"):
+        files.read_json(path)
+    # Elsewhere it is another key.
+    assert files.parse_json(b'[{"a": 1}, {"a": {"a": 2}}]', "here") == [{"a": 1}, {"a": {"a": 2}}]
+
+
+def test_an_array_that_a_full_disk_does_not_take_is_told_with_file_and_cause(
+    tmp_path: Path,
+) -> None:
+    resource = pytest.importorskip("resource")
+    path = tmp_path / "a.npy"
+    array = np.arange(100_000, dtype=np.float32).reshape(100, 10, 100)
+    with files.atomic_write(path) as draft:
+        files.save_array(draft, array)
+    assert (np.load(path) == array).all()
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with (
+            pytest.raises(OSError, match="File too large") as refused,
+            files.atomic_write(path) as draft,
+        ):
+            files.save_array(draft, array)
+        with (
+            pytest.raises(OSError, match="cannot be written: 5 requested") as unnamed,
+            files.atomic_write(path),
+        ):
+            raise OSError("5 requested and 3 written")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    for caught in (refused.value, unnamed.value):
+        assert caught.filename == str(path)
+    assert (np.load(path) == array).all()
+    assert [entry.name for entry in tmp_path.iterdir()] == ["a.npy"]
+
+
+def test_where_no_file_can_stand_is_known_before_anything_is_made(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (tmp_path / "nowhere").symlink_to(tmp_path / "missing")
+    files.check_place(tmp_path / "file")
+    files.check_place(tmp_path / "new" / "deep" / "a.png")
+    for place, told in (("file/z.png", "is no folder"), ("nowhere", "leads to no file")):
+        with pytest.raises(OSError, match=told):
+            files.check_place(tmp_path / place)
+    with pytest.raises(OSError, match="is a folder"):
+        files.check_place(tmp_path)
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "nowhere"]

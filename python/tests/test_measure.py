@@ -249,3 +249,49 @@ def refused(*tables: Path, tmp_path: Path, mapping: dict[str, object]) -> str:
     with pytest.raises(ValueError, match=r".") as caught:
         import_files([*tables], path, tmp_path / "o.measured", lambda *_: None)
     return str(caught.value)
+
+
+def test_a_link_that_leads_to_nothing_and_a_map_that_is_a_list_are_told(tmp_path: Path) -> None:
+    files, mapping = tosses(tmp_path)
+    out = tmp_path / "a.measured"
+    out.symlink_to(tmp_path / "nowhere")
+    with pytest.raises(FileExistsError, match=r"a\.measured: is a link that leads to nothing"):
+        import_files(files, mapping, out, quiet)
+    mapping.write_text("[]")
+    with pytest.raises(ValueError, match=r"map\.json: found \[\]; an object"):
+        import_files(files, mapping, tmp_path / "b.measured", quiet)
+
+
+def test_a_full_disk_is_told_with_the_bundle_s_name(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    files, mapping = tosses(tmp_path)
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large") as refused:
+            import_files(files, mapping, tmp_path / "a.measured", quiet)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert refused.value.filename == str(tmp_path / "a.measured")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.json", "poses.csv"]
+
+
+def test_episodes_that_are_left_out_are_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from dwell import cli
+
+    mapping: dict[str, Any] = json.loads((MAPS / "ball_drops.json").read_text())
+    about, part = mapping["bodies"], mapping["table"]
+    about |= {"file": "index.csv", "episode": "e", "name": "b", "mass_kg": "m", "diameter_m": "d"}
+    part |= {"file": "data.csv", "episode": "e", "t_s": "t", "channels": {"y": "y"}}
+    part.pop("split_group", None)
+    (tmp_path / "map.json").write_text(json.dumps(mapping))
+    rows = [f"{e},{k / 15},{9 - 4.905 * (k / 15) ** 2}" for e in "abcde" for k in range(15)]
+    (tmp_path / "data.csv").write_text("\n".join(["e,t,y", *rows]) + "\n")
+    lines = [f"{e},ball{e},0.1,0.07" for e in "abcd"]
+    (tmp_path / "index.csv").write_text("\n".join(["e,b,m,d", *lines]) + "\n")
+    command = ["measure", "import", str(tmp_path / "data.csv"), str(tmp_path / "index.csv")]
+    command += ["--map", str(tmp_path / "map.json"), "--out", str(tmp_path / "o.measured")]
+    assert cli.main(command) == 0
+    assert "1 left out, without mass and diameter of their bodies: 'e'" in capsys.readouterr().out

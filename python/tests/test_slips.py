@@ -224,7 +224,7 @@ def test_steps_of_what_measures_are_no_fall_along_another_axis(tmp_path: Path) -
 
 def test_a_bounce_is_told_with_where_to_cut(tmp_path: Path) -> None:
     told = refused(tmp_path, FLIGHT, bounced)
-    assert "trajectory.csv, episode e2: y is falling until t_s 5.19" in told
+    assert "data.csv, episode e2: column 'y' is falling until t_s 5.19" in told
     assert "rising by 0.3" in told
     assert "Leave out the rows from there on" in told
     assert brought(tmp_path, FLIGHT, cut)["episodes"] == 4
@@ -249,6 +249,7 @@ def counted_on(rows: Rows) -> None:
 SAYS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
     (FLIGHT, put(17, 3, ""), "data.csv row 17: column 'y' is empty.*: fill it in, or leave"),
     (FLIGHT, put(17, 3, "NaN"), "data.csv row 17: column 'y' is 'NaN'.*: fill it in, or leave"),
+    (FLIGHT, put(17, 3, "\uff11"), "row 17: column 'y' is '\uff11'; a finite number is needed"),
     (FLIGHT, put(17, 3, "1.2 m"), "row 17: column 'y' is '1.2 m'.*: the number alone"),
     (FLIGHT, put(17, 3, '"1,25"'), "row 17: column 'y' is '1,25'.*decimal comma. Write 1.25"),
     (FLIGHT, lambda rows: rows[16].pop(), "row 17: 4 cells, and the head has 5: a cell is missing"),
@@ -276,6 +277,68 @@ def test_a_slip_is_told_with_what_to_change(
 ) -> None:
     with pytest.raises(ValueError, match=told):
         brought(tmp_path, mapping, change)
+
+
+def dropped(rows: Rows, unit: float = 1.0) -> None:
+    """Balls that fall 40 m through air, whose terminal speed is 20 m/s, at 15 Hz."""
+    rows.clear()
+    for ball in range(4):
+        for k in range(46):
+            t = k / 15.0
+            way = 20.0**2 / 9.81 * math.log(math.cosh(9.81 * t / 20.0))
+            rows.append([f"e{ball}", t, 0.0, (47.0 + ball - way) / unit, 0.0])
+
+
+def test_feet_are_named_where_air_slows_what_falls(tmp_path: Path) -> None:
+    told = refused(tmp_path, FLIGHT, lambda rows: dropped(rows, 0.3048))
+    assert "lengths in feet? Divide by 3.2808" in told
+    assert brought(tmp_path, FLIGHT, dropped)["episodes"] == 4
+
+
+def test_a_gap_is_named(tmp_path: Path) -> None:
+    def late(rows: Rows) -> None:
+        for row in rows[20:40]:
+            row[1] += 3.0
+
+    told = refused(tmp_path, FLIGHT, late)
+    assert "data.csv, episode e0: column 't_s' is 8.2 after 5.19" in told
+    assert "less than 0.5 s from sample to sample: fill the gap in" in told
+
+
+def test_faults_name_the_file_row_and_column_that_the_user_has(tmp_path: Path) -> None:
+    cases: list[tuple[str, str]] = [
+        (refused(tmp_path, FLIGHT, put(57, 3, 1e300)), "data.csv row 57: column 'y' is 1"),
+        (refused(tmp_path, FLIGHT, put(57, 2, 1e300)), "data.csv row 57: column 'x' is 1"),
+        (refused(tmp_path, FLIGHT, put(57, 1, 1e300)), "data.csv row 57: column 't_s' is 1"),
+        (
+            refused(tmp_path, FLIGHT, put(41, 0, "a\x1b[31m")),
+            "data.csv row 41: column 'episode' is",
+        ),
+        (
+            refused(tmp_path, FLIGHT, index=("0.04", "0")),
+            "index.csv row 1: half of column 'diameter_m' is 0",
+        ),
+        (
+            refused(tmp_path, FLIGHT, index=("0.0027", "-1")),
+            "index.csv row 1: column 'mass_kg' is -1",
+        ),
+        (refused(tmp_path, {**FLIGHT, "g_m_s2": -9.81}), "map.json: g_m_s2 is -9.81"),
+        (refused(tmp_path, POSES, put(5, 2, 1e300)), "data.csv row 5: column 'x' is 1"),
+        (refused(tmp_path, POSES, put(5, 4, 1e300)), "data.csv row 5: column 'z' is 1"),
+        (
+            refused(tmp_path, {**POSES, "body": {**POSES["body"], "mass_kg": -1}}),
+            "map.json: body.mass_kg is -1",
+        ),
+        (refused(tmp_path, DRIVE, put(5, 4, 1e300)), "data.csv row 5: column 'theta' is 1"),
+        (
+            refused(tmp_path, {**DRIVE, "base": {**DRIVE["base"], "wheel_base_m": -1}}),
+            "map.json: base.wheel_base_m is -1",
+        ),
+        (refused(tmp_path, FLIGHT, lambda rows: rows.__delitem__(slice(40, None))), "data.csv: 1"),
+    ]
+    for told, wanted in cases:
+        assert told.startswith(f"{tmp_path}/{wanted}"), told
+        assert ".measured" not in told, told
 
 
 def test_maps_and_lists_of_bodies_are_told_with_what_to_change(tmp_path: Path) -> None:

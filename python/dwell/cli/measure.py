@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import sys
+from typing import Any
 
 from dwell.cli.common import ProgressBar, path, print_json
 
@@ -29,7 +30,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Imports, checks the bundle as ``dwell calibrate`` would, and moves it into place."""
-    from dwell.measured_import import TEMPLATES, import_files
+    from dwell.measured_import import import_files
+    from dwell.measured_templates import TEMPLATES
 
     if args.init:
         if args.files or args.map or args.out:
@@ -45,6 +47,16 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         print_json({"out": str(args.out), **counts})
     else:
-        left_out = f", {counts['left_out']} left out" if counts["left_out"] else ""
+        left_out = _left_out(counts)
         print(f"{args.out}: {counts['episodes']} episodes, {counts['rows']} rows{left_out}")
     return 0
+
+
+def _left_out(counts: dict[str, Any]) -> str:
+    """Which episodes are not in the bundle, and why."""
+    count = counts["left_out"]
+    if not count:
+        return ""
+    names = ", ".join(map(repr, counts["left_out_episodes"]))
+    more = ", ..." if count > len(counts["left_out_episodes"]) else ""
+    return f", {count} left out, without mass and diameter of their bodies: {names}{more}"
