@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
-from dwell import ConfigError, _native
+from dwell import ConfigError, _native, arguments
 
 
 class HouseList(Sequence[str]):
@@ -34,9 +34,10 @@ class HouseList(Sequence[str]):
 
         Raises:
             HouseError: A range is empty or none of whole numbers.
-            ConfigError: There are more than any sequence of Python holds.
+            ConfigError: There are more than any sequence of Python holds, or it is no text that
+                UTF-8 can hold.
         """
-        found = _native.seed_range(house)
+        found = _native.seed_range(arguments.text("house", house))
         if found is None:
             self.append_name(house)
             return

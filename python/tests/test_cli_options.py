@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -105,3 +107,70 @@ def test_a_picture_that_memory_cannot_hold_is_refused(tmp_path: Path) -> None:
     assert done.returncode == 1
     assert "camera is 16000 by 16000 pixels" in done.stderr
     assert "take a smaller image" in done.stderr
+
+
+@pytest.mark.parametrize(("told", "number"), [("from 1", "-1"), ("from 1", "0")])
+def test_a_count_tells_one_range(
+    told: str, number: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["generate", "--count", number, "--out", "x"]) == 2
+    said = capsys.readouterr().err
+    assert f"a whole number {told}" in said
+    assert "from 0" not in said
+
+
+def test_a_name_that_the_stream_cannot_print_is_escaped(tmp_path: Path) -> None:
+    house = tmp_path / "ä→.obj"
+    house.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    for encoding, told in (("ascii", "\\u00e4\\u2192"), ("latin-1", "ä\\u2192")):
+        done = subprocess.run(
+            [sys.executable, "-m", "dwell.cli", "info", str(house), "--json"],
+            env={**os.environ, "PYTHONIOENCODING": encoding},
+            capture_output=True,
+            timeout=300,
+            check=False,
+        )
+        said = done.stdout.decode(encoding)
+        assert done.returncode == 0, done.stderr
+        assert told in said
+        assert json.loads(said)["name"] == "ä→"
+
+
+def test_a_house_that_is_no_text_is_told_as_one(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ("describe", "info"):
+        assert cli.main([command, "\udcff\udcfe bad.dwell"]) == 1
+        said = capsys.readouterr().err
+        assert "expected text that UTF-8 can hold" in said, said
+
+
+def test_what_no_picture_can_show_or_be_written_to_is_said_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from dwell import sound_maps
+
+    def computed(*_: object, **__: object) -> None:
+        raise AssertionError("it was computed first")
+
+    monkeypatch.setattr(sound_maps, "sound_map", computed)
+    (tmp_path / "file").touch()
+    command = ["ir", HOUSE, "--source", "1,1,1", "--map", "level"]
+    assert cli.main([*command, "--level", "7", "--out", str(tmp_path / "a.png")]) == 1
+    assert "--level is 7; the house has 1 storey" in capsys.readouterr().err
+    assert cli.main([*command, "--out", str(tmp_path / "file" / "z.png")]) == 1
+    assert f"{tmp_path / 'file'}: is no folder" in capsys.readouterr().err
+
+
+def test_a_measured_room_s_numbers_are_told_by_its_own_names(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "room.json"
+    for field, told in (
+        ('"duration_s": 1e6', "room.json: duration_s is 1e+06; allowed is 0.02 to 20 s"),
+        (
+            '"duration_s": 1, "air": {"pressure_pa": 1}',
+            "room.json: air.pressure_pa is 1; allowed is 30000 to 200000 Pa",
+        ),
+    ):
+        path.write_text(ROOM.replace('"duration_s": 0.1', field), "utf-8")
+        assert cli.main(["ir", str(path)]) == 1
+        assert told in capsys.readouterr().err

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import codecs
 import contextlib
 import json
 import math
@@ -44,22 +45,19 @@ def number(text: str) -> float:
     return value
 
 
-def count(text: str) -> int:
+def count(text: str, low: int = 0) -> int:
     """Reads a whole number that is not negative: a seed, a size, how many."""
     # What Python counts with.
-    if not re.fullmatch(r"\+?[0-9]{1,19}", text.strip()) or int(text) > sys.maxsize:
-        allowed = f"a whole number from 0 to {sys.maxsize}"
+    is_whole = re.fullmatch(r"\+?[0-9]{1,19}", text.strip())
+    if not is_whole or not low <= int(text) <= sys.maxsize:
+        allowed = f"a whole number from {low} to {sys.maxsize}"
         raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
     return int(text)
 
 
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
-    value = count(text)
-    if value == 0:
-        allowed = f"a whole number from 1 to {sys.maxsize}"
-        raise argparse.ArgumentTypeError(f"expected {allowed}, found {text[:60]!r}")
-    return value
+    return count(text, low=1)
 
 
 def path(text: str) -> Path:
@@ -152,6 +150,23 @@ def printable(text: str) -> str:
     return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
+def _as_json(error: UnicodeError) -> tuple[str, int]:
+    """Characters that an encoding lacks, as JSON escapes them."""
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    return json.dumps(error.object[error.start : error.end])[1:-1], error.end
+
+
+codecs.register_error("dwell.json", _as_json)
+
+
+def _encodable(text: str, encoding: str | None) -> str:
+    """Text that a stream of this encoding can print: other characters are escaped as in JSON."""
+    if text.isascii() or encoding is None:
+        return text
+    return text.encode(encoding, "dwell.json").decode(encoding)
+
+
 class Printable:
     """A stream that passes on printable text alone: all that commands print goes through it."""
 
@@ -163,7 +178,7 @@ class Printable:
     def write(self, text: str) -> int:
         """Passes text on."""
         with self._named():
-            self.stream.write(printable(text))
+            self.stream.write(_encodable(printable(text), self.stream.encoding))
         return len(text)
 
     def flush(self) -> None:

@@ -4,6 +4,7 @@ mod accessor;
 mod buffers;
 mod container;
 mod convert;
+mod extras;
 mod faults;
 mod geometry;
 mod glb;
