@@ -393,5 +393,5 @@ def test_counts_that_nothing_counts_to_are_refused(
 ) -> None:
     assert cli.main(["generate", "--count", "9" * 19, "--out", str(tmp_path / "houses")]) == 2
     told = capsys.readouterr().err
-    assert "expected a whole number from 0 to 9223372036854775807, found '999999" in told
+    assert "expected a whole number from 1 to 9223372036854775807, found '999999" in told
     assert "islice" not in told

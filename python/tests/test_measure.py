@@ -84,7 +84,7 @@ def test_spin_in_the_wrong_frame_is_noticed_and_nothing_is_left(tmp_path: Path) 
         (lambda m: m.update(colour="red"), "no key 'colour'"),
         (lambda m: m.update(kind="video"), "kind is 'video'"),
         (lambda m: m["table"].update(position=["px"]), "3 names of columns"),
-        (lambda m: m["poses"].update(rate_hz=50.0), "t_s"),
+        (lambda m: m["poses"].update(rate_hz=50.0), r"poses\.csv, episode 0: column 't' is"),
         (lambda m: m["table"].update(metres_per_unit=0.01), "against differences"),
     ],
 )

@@ -306,12 +306,16 @@ def test_a_gap_is_named(tmp_path: Path) -> None:
 
 
 def test_faults_name_the_file_row_and_column_that_the_user_has(tmp_path: Path) -> None:
+    def renamed(rows: Rows) -> None:
+        for row in rows[40:80]:
+            row[0] = "a\x1b[31m"
+
     cases: list[tuple[str, str]] = [
         (refused(tmp_path, FLIGHT, put(57, 3, 1e300)), "data.csv row 57: column 'y' is 1"),
         (refused(tmp_path, FLIGHT, put(57, 2, 1e300)), "data.csv row 57: column 'x' is 1"),
         (refused(tmp_path, FLIGHT, put(57, 1, 1e300)), "data.csv row 57: column 't_s' is 1"),
         (
-            refused(tmp_path, FLIGHT, put(41, 0, "a\x1b[31m")),
+            refused(tmp_path, FLIGHT, renamed, index=("e1", "a\x1b[31m")),
             "data.csv row 41: column 'episode' is",
         ),
         (
