@@ -109,7 +109,7 @@ pub(crate) fn range(
 
 /// Refuses a point that is not finite.
 pub(crate) fn finite(what: &'static str, point: glam::Vec3) -> Result<(), AcousticsError> {
-    if point.is_finite() && point.abs().max_element() < 1e6 {
+    if point.is_finite() && point.abs().max_element() <= 1e6 {
         return Ok(());
     }
     Err(AcousticsError::Position {
@@ -135,5 +135,9 @@ mod tests {
             message,
             "the source stands at [NaN, 0.0, 1.0]; allowed are coordinates up to 1,000,000 m"
         );
+        for (x, is_allowed) in [(1e6, true), (-1e6, true), (1e6_f32.next_up(), false)] {
+            let told = finite("the source", glam::Vec3::new(x, 0.0, 1.0));
+            assert_eq!(told.is_ok(), is_allowed, "{x}");
+        }
     }
 }

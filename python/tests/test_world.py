@@ -125,6 +125,18 @@ def test_a_snapshot_continues_with_the_same_bits(apartment: dwell.House) -> None
     assert world.state_hash() == first[0]
 
 
+@pytest.mark.parametrize("drift_ppm", [-20_000.0, -1.0, 20_000.0])
+def test_a_world_with_another_clock_comes_back_with_the_same_hash(drift_ppm: float) -> None:
+    world = dwell.World("builtin:studio", laws={"clock_drift": {"drift_ppm": drift_ppm}})
+    world.listen(800)
+    world.play("noise", at=(2.0, 1.2, 9.4), loop=True)
+    for _ in range(30):
+        world.step()
+        there, snapshot = world.state_hash(), world.snapshot()
+        world.restore(snapshot)
+        assert world.state_hash() == there
+
+
 def test_a_snapshot_of_other_agents_or_another_rate_is_refused(shoebox: dwell.House) -> None:
     saved = dwell.World(shoebox, agents=1).snapshot()
     for other, told in [

@@ -149,6 +149,10 @@ impl DriftingClock {
             lags.push((self.lag, self.old_lag, weight));
             self.lag += self.growth;
             self.old_lag += self.growth;
+            if self.fading == 0 {
+                // Nothing of it is heard any more.
+                self.old_lag = self.lag;
+            }
         }
         lags
     }
@@ -241,7 +245,10 @@ impl MicrophoneStage for DriftingClock {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded, streamed};
+    use super::super::testing::{RATE_HZ, law, recorded, streamed, with_listener};
+    use crate::microphone_chain::MicrophoneChain;
+    use crate::receiver::Receiver;
+    use dwell_scene::random::RandomKey;
 
     fn clock(drift_ppm: f64, offset_s: f64) -> [dwell_scene::LawSpec; 1] {
         [law(
@@ -291,6 +298,24 @@ mod tests {
         let whole = recorded(&clock(300.0, 0.0), 0, &sound);
         for n in 1000..39_000 {
             assert!((late[n + 160] - whole[n]).abs() < 0.03);
+        }
+    }
+
+    /// A snapshot holds what goes on, and nothing else: it comes back as it was, also after hours.
+    #[test]
+    fn what_it_remembers_comes_back_to_the_bit() {
+        let sound = tone(300.0, 64 * 16_000);
+        for drift_ppm in [-20_000.0, -1.0, 1.0, 20_000.0] {
+            let mut microphones = MicrophoneChain::new(RATE_HZ);
+            for (k, block) in sound.chunks(800).enumerate() {
+                let (mut block, own) = (block.to_vec(), RandomKey::root(0).child(k as u64));
+                with_listener(&Receiver::omni(glam::Vec3::ZERO), 0, own, |listener| {
+                    microphones.hear(&clock(drift_ppm, 0.0), listener, &mut block);
+                });
+                let memory = microphones.memory();
+                let again = MicrophoneChain::restore(RATE_HZ, memory.clone()).unwrap();
+                assert!(again.memory() == memory, "{drift_ppm}, block {k}");
+            }
         }
     }
 
