@@ -148,6 +148,16 @@ def test_what_was_stopped_while_it_was_prepared_is_prepared_again(
     assert world.state_hash() == twin.state_hash()
 
 
+def test_a_handler_runs_in_the_middle_of_what_is_never_stopped_half_way() -> None:
+    # Contacts as hard as they can be take a second a step.
+    hard = {"contact_compliance": {"natural_frequency_hz": 1000.0}}
+    world, twin = (dwell.World("builtin:studio", laws=hard, settle_s=0.0) for _ in range(2))
+    assert cut_off(world.step) == "ended"
+    twin.step()
+    assert world.time_s == twin.time_s
+    assert world.state_hash() == twin.state_hash()
+
+
 def test_a_handler_that_does_not_raise_leaves_the_call_alone() -> None:
     seen: list[bool] = []
     world = dwell.World("builtin:studio")

@@ -5,11 +5,10 @@
 //! thread. When it returns true, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and `interruptible`
 //! returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
-//! Code that must not stop half-way runs in [`uninterruptible`]; code that holds a lock or half a result meanwhile uses
-//! [`catch_interrupt`]. The initializer of a `LazyLock` must not meet a `check`: interrupted once, it is poisoned for good.
-//! A `OnceLock` stays empty, and is filled the next time.
+//! What must not stop half-way runs in [`uninterruptible`], where the question is asked all the same; what holds a lock or half a result meanwhile uses [`catch_interrupt`]. What a
+//! `LazyLock` makes must not meet a `check`: stopped once, it is lost for good. A `OnceLock` stays empty, and is filled the next time.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,24 +32,29 @@ impl Interrupted {
 /// Set when a call is to stop. Shared with all threads that work for it.
 pub(crate) type CancelToken = Arc<AtomicBool>;
 
-/// The function that is polled, and the next time for it.
-type PollSchedule = Option<(fn() -> bool, Instant)>;
+/// What is asked, when again, and what is set when the answer is yes.
+#[derive(Clone, Debug)]
+struct PollSchedule {
+    ask: fn() -> bool,
+    next: Instant,
+    token: CancelToken,
+}
 
 thread_local! {
     /// That of the call that this thread works for; none: the call cannot be cancelled.
     static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
-    /// Set only on the calling thread.
-    static POLL: Cell<PollSchedule> = const { Cell::new(None) };
+    /// Only on the thread that called.
+    static ASK: RefCell<Option<PollSchedule>> = const { RefCell::new(None) };
 }
 
 /// Restores the previous values, also when the stack unwinds.
 struct ScopeGuard {
     token: Option<CancelToken>,
-    ask: PollSchedule,
+    ask: Option<PollSchedule>,
 }
 
 impl ScopeGuard {
-    fn set_and_guard(token: Option<CancelToken>, ask: PollSchedule) -> Self {
+    fn set_and_guard(token: Option<CancelToken>, ask: Option<PollSchedule>) -> Self {
         Self {
             token: TOKEN.replace(token),
             ask: POLL.replace(ask),
@@ -61,7 +65,7 @@ impl ScopeGuard {
 impl Drop for ScopeGuard {
     fn drop(&mut self) {
         TOKEN.set(self.token.take());
-        POLL.set(self.ask);
+        ASK.set(self.ask.take());
     }
 }
 
@@ -72,7 +76,12 @@ impl Drop for ScopeGuard {
 /// [`Interrupted`] when the work was cancelled. Work that ends before it meets a [`check`] is done, whatever `ask` returned.
 pub fn interruptible<R>(ask: fn() -> bool, work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     let token = Arc::new(AtomicBool::new(false));
-    let _restore = ScopeGuard::set_and_guard(Some(token), Some((ask, Instant::now() + INTERVAL)));
+    let schedule = PollSchedule {
+        ask,
+        next: Instant::now() + INTERVAL,
+        token: token.clone(),
+    };
+    let _restore = ScopeGuard::set_and_guard(Some(token), Some(schedule));
     catch_interrupt(work)
 }
 
@@ -88,15 +97,16 @@ pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     })
 }
 
-/// Runs `work` to its end: it is not cancelled, and nothing is polled meanwhile.
+/// Does `work` to its end: nothing in it stops. Who called is asked meanwhile, and a yes stops the call at its next [`check`]
+/// after this work.
 pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
-    let _restore = ScopeGuard::set_and_guard(None, None);
+    let _restore = ScopeGuard::set_and_guard(None, schedule());
     work()
 }
 
 /// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
 pub fn check() {
-    if POLL.get().is_some_and(|(_, next)| Instant::now() >= next) {
+    if ASK.with_borrow(|asks| asks.as_ref().is_some_and(PollSchedule::is_due)) {
         ask_now();
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
@@ -138,24 +148,31 @@ fn is_set(token: &CancelToken) -> bool {
     token.load(Ordering::Relaxed)
 }
 
-/// Returns whether this thread polls.
-pub(crate) fn polls() -> bool {
-    POLL.get().is_some()
+impl PollSchedule {
+    fn is_due(&self) -> bool {
+        Instant::now() >= self.next
+    }
+}
+
+fn schedule() -> Option<PollSchedule> {
+    ASK.with_borrow(Clone::clone)
+}
+
+/// Returns whether this thread has somebody to ask.
+pub(crate) fn asks() -> bool {
+    ASK.with_borrow(Option::is_some)
 }
 
 /// Polls, and stores the result for all threads of the call.
 pub(crate) fn ask_now() {
-    let Some((ask, _)) = POLL.get() else {
+    let Some(PollSchedule { ask, token, .. }) = schedule() else {
         return;
     };
     if ask() {
-        TOKEN.with_borrow(|token| {
-            if let Some(token) = token {
-                token.store(true, Ordering::Relaxed);
-            }
-        });
+        token.store(true, Ordering::Relaxed);
     }
-    POLL.set(Some((ask, Instant::now() + INTERVAL)));
+    let next = Instant::now() + INTERVAL;
+    ASK.set(Some(PollSchedule { ask, next, token }));
 }
 
 /// Returns the token of the call that this thread works for.
@@ -165,8 +182,8 @@ pub(crate) fn token() -> Option<CancelToken> {
 
 /// Runs a piece of the work of the call that `token` belongs to, on any thread.
 pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
-    // The calling thread polls, too, when it has pieces to do itself.
-    let _restore = ScopeGuard::set_and_guard(token.cloned(), POLL.get());
+    // The thread that called asks, too, when it has pieces to do itself.
+    let _restore = ScopeGuard::set_and_guard(token.cloned(), schedule());
     check();
     work()
 }
@@ -233,6 +250,28 @@ mod tests {
     }
 
     #[test]
+    fn who_called_is_asked_in_the_middle_of_what_must_be_whole() {
+        static ASKED: AtomicUsize = AtomicUsize::new(0);
+        fn yes() -> bool {
+            ASKED.fetch_add(1, Ordering::Relaxed);
+            true
+        }
+        let (mut alone, mut shared) = (0, 0);
+        let stopped = interruptible(yes, || {
+            uninterruptible(|| {
+                spin(60);
+                alone = ASKED.load(Ordering::Relaxed);
+                Threads::exactly(2).map(60, |_| spin(1));
+                shared = ASKED.load(Ordering::Relaxed);
+            });
+            // Not once the work was done: the answer is known.
+            check();
+        });
+        assert_eq!(stopped, Err(Interrupted(())));
+        assert!(alone > 0 && shared > alone, "{alone} {shared}");
+    }
+
+    #[test]
     fn a_pace_looks_at_once_and_then_every_so_often() {
         static ASKED: AtomicUsize = AtomicUsize::new(0);
         fn note() -> bool {
@@ -243,8 +282,12 @@ mod tests {
             ASKED.store(0, Ordering::Relaxed);
             let mut pace = PollEvery::new(10);
             for count in turns {
-                // Every check polls.
-                POLL.set(Some((note, Instant::now())));
+                // Every look is one that asks.
+                ASK.set(Some(PollSchedule {
+                    ask: note,
+                    next: Instant::now(),
+                    token: CancelToken::default(),
+                }));
                 pace.turns(*count);
             }
             POLL.set(None);

@@ -13,6 +13,7 @@ pub use pair_reduction::PairCounts;
 pub(crate) use sleeping_cache::SleepingIslandCache;
 
 use crate::config::ResolvedConfig;
+use dwell_scene::interrupt;
 use glam::Vec3;
 use rapier3d::dynamics::{
     FrictionModel, ImpulseJointSet, IntegrationParameters, IslandManager, RigidBody,
@@ -245,6 +246,7 @@ impl RapierWorld {
             .filter(|(_, from, to)| from != to)
             .collect();
         for run in 1..=self.runs {
+            interrupt::check();
             for (handle, from, to) in &led {
                 let share = run as f32 / self.runs as f32;
                 let place = if run == self.runs {

@@ -18,7 +18,9 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                    k = m (2 pi f_n)^2 (N/m) and b = 2 zeta m 2 pi f_n (N s/m); the contact pushes as long as there is \
                    depth, so that zeta makes the rebound and the pairs' restitution does not enter. f_n = 0: contacts as \
                    hard as the rate allows. One frequency for every pair in the world, so that k grows with the mass that presses: \
-                   not a stiffness of two materials, which the solver has no place for",
+                   not a stiffness of two materials, which the solver has no place for. A step of physics takes 0.52 f_n \
+                   runs of the solver (at 120 steps a second), each as dear as a step without this law: 260 times the \
+                   time at 500 Hz, 1000 times at 2000 Hz",
         source: "K. L. Johnson, Contact Mechanics (1985), chapter 11 (spring and dashpot); E. Catto, Soft Constraints, GDC \
                  (2011)",
         engine: ActsIn::Physics,
