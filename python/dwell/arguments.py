@@ -9,7 +9,8 @@ import math
 import operator
 import os
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence, ValuesView
+from collections.abc import Set as AbstractSet
 from typing import Any, TypeVar
 
 import numpy as np
@@ -28,6 +29,7 @@ _DEEPEST = 100
 _TOO_LARGE = 10**MOST_DIGITS
 
 _Record = TypeVar("_Record")
+_Kind = TypeVar("_Kind")
 
 
 def quoted(value: object, most: int = 200) -> str:
@@ -81,17 +83,80 @@ def finite(name: str, value: object) -> float:
     return number
 
 
+def refuse_masked(name: str, values: object) -> None:
+    """Refuses an array that hides elements: NumPy would show what its mask hides."""
+    if np.ma.is_masked(values):
+        raise ConfigError(
+            f"{name} has masked elements; give what stands for them, as its filled(0.0)"
+        )
+
+
+def within(name: str, value: object, low: float, high: float, unit: str = "") -> float:
+    """A finite number within bounds."""
+    number = finite(name, value)
+    if not low <= number <= high:
+        raise ConfigError(
+            f"{name} is {number:g}; allowed are {low:g} to {high:g}{unit and ' '}{unit}"
+        )
+    return number
+
+
+def instance(name: str, value: object, kind: type[_Kind]) -> _Kind:
+    """What is of a class of dwell."""
+    if not isinstance(value, kind):
+        raise ConfigError(f"{name} is {quoted(value)}; expected a dwell.{kind.__name__}")
+    return value
+
+
+def hashable(value: object) -> object:
+    """What equal values have in common, and what has a hash."""
+    if isinstance(value, Mapping):
+        return frozenset((key, hashable(part)) for key, part in value.items())
+    if isinstance(value, list | tuple | np.ndarray):
+        return tuple(hashable(part) for part in value)
+    return value
+
+
 def numbers(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray[Any]:
     """An array of real numbers, as C has them; NumPy alone would drop the imaginary part."""
+    refuse_masked(name, values)
     try:
-        array = np.asarray(values)
-        if array.dtype.kind not in "fiu" and array.size > 0:
+        found = np.asarray(values)
+        if found.dtype.kind not in "fiu" and found.size > 0:
             raise TypeError
     except (TypeError, ValueError, RecursionError):
         raise ConfigError(f"{name}: expected real numbers, found {quoted(values)}") from None
     # What the type does not hold becomes infinite, and is refused by its place.
     with np.errstate(over="ignore"):
-        return np.ascontiguousarray(array, dtype)
+        return np.ascontiguousarray(found, dtype)
+
+
+def in_order(name: str, values: object, expected: str) -> list[Any]:
+    """The elements of a list, an array or what else has an order and is no text.
+
+    A set has none: what came first would differ from one process to the next.
+
+    Raises:
+        ConfigError: It has none, or no elements; the message says what was ``expected``.
+    """
+    rows = _ordered(values)
+    if rows is None:
+        raise ConfigError(f"{name} is {_found(values)}; {expected}")
+    return rows
+
+
+def _ordered(values: object) -> list[Any] | None:
+    if isinstance(values, AbstractSet | ValuesView | str | bytes | bytearray | Mapping):
+        return None
+    try:
+        return list(values)  # type: ignore[call-overload] # what this finds out
+    except TypeError:
+        return None
+
+
+def _found(values: object) -> str:
+    no_order = isinstance(values, AbstractSet | ValuesView)
+    return f"{quoted(values)}{', which keeps no order' if no_order else ''}"
 
 
 def text(name: str, value: object) -> str:
@@ -117,12 +182,7 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> str:
 
 def texts(name: str, values: object) -> list[str]:
     """A list of text; one text alone is none."""
-    if isinstance(values, str | bytes | Mapping):
-        raise ConfigError(f"{name} is {quoted(values)}; expected a list of text")
-    try:
-        rows = list(values)  # type: ignore[call-overload] # what this finds out
-    except TypeError:
-        raise ConfigError(f"{name} is {quoted(values)}; expected a list of text") from None
+    rows = in_order(name, values, "expected a list of text")
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
 
 
@@ -145,7 +205,8 @@ def mapping(name: str, value: object, of: str = "values by name") -> dict[str, A
     """A mapping whose keys are text."""
     if not isinstance(value, Mapping):
         raise ConfigError(f"{name} is {quoted(value)}; expected {of}")
-    return {text(f"a name in {name}", key): part for key, part in value.items()}
+    at = f"a name in {name}" if name else "a name"
+    return {text(at, key): part for key, part in value.items()}
 
 
 def fields(
@@ -185,8 +246,7 @@ def record(
     name: str, value: object, kind: type[_Record], words: Mapping[str, Sequence[str]]
 ) -> dict[str, Any]:
     """The fields of a data class, numbers or one of several ``words``."""
-    if not isinstance(value, kind):
-        raise ConfigError(f"{name} is {quoted(value)}; expected a dwell.{kind.__name__}")
+    instance(name, value, kind)
     checked: dict[str, Any] = {}
     for field in dataclasses.fields(kind):  # type: ignore[arg-type] # every kind is a data class
         part, at = getattr(value, field.name), f"{name}.{field.name}"
@@ -203,41 +263,29 @@ def record(
 
 def point(name: str, value: object) -> tuple[float, float, float]:
     """A point (x, y, z) in metres, from any sequence or array of three finite numbers."""
-    try:
-        if isinstance(value, str | bytes | Mapping):
-            raise TypeError
-        parts = list(value)  # type: ignore[call-overload] # what this finds out
-    except TypeError:
-        parts = []
-    if len(parts) != 3:
-        raise ConfigError(
-            f"{name}: expected three numbers (x, y, z) in metres, found {quoted(value)}"
-        )
-    x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
-    return x, y, z
+    return _three(name, value, "expected three numbers (x, y, z) in metres")
 
 
 def triple(name: str, value: Sequence[float]) -> tuple[float, float, float]:
     """Three finite numbers, from any sequence or array."""
-    try:
-        parts = [] if isinstance(value, str | bytes | bytearray) else list(value)
-    except TypeError:
-        parts = []
-    if len(parts) != 3:
-        raise ConfigError(f"{name}: expected three numbers (x, y, z), found {quoted(value)}")
+    return _three(name, value, "expected three numbers (x, y, z)")
+
+
+def _three(name: str, value: object, expected: str) -> tuple[float, float, float]:
+    parts = _ordered(value)
+    if parts is None or len(parts) != 3:
+        raise ConfigError(f"{name}: {expected}, found {_found(value)}")
     x, y, z = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts))
     return x, y, z
 
 
 def unit_quaternion(name: str, value: Sequence[float]) -> tuple[float, ...]:
     """A rotation (x, y, z, w), from four finite numbers that are not all 0, made of unit length."""
-    try:
-        parts = [finite(f"{name}[{k}]", part) for k, part in enumerate(value)]
-    except TypeError:
-        parts = []
+    expected = "expected a rotation (x, y, z, w)"
+    parts = [finite(f"{name}[{k}]", part) for k, part in enumerate(_ordered(value) or ())]
     length = math.hypot(*parts)
     if len(parts) != 4 or length == 0.0 or not math.isfinite(length):
-        raise ConfigError(f"{name}: expected a rotation (x, y, z, w), found {quoted(value)}")
+        raise ConfigError(f"{name}: {expected}, found {_found(value)}")
     return tuple(part / length for part in parts)
 
 
@@ -269,7 +317,12 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
         value = value.tolist()
     if isinstance(value, Mapping):
         dot = f"{at}." if at else ""
-        return {str(key): _plain(f"{dot}{key}", part, depth + 1) for key, part in value.items()}
+        return {
+            text(f"a name in {at or 'the settings'}", str(key)): _plain(
+                f"{dot}{key}", part, depth + 1
+            )
+            for key, part in value.items()
+        }
     if isinstance(value, list | tuple):
         return [_plain(f"{at}[{k}]", part, depth + 1) for k, part in enumerate(value)]
     if isinstance(value, float):
@@ -278,7 +331,9 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
         raise ConfigError(
             f"{at} is a whole number of more than {MOST_DIGITS} digits, which no float reaches"
         )
-    if value is None or isinstance(value, str | int):
+    if isinstance(value, str):
+        return text(at, value)
+    if value is None or isinstance(value, int):
         return value
     raise ConfigError(f"{at} is {quoted(value)}; expected numbers, text, lists or mappings")
 

@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, get_args
 
 from dwell._native import ConfigError
-from dwell.arguments import choice, finite, mapping, quoted, text, triple, whole
+from dwell.arguments import (
+    choice,
+    fields,
+    finite,
+    hashable,
+    instance,
+    mapping,
+    quoted,
+    triple,
+    whole,
+    within,
+)
 
 Preset = Literal["flat", "lit", "full"]
 #: How much light there may be in a picture, cheapest first.
@@ -17,6 +28,18 @@ Classes = Literal["coarse", "fine", "nyu40"]
 #: The tables of semantic classes.
 CLASSES: tuple[Classes, ...] = get_args(Classes)
 
+_LENS = ("fx", "fy", "cx", "cy")
+#: The numbers of each kind of camera.
+PROJECTIONS: dict[str, tuple[str, ...]] = {
+    "pinhole": _LENS,
+    "brown_conrady": (*_LENS, "k1", "k2", "k3", "p1", "p2"),
+    "fisheye": (*_LENS, "k1", "k2", "k3", "k4", "half_angle_deg"),
+    "equirectangular": (),
+    "cubemap": (),
+    "orthographic": ("width_m", "height_m"),
+}
+#: Those that may be left out.
+_WITH_DEFAULT = {"k1", "k2", "k3", "k4", "p1", "p2", "half_angle_deg"}
 
 #: Most pixels along an edge, and the end of all depth, as the engine has them.
 MOST_PIXELS = 16_384
@@ -52,8 +75,8 @@ class Camera:
             ``coarse``, ``fine`` or ``nyu40``.
 
     Raises:
-        ConfigError: A field is of another type or out of its range; the numbers of a projection
-            are checked when a picture is taken.
+        ConfigError: A field is of another type or out of its range, or a projection has another
+            number; the ranges of its numbers are checked when a picture is taken.
     """
 
     width: int = 128
@@ -74,11 +97,14 @@ class Camera:
         """Checks the fields."""
         camera_settings("camera", self)
 
+    def __hash__(self) -> int:
+        """Equal for equal cameras."""
+        return hash(tuple(hashable(value) for value in vars(self).values()))
+
 
 def camera_settings(name: str, camera: object) -> dict[str, Any]:
     """A camera's numbers, checked, as the native side takes them."""
-    if not isinstance(camera, Camera):
-        raise ConfigError(f"{name} is {quoted(camera)}; expected a dwell.Camera")
+    camera = instance(name, camera, Camera)
     settings: dict[str, Any] = {
         "width": whole(f"{name}.width", camera.width, low=1, high=MOST_PIXELS),
         "height": whole(f"{name}.height", camera.height, low=1, high=MOST_PIXELS),
@@ -89,28 +115,27 @@ def camera_settings(name: str, camera: object) -> dict[str, Any]:
     }
     for field in ("near_m", "far_m", "yaw_deg", "pitch_deg", "roll_deg"):
         settings[field] = finite(f"{name}.{field}", getattr(camera, field))
-    _within(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
+    within(f"{name}.near_m", settings["near_m"], 0.0, _FURTHEST_M, "m")
     if not settings["near_m"] < settings["far_m"] <= _FURTHEST_M:
         raise ConfigError(
             f"{name}.far_m is {quoted(camera.far_m)}; allowed is more than near_m, at most 1e6 m"
         )
     if camera.fov_deg is not None:
-        fov_deg = finite(f"{name}.fov_deg", camera.fov_deg)
-        settings["fov_deg"] = _within(f"{name}.fov_deg", fov_deg, 1.0, 175.0, "degrees")
+        at = f"{name}.fov_deg"
+        settings["fov_deg"] = within(at, camera.fov_deg, 1.0, 175.0, "degrees")
     if camera.projection is not None:
         settings["projection"] = _projection(f"{name}.projection", camera.projection)
     return settings
 
 
-def _within(name: str, value: float, low: float, high: float, unit: str) -> float:
-    if not low <= value <= high:
-        raise ConfigError(f"{name} is {value:g}; allowed are {low:g} to {high:g} {unit}")
-    return value
-
-
 def _projection(name: str, projection: object) -> dict[str, Any]:
     rows = mapping(name, projection, "a kind with its numbers")
-    return {
-        key: text(f"{name}.kind", part) if key == "kind" else finite(f"{name}.{key}", part)
-        for key, part in rows.items()
-    }
+    kind = choice(f"{name}.kind", rows.pop("kind", None), tuple(PROJECTIONS))
+    known: dict[str, Callable[[str, object], float]] = dict.fromkeys(PROJECTIONS[kind], finite)
+    if unknown := sorted(set(rows) - set(known)):
+        has = f"has {', '.join(known)}" if known else "has no numbers"
+        raise ConfigError(f"{name}: found {quoted(unknown[0])}; {kind} {has}")
+    numbers = fields(name, rows, known)
+    for missing in sorted(set(known) - _WITH_DEFAULT - set(rows)):
+        raise ConfigError(f"{name} has no {missing}; {kind} has {', '.join(known)}")
+    return {"kind": kind, **numbers}

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from dwell._native import ConfigError
-from dwell.arguments import finite, point, quoted, whole
+from dwell.arguments import (
+    finite,
+    hashable,
+    in_order,
+    mapping,
+    point,
+    unit_quaternion,
+    whole,
+)
 from dwell.directivity import Directivity, directivity_json
 from dwell.heads import Head, head_of
 
@@ -66,6 +74,21 @@ class Receiver:
     kind: Any
     head: Head | None = None
 
+    def __post_init__(self) -> None:
+        """Checks that it stands somewhere."""
+        pose = mapping("pose", self.pose, "position and rotation")
+        if set(pose) != {"position", "rotation"}:
+            raise ConfigError(
+                f"pose has {', '.join(sorted(pose)) or 'nothing'}; expected position and rotation, "
+                "as Receiver.omni and kin make it"
+            )
+        point("pose.position", pose["position"])
+        unit_quaternion("pose.rotation", pose["rotation"])
+
+    def __hash__(self) -> int:
+        """Equal for equal receivers."""
+        return hash((hashable(self.pose), hashable(self.kind), self.head))
+
     @classmethod
     def omni(cls, position: Sequence[float]) -> Receiver:
         """A microphone that hears equally from all sides: one channel."""
@@ -110,12 +133,7 @@ class Receiver:
             pitch_deg: How far its front is raised.
         """
         expected = "expected 1 to 128 microphones or points"
-        if isinstance(microphones, str | bytes | Mapping):
-            raise ConfigError(f"microphones is {quoted(microphones)}; {expected}")
-        try:
-            given = list(microphones)
-        except TypeError:
-            raise ConfigError(f"microphones is {quoted(microphones)}; {expected}") from None
+        given = in_order("microphones", microphones, expected)
         items = [
             item if isinstance(item, Microphone) else Microphone(point(f"microphones[{k}]", item))
             for k, item in enumerate(given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any, get_args
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 import dwell
-from dwell.camera import Classes
+from dwell.camera import PROJECTIONS, Classes
 from dwell.engine_types import Channel
 from dwell.envs import DwellEnv
 
@@ -151,6 +152,29 @@ def test_an_environment_carries_cameras_by_name() -> None:
 def test_a_camera_is_refused_where_it_is_made(fields: dict[str, Any], why: str) -> None:
     with pytest.raises(dwell.ConfigError, match=why):
         dwell.Camera(**fields)
+
+
+def test_cameras_and_receivers_that_are_equal_have_one_hash() -> None:
+    around = {"kind": "fisheye", "fx": 30, "fy": 30.0, "cx": 32, "cy": 32}
+    one, other = dwell.Camera(projection=around), dwell.Camera(projection={**around, "fx": 30.0})
+    assert one == other
+    assert hash(one) == hash(other)
+    assert len({dwell.Receiver.omni((1, 1, 1)), dwell.Receiver.omni((1.0, 1.0, 1.0))}) == 1
+
+
+def test_the_kinds_of_cameras_are_the_engines(shoebox: dwell.House) -> None:
+    world = dwell.World(shoebox, agents=0)
+    numbers = {"fx": 20.0, "fy": 20.0, "cx": 16.0, "cy": 96.0, "width_m": 2.0, "height_m": 2.0}
+    for kind, known in PROJECTIONS.items():
+        given = {name: numbers.get(name, 0.0) for name in known if name != "half_angle_deg"}
+        camera = dwell.Camera(32, 192, projection={"kind": kind, **given})
+        seen = world.render(position=(3.0, 1.5, 2.5), camera=camera)["rgb"]
+        assert seen.shape == (192, 32, 3)
+        view = {"camera": {"width": 32, "height": 192, "projection": {"kind": kind, **given}}}
+        view |= {"position": [3.0, 1.5, 2.5], "yaw_deg": 0.0, "pitch_deg": 0.0}
+        view["camera"]["projection"]["nope"] = 1.0  # type: ignore[index] # a mapping
+        with pytest.raises(dwell.ConfigError, match="nope"):
+            world.native.render(json.dumps(view), ["rgb"])
 
 
 def test_the_ends_of_a_cameras_ranges_are_the_engines() -> None:

@@ -122,7 +122,7 @@ impl Camera {
     /// # Errors
     /// [`RenderError::Camera`] names the number that is out of range.
     pub fn from_fov(width: u32, height: u32, horizontal_fov_deg: f32) -> Result<Self, RenderError> {
-        let f = focal(width, "horizontal_fov_deg", horizontal_fov_deg)?;
+        let f = focal(width, "fov_deg", horizontal_fov_deg)?;
         Self::centred(width, height, f, f)
     }
 
@@ -238,7 +238,7 @@ impl Camera {
     /// # Errors
     /// [`RenderError::Camera`] names the number that is out of range.
     pub fn equirectangular(width: u32) -> Result<Self, RenderError> {
-        Self::new(width, (width / 2).max(1), Projection::Equirectangular)
+        Self::new(width, (width / 2).max(1), Projection::Equirectangular {})
     }
 
     /// A camera that sees all around, as six pictures of `edge` by `edge` pixels below one another.
@@ -246,7 +246,7 @@ impl Camera {
     /// # Errors
     /// [`RenderError::Camera`] names the number that is out of range.
     pub fn cubemap(edge: u32) -> Result<Self, RenderError> {
-        Self::new(edge, edge.saturating_mul(6), Projection::Cubemap)
+        Self::new(edge, edge.saturating_mul(6), Projection::Cubemap {})
     }
 
     fn size(&self) -> (f32, f32) {
@@ -306,8 +306,8 @@ impl Camera {
                 let at = Vec2::new((image.x - cx) / fx, (image.y - cy) / fy);
                 fisheye::direction(at, [k1, k2, k3, k4], half_angle_deg.to_radians())
             }
-            Projection::Equirectangular => panorama::sphere_direction(image, self.size()),
-            Projection::Cubemap => panorama::cube_direction(image, self.width as f32),
+            Projection::Equirectangular {} => panorama::sphere_direction(image, self.size()),
+            Projection::Cubemap {} => panorama::cube_direction(image, self.width as f32),
             Projection::Pinhole { .. } | Projection::Orthographic { .. } => {
                 self.ray_in_camera(image).1
             }
@@ -360,11 +360,11 @@ impl Camera {
                 let at = fisheye::project(point_in_camera, [k1, k2, k3, k4], half_angle)?;
                 Some((Vec2::new(cx + fx * at.x, cy + fy * at.y), range))
             }
-            Projection::Equirectangular => Some((
+            Projection::Equirectangular {} => Some((
                 panorama::sphere_project(point_in_camera, self.size())?,
                 range,
             )),
-            Projection::Cubemap => {
+            Projection::Cubemap {} => {
                 let image = panorama::cube_project(point_in_camera, self.width as f32)?;
                 Some((image, range))
             }
@@ -386,11 +386,11 @@ impl Camera {
             | Projection::BrownConrady { fx, fy, .. }
             | Projection::Fisheye { fx, fy, .. } => (0.0, 1.0 / (fx * fy)),
             // Where pixels are largest.
-            Projection::Equirectangular => {
+            Projection::Equirectangular {} => {
                 let (width, height) = self.size();
                 (0.0, (TAU / width) * (PI / height))
             }
-            Projection::Cubemap => (0.0, (2.0 / self.width as f32).powi(2)),
+            Projection::Cubemap {} => (0.0, (2.0 / self.width as f32).powi(2)),
             Projection::Orthographic { width_m, height_m } => (
                 (width_m / self.width as f32) * (height_m / self.height as f32),
                 0.0,

@@ -87,11 +87,11 @@ pub enum Projection {
     },
     /// All around: columns are even steps of azimuth from -180 degrees at the left edge over 0 (ahead) in the middle to the
     /// right, rows even steps of elevation from 90 degrees at the upper edge to -90.
-    Equirectangular,
+    Equirectangular {},
     /// All around, as six square pictures below one another: ahead, left, behind, right, up, down. The first four stand
     /// upright; up is what is seen after pitching up by 90 degrees, down after pitching down. The image is six times as high
     /// as wide.
-    Cubemap,
+    Cubemap {},
     /// All rays are parallel; the image is centred on the camera.
     Orthographic {
         /// Width of the image, from left to right, m.
@@ -110,7 +110,7 @@ impl Projection {
     pub fn depth_is_range(&self) -> bool {
         matches!(
             self,
-            Self::Fisheye { .. } | Self::Equirectangular | Self::Cubemap
+            Self::Fisheye { .. } | Self::Equirectangular {} | Self::Cubemap {}
         )
     }
 
@@ -125,7 +125,7 @@ impl Projection {
             Self::Pinhole { fx, fy, cx, cy }
             | Self::BrownConrady { fx, fy, cx, cy, .. }
             | Self::Fisheye { fx, fy, cx, cy, .. } => Some((fx, fy, cx, cy)),
-            Self::Equirectangular | Self::Cubemap | Self::Orthographic { .. } => None,
+            Self::Equirectangular {} | Self::Cubemap {} | Self::Orthographic { .. } => None,
         }
     }
 
@@ -156,7 +156,7 @@ impl Projection {
             }
         }
         match *self {
-            Self::Pinhole { .. } | Self::Equirectangular => Ok(()),
+            Self::Pinhole { .. } | Self::Equirectangular {} => Ok(()),
             Self::BrownConrady {
                 k1, k2, k3, p1, p2, ..
             } => {
@@ -197,7 +197,7 @@ impl Projection {
                 }
                 Ok(())
             }
-            Self::Cubemap => {
+            Self::Cubemap {} => {
                 if u64::from(height) == 6 * u64::from(width) {
                     Ok(())
                 } else {

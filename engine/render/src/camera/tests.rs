@@ -49,7 +49,7 @@ fn what_is_out_of_range_is_named() {
     );
     assert_eq!(
         message(Camera::from_fov(4, 4, 180.0)),
-        "camera: horizontal_fov_deg is 180; allowed is 1 to 175 degrees"
+        "camera: fov_deg is 180; allowed is 1 to 175 degrees"
     );
     assert!(message(Camera::from_fov(4, 4, f32::NAN)).contains("NaN"));
     assert!(message(Camera::from_fov(4, 4, 90.0).unwrap().with_range(1.0, 1.0)).contains("far_m"));
@@ -160,7 +160,9 @@ fn pinholes_see_nothing_behind_them_and_all_around_cameras_see_everything() {
         let behind = camera.project(Vec3::new(0.1, 0.2, 3.0));
         let sees = matches!(
             camera.projection(),
-            Projection::Equirectangular | Projection::Cubemap | Projection::Orthographic { .. }
+            Projection::Equirectangular {}
+                | Projection::Cubemap {}
+                | Projection::Orthographic { .. }
         );
         assert_eq!(behind.is_some(), sees, "{camera:?}");
     }
@@ -275,10 +277,20 @@ fn equirectangular_pixels_are_even_steps_of_azimuth_and_elevation() {
 }
 
 #[test]
+fn a_number_that_a_camera_does_not_have_is_refused() {
+    for kind in ["equirectangular", "cubemap"] {
+        let read = |row: &str| serde_json::from_str::<Projection>(row).map_err(|e| e.to_string());
+        assert!(read(&format!(r#"{{"kind": "{kind}"}}"#)).is_ok());
+        let told = read(&format!(r#"{{"kind": "{kind}", "fx": 100.0}}"#)).unwrap_err();
+        assert!(told.contains("unknown field `fx`"), "{told}");
+    }
+}
+
+#[test]
 fn numbers_of_other_cameras_are_checked_too() {
     let message = |result: Result<Camera, RenderError>| result.unwrap_err().to_string();
     assert_eq!(
-        message(Camera::new(10, 50, Projection::Cubemap)),
+        message(Camera::new(10, 50, Projection::Cubemap {})),
         "camera: height is 50; allowed is six times the width for a cube map"
     );
     let fisheye = |k1: f32, half_angle_deg: f32| Projection::Fisheye {

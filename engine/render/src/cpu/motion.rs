@@ -40,9 +40,9 @@ fn moved(camera: &Camera, (x, y): (f32, f32), was_in_camera: Vec3) -> [f32; 2] {
     let (width, face) = (camera.width() as f32, camera.width() as f32);
     match camera.projection() {
         // The image closes behind the camera.
-        Projection::Equirectangular => flow.x -= (flow.x / width).round() * width,
+        Projection::Equirectangular {} => flow.x -= (flow.x / width).round() * width,
         // Faces are pictures of their own.
-        Projection::Cubemap if (y / face).floor() != (was.y / face).floor() => {
+        Projection::Cubemap {} if (y / face).floor() != (was.y / face).floor() => {
             return [0.0; 2];
         }
         _ => {}

@@ -385,8 +385,8 @@ fn lens_of(camera: &Camera) -> (u32, [f32; 4], [f32; 4], [f32; 2]) {
             [k1, k2, k3, k4],
             [0.0, half_angle_deg.to_radians()],
         ),
-        Projection::Equirectangular => (3, none, none, [0.0; 2]),
-        Projection::Cubemap => (4, none, none, [0.0; 2]),
+        Projection::Equirectangular {} => (3, none, none, [0.0; 2]),
+        Projection::Cubemap {} => (4, none, none, [0.0; 2]),
         Projection::Orthographic { width_m, height_m } => {
             (ORTHOGRAPHIC, [width_m, height_m, 0.0, 0.0], none, [0.0; 2])
         }

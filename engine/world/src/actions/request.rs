@@ -188,7 +188,7 @@ mod tests {
             ),
             (
                 r#"{"kind": "pick", "pixel": [1, 1], "camera": {"fov_deg": 500}}"#,
-                "horizontal_fov_deg",
+                "fov_deg",
             ),
         ] {
             let message = read(text).unwrap_err();
