@@ -128,3 +128,10 @@ def test_objects_and_agents_have_the_fields_that_are_documented(world: dwell.Wor
     world.place_agent(agent["position"], 30.0, pitch_deg=-20.0)
     turned = world.agents()[0]
     assert (turned["yaw_deg"], turned["pitch_deg"]) == pytest.approx((30.0, -20.0), abs=1e-4)
+
+
+def test_a_spring_that_cannot_be_is_told_in_words(world: dwell.World) -> None:
+    spring = {"spring": {"frequency_hz": 100.0, "damping_ratio": 1.0}}
+    told = world.act("pick", "pillow_1", grasp=spring)
+    assert told.code == "bad_number"
+    assert told.sentence.startswith("A spring of 100 Hz and damping ratio 1 cannot be; a spring's")

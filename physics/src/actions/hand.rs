@@ -23,7 +23,7 @@ impl ActionContext<'_> {
         let refuse = |code, sentence: String| Ok(fail(code, sentence, Some(object)));
         if !grasp.is_valid() {
             let sentence = format!(
-                "{grasp:?} cannot be; a spring's frequency is 0.5 to 20 Hz, its damping ratio 0.05 to 4."
+                "{grasp} cannot be; a spring's frequency is 0.5 to 20 Hz, its damping ratio 0.05 to 4."
             );
             return refuse(OutcomeCode::BadNumber, sentence);
         }

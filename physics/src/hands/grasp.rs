@@ -2,6 +2,7 @@
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// The way a hand holds an object. In both the object stays a rigid body that walls and furniture stop.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +21,21 @@ pub enum Grasp {
         #[schemars(range(min = 0.05, max = 4.0))]
         damping_ratio: f32,
     },
+}
+
+impl fmt::Display for Grasp {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Kinematic => f.write_str("A kinematic grasp"),
+            Self::Spring {
+                frequency_hz,
+                damping_ratio,
+            } => write!(
+                f,
+                "A spring of {frequency_hz} Hz and damping ratio {damping_ratio}"
+            ),
+        }
+    }
 }
 
 impl Grasp {

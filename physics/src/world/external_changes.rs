@@ -68,7 +68,7 @@ impl PhysicsWorld {
                 return Err(PhysicsError::Range {
                     at: format!("part {}", plan.root().0),
                     field: "pose or velocity",
-                    found: format!("{:?}", pose.position),
+                    found: pose.position.to_string(),
                     allowed: "finite numbers and a unit quaternion",
                 });
             }
@@ -225,7 +225,7 @@ fn finite_place(position: Vec3, yaw_rad: f32) -> Result<(), PhysicsError> {
     Err(PhysicsError::Range {
         at: "agent".to_owned(),
         field: "position or yaw",
-        found: format!("{position:?}, {yaw_rad}"),
+        found: format!("{position}, {yaw_rad}"),
         allowed: "finite numbers within 32768 m of the origin",
     })
 }

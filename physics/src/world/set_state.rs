@@ -192,7 +192,7 @@ impl PhysicsWorld {
             return Err(refuse(
                 at(),
                 "pose",
-                format!("{:?}, {:?}", pose.position, pose.rotation),
+                format!("{}, {}", pose.position, pose.rotation),
                 "finite numbers within 32768 m of the origin and a unit quaternion",
             ));
         }
@@ -202,7 +202,7 @@ impl PhysicsWorld {
             return Err(refuse(
                 at(),
                 "velocity",
-                format!("{linear:?} m/s, {angular:?} rad/s"),
+                format!("{linear} m/s, {angular} rad/s"),
                 "finite numbers, at most 1000 m/s and 1000 rad/s along each axis",
             ));
         }

@@ -144,7 +144,10 @@ impl TargetRequest {
             if !ends.as_flattened().iter().all(|number| number.is_finite()) {
                 return Err(WorldError::Config {
                     field: "direction",
-                    found: format!("{direction:?} from {:?}", self.origin),
+                    found: match self.origin {
+                        Some(origin) => format!("{direction:?} from {origin:?}"),
+                        None => format!("{direction:?}"),
+                    },
                     allowed: "finite numbers of 32 bits".to_owned(),
                 });
             }

@@ -8,6 +8,7 @@ use dwell_scene::units::pa_from_db_spl;
 use dwell_scene::{AgentId, House, ObjectId, State};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// The sound to play.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,7 +20,16 @@ pub enum SoundName {
     File(String),
 }
 
-/// The place of a sound.
+impl fmt::Display for SoundName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Signal(name) => write!(f, "the signal {name:?}"),
+            Self::File(path) => write!(f, "the file {path:?}"),
+        }
+    }
+}
+
+/// Where it is played.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SoundPlace {
@@ -152,7 +162,7 @@ impl Playback {
         if print != saved.print {
             let sound = &saved.request.sound;
             return Err(WorldError::Snapshot(format!(
-                "{sound:?} is another sound now than the one that played"
+                "{sound} is another sound now than the one that played"
             )));
         }
         Ok(Self {
