@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
 from dwell.arguments import point, quoted, record, whole
+from dwell.array_record import ArrayRecord
 
 if TYPE_CHECKING:
     from dwell.house import House
@@ -47,8 +48,8 @@ def walker_settings(walker: Walker | None) -> dict[str, Any]:
     return record("walker", Walker() if walker is None else walker, Walker, doors)
 
 
-@dataclasses.dataclass(frozen=True)
-class Route:
+@dataclasses.dataclass(frozen=True, eq=False)
+class Route(ArrayRecord):
     """A way, pulled tight.
 
     Attributes:
@@ -62,8 +63,8 @@ class Route:
     shut_doors: list[str]
 
 
-@dataclasses.dataclass(frozen=True)
-class Occupancy:
+@dataclasses.dataclass(frozen=True, eq=False)
+class Occupancy(ArrayRecord):
     """A storey from above.
 
     Attributes:
@@ -144,8 +145,17 @@ class Navigation:
 
         Returns:
             How many columns of the grid were looked at again.
+
+        Raises:
+            ConfigError: It is a world over another house.
         """
         native = getattr(world, "native", None)
         if not isinstance(native, _native.World):
             raise ConfigError(f"world is {quoted(world)}; expected a dwell.World")
+        # As a snapshot: by all that the house holds.
+        if world.house.native is not self._house.native and hash(world.house) != hash(self._house):
+            raise ConfigError(
+                f"world is over another house, {world.house.name!r}; this navigation is of "
+                f"{self._house.name!r}"
+            )
         return native.follow(self._native)

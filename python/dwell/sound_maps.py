@@ -12,7 +12,8 @@ from PIL import Image, ImageDraw
 
 from dwell import ConfigError
 from dwell.acoustics import AcousticScene
-from dwell.arguments import choice
+from dwell.arguments import choice, instance
+from dwell.array_record import ArrayRecord
 from dwell.charts import INK, PAPER, font
 from dwell.false_color import scale_colors
 from dwell.listening import Source, source_of
@@ -42,8 +43,8 @@ _STEP_M = 0.3
 _AT_ONCE = 128
 
 
-@dataclass(frozen=True)
-class SoundMap:
+@dataclass(frozen=True, eq=False)
+class SoundMap(ArrayRecord):
     """A measure at the nodes of a grid.
 
     Attributes:
@@ -84,6 +85,7 @@ def sound_map(
         threads: How many threads to use; the result does not depend on it.
         progress: Is told a fraction and what is being done.
     """
+    scene = instance("scene", scene, AcousticScene)
     field = MEASURES[choice("measure", measure, tuple(MEASURES))][0]
     places = receiver_grid(scene.house, spacing_m, height_m)
     values: list[float] = []
@@ -115,7 +117,8 @@ def draw_map(
     Raises:
         ConfigError: There is no value on this storey.
     """
-    _, title, unit = MEASURES[found.measure]
+    world = instance("world", world, World)
+    _, title, unit = MEASURES[instance("found", found, SoundMap).measure]
     here = _on_storey(found.places, world, level)
     there = here & np.isfinite(found.values)
     if not there.any():

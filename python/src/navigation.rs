@@ -38,15 +38,21 @@ struct GridAtState {
 
 impl PyNavigation {
     /// Of a house as it starts: every house keeps the grids of its latest walkers.
-    fn of_start(engines: &Engines, walker: Data) -> Result<Self, PyFault> {
-        let grid = engines.grid(&walker.read()?)?;
+    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, PyFault> {
+        let grid = engines
+            .grid(&serde_json::from_str(config_json)?)
+            .map_err(refused)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
     /// Of a house as it stands in a state.
-    pub(crate) fn build(house: &Arc<House>, state: &State, walker: Data) -> Result<Self, PyFault> {
-        let config: NavConfig = walker.read()?;
-        let grid = Arc::new(NavGrid::build(house, state, &config)?);
+    pub(crate) fn build(
+        house: &Arc<House>,
+        state: &State,
+        config_json: &str,
+    ) -> Result<Self, PyFault> {
+        let config: NavConfig = serde_json::from_str(config_json)?;
+        let grid = Arc::new(NavGrid::build(house, state, &config).map_err(refused)?);
         Ok(Self::at(house, grid, Some(state.clone())))
     }
 
@@ -80,6 +86,11 @@ impl PyNavigation {
             PyFault::Usage(message.to_owned())
         })
     }
+}
+
+/// A walker's number is the caller's, not the house's.
+fn refused(error: impl std::fmt::Display) -> PyFault {
+    PyFault::Config(error.to_string())
 }
 
 /// Corners (n, 3), length in m, the shut doors on the way by name.

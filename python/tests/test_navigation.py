@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import pickle
 
 import numpy as np
@@ -35,6 +36,31 @@ def test_the_picture_counts_the_places(shoebox: dwell.House) -> None:
     assert storey.cell_m == pytest.approx(0.2)
     with pytest.raises(dwell.DwellError, match="storey 9"):
         navigation.occupancy(9)
+
+
+def test_what_holds_arrays_is_compared_as_a_whole(shoebox: dwell.House) -> None:
+    grid = shoebox.navigation()
+    assert grid.occupancy() == copy.deepcopy(grid.occupancy())
+    assert grid.route((1, 0, 1), (5, 0, 4)) == grid.route((1, 0, 1), (5, 0, 4))
+    assert grid.route((1, 0, 1), (5, 0, 4)) != grid.route((1, 0, 1), (5, 0, 3))
+    assert math.copysign(1.0, grid.distance((1, 0, 1), (1, 0, 1)) or 0.0) == 1.0
+
+
+def test_a_walker_out_of_range_is_refused_by_its_number(shoebox: dwell.House) -> None:
+    for where in (shoebox, dwell.World(shoebox)):
+        with pytest.raises(dwell.ConfigError, match=r"cell_m is 5; allowed is 0\.02 to 1"):
+            where.navigation(dwell.Walker(cell_m=5.0))
+
+
+def test_a_grid_follows_no_world_of_another_house_with_as_many_parts(
+    apartment: dwell.House,
+) -> None:
+    other = dwell.House.shoebox((6.0, 3.0, 4.0), substance="plaster")
+    twin = dwell.House.shoebox((6.0, 3.0, 4.0), substance="plaster")
+    grid = other.navigation()
+    assert grid.update(dwell.World(twin)) >= 0
+    with pytest.raises(dwell.ConfigError, match="world is over another house"):
+        grid.update(dwell.World(dwell.House.shoebox((6.0, 3.0, 5.0), substance="plaster")))
 
 
 def test_samples_repeat_and_lie_where_a_way_leads(apartment: dwell.House) -> None:

@@ -38,7 +38,8 @@ impl NavGrid {
             .windows(2)
             .filter_map(|ends| self.straight_between(ends[0], ends[1]));
         Some(Route {
-            length_m: pieces.map(|piece| piece.length_m).sum(),
+            // A sum of nothing is -0.
+            length_m: pieces.fold(0.0, |sum, piece| sum + piece.length_m),
             shut_doors: self.shut_doors_on(&corners),
             points,
         })
