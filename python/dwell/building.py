@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, _native, arguments
-from dwell.arguments import choice, finite, flag, pair, path, text, whole
+from dwell.arguments import choice, finite, flag, in_order, pair, path, text, whole
 from dwell.editing import EditList, Rgb, rgb
 from dwell.files import atomic_write
 from dwell.house import House
@@ -202,7 +202,10 @@ class HouseBuilder(EditList):
                 z to), at least 1.6 m wide and 2.4 m along the climb.
             climb: The direction in which the first of the two flights climbs.
         """
-        corners = [finite(f"rect[{k}]", at) for k, at in enumerate(rect)]
+        expected = "expected (x from, z from, x to, z to) in metres"
+        corners = [
+            finite(f"rect[{k}]", at) for k, at in enumerate(in_order("rect", rect, expected))
+        ]
         if len(corners) != 4:
             raise ConfigError(f"rect has {len(corners)} numbers; expected 4")
         self._storeys[-1]["stairs"] = {"rect": corners, "climb": _side(climb)}
@@ -261,7 +264,7 @@ def _covering(name: str, covering: Covering | None) -> dict[str, Any] | None:
 def _outline(
     floor_plan: Sequence[float] | Sequence[tuple[float, float]],
 ) -> list[tuple[float, float]]:
-    rows: list[Any] = list(floor_plan)
+    rows = in_order("floor_plan", floor_plan, "expected four numbers or corners (x, z) in metres")
     if len(rows) == 4 and not any(isinstance(row, Sequence) for row in rows):
         x0, z0, x1, z1 = (finite(f"floor_plan[{k}]", at) for k, at in enumerate(rows))
         return [(x0, z0), (x1, z0), (x1, z1), (x0, z1)]

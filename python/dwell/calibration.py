@@ -7,8 +7,8 @@ import os
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from dwell import _native
-from dwell.arguments import whole
+from dwell import ConfigError, _native
+from dwell.arguments import in_order, path, quoted, text, whole
 
 
 def calibrate(
@@ -35,9 +35,13 @@ def calibrate(
     Raises:
         MeasuredDataError: The bundle cannot be used; the message names file, line and field.
     """
-    names = [os.fspath(peer) for peer in peers]
-    text = _native.calibrate(os.fspath(measured), house, progress, names)
-    report: dict[str, Any] = json.loads(text)
+    tables = in_order("peers", peers, "expected paths of tables")
+    names = [path(f"peers[{k}]", peer) for k, peer in enumerate(tables)]
+    if progress is not None and not callable(progress):
+        raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
+    named = None if house is None else text("house", house)
+    told = _native.calibrate(path("measured", measured), named, progress, names)
+    report: dict[str, Any] = json.loads(told)
     return report
 
 
@@ -51,4 +55,4 @@ def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:
     Returns:
         What is hidden, in a sentence: what :func:`calibrate` should find.
     """
-    return _native.calibration_example(os.fspath(folder), whole("seed", seed))
+    return _native.calibration_example(path("folder", folder), whole("seed", seed))

@@ -8,7 +8,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
-from dwell import ConfigError, _native, arguments
+from dwell import ConfigError, _native
+from dwell.arguments import in_order, text
 
 
 class HouseList(Sequence[str]):
@@ -26,7 +27,7 @@ class HouseList(Sequence[str]):
         self._parts: list[str | tuple[range, str]] = []
         #: How many houses there are up to the end of each part.
         self._ends: list[int] = []
-        for house in houses:
+        for house in in_order("houses", houses, "expected HOUSE strings"):
             self.append(house)
 
     def append(self, house: str) -> None:
@@ -37,7 +38,7 @@ class HouseList(Sequence[str]):
             ConfigError: There are more than any sequence of Python holds, or it is no text that
                 UTF-8 can hold.
         """
-        found = _native.seed_range(arguments.text("house", house))
+        found = _native.seed_range(text("house", house))
         if found is None:
             self.append_name(house)
             return

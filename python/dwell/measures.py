@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, _native
-from dwell.arguments import choice, finite, numbers
+from dwell.arguments import choice, finite, numbers, refuse_masked
 
 #: How wide bands are: eight octaves from 62.5 Hz, or 24 third octaves from 50 Hz (IEC 61260-1).
 Bands = Literal["octave", "third_octave"]
@@ -41,6 +41,7 @@ def of_response(
     Raises:
         ConfigError: The response is not one row of finite numbers, or the rate is out of range.
     """
+    refuse_masked("response", response)
     given = np.asarray(response)
     samples = _channel("response", given[0] if given.ndim == 2 and len(given) == 1 else given)
     rate = _rate(rate_hz)
@@ -73,6 +74,7 @@ def of_ears(ears: NDArray[Any], rate_hz: float, *, bands: Bands = "octave") -> d
 
 
 def _channel(name: str, samples: object) -> NDArray[np.float32]:
+    refuse_masked(name, samples)
     row = np.asarray(samples)
     if row.ndim != 1 or row.dtype.kind not in "fiu":
         raise ConfigError(f"{name}: expected one row of numbers, found {row.dtype} {row.shape}")

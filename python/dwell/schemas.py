@@ -58,7 +58,7 @@ def check_of(schema: Mapping[str, Any]) -> Check:
             return _check_of_kind(kind, kinds[kind])
     if kinds.keys() <= {"string", "integer", "null"}:
         number = _check_of_kind("integer", kinds["integer"])
-        return lambda name, value: value if isinstance(value, str) else number(name, value)
+        return functools.partial(_name_or_number, number)
     if kinds.keys() <= {"string", "object", "null"}:
         return _text_or_mapping
     raise LookupError(f"no check for {schema}")
@@ -108,4 +108,15 @@ def _as_is(_name: str, value: object) -> object:
 
 
 def _text_or_mapping(name: str, value: object) -> str | dict[str, Any]:
-    return value if isinstance(value, str) else mapping(name, value, "text or a mapping")
+    if isinstance(value, str):
+        return text(name, value)
+    return mapping(name, value, "text or a mapping")
+
+
+def _name_or_number(number: Check, name: str, value: object) -> Any:  # noqa: ANN401 - either
+    if isinstance(value, str):
+        return text(name, value)
+    try:
+        return number(name, value)
+    except ConfigError as error:
+        raise ConfigError(f"{error}, and names") from None

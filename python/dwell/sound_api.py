@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import choice, finite, flag, path, point, whole
-from dwell.language_api import LanguageApi
+from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.object_state_api import StateApi
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")
@@ -32,7 +32,7 @@ def _played(
     kind = "file" if name.lower().endswith(_ENDINGS) else "signal"
     place: dict[str, object]
     if isinstance(at, str):
-        place = {"object": at}
+        place = {"object": text("at", at)}
     elif isinstance(at, int | np.integer):
         place = {"agent": whole("at", at)}
     else:

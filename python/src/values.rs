@@ -57,7 +57,7 @@ fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
         return Ok(Value::Bool(flag.is_true()));
     }
     if let Ok(text) = object.cast::<PyString>() {
-        return words(text).map(Value::String);
+        return written(text).map(Value::String);
     }
     if object.is_instance_of::<PyInt>() {
         let number: Option<Number> = match object.extract::<i64>() {
@@ -84,10 +84,48 @@ fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
     if let Ok(rows) = object.cast::<PyMapping>() {
         let mut map = Map::new();
         for row in rows.items()?.iter() {
-            let (name, part): (Bound<'_, PyString>, Bound<'_, PyAny>) = row.extract()?;
-            map.insert(words(&name)?, value(&part, depth + 1)?);
+            let (name, part): (Bound<'_, PyAny>, Bound<'_, PyAny>) = row.extract()?;
+            let name = name
+                .cast::<PyString>()
+                .map_err(|_| refused("a name that is no text; expected text"))?;
+            map.insert(written(name)?, value(&part, depth + 1)?);
         }
         return Ok(Value::Object(map));
     }
     Err(refused("expected numbers, text, lists or mappings"))
+}
+
+fn written(text: &Bound<'_, PyString>) -> PyResult<String> {
+    match text.to_str() {
+        Ok(text) => Ok(text.to_owned()),
+        Err(_) => Err(refused("expected text that UTF-8 can hold")),
+    }
+}
+
+/// A value as Python's own.
+pub(crate) fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    Ok(match value {
+        Value::Null => py.None().into_bound(py),
+        Value::Bool(flag) => PyBool::new(py, *flag).to_owned().into_any(),
+        Value::String(text) => PyString::new(py, text).into_any(),
+        Value::Number(number) => match (number.as_i64(), number.as_u64()) {
+            (Some(number), _) => number.into_pyobject(py)?.into_any(),
+            (_, Some(number)) => number.into_pyobject(py)?.into_any(),
+            _ => PyFloat::new(py, number.as_f64().unwrap_or(f64::NAN)).into_any(),
+        },
+        Value::Array(rows) => {
+            let list = PyList::empty(py);
+            for row in rows {
+                list.append(object(py, row)?)?;
+            }
+            list.into_any()
+        }
+        Value::Object(rows) => {
+            let dict = PyDict::new(py);
+            for (name, part) in rows {
+                dict.set_item(name, object(py, part)?)?;
+            }
+            dict.into_any()
+        }
+    })
 }

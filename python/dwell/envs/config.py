@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, TypedDict
 
 from dwell import ConfigError
-from dwell.arguments import fields, mapping, quoted, text, texts, to_json, whole
+from dwell.arguments import fields, in_order, mapping, quoted, text, texts, to_json, whole
 from dwell.envs.python_tasks import NativeSettings, RewardChoice, Sensors
 from dwell.house import House
 from dwell.house_list import HouseList
@@ -92,12 +92,8 @@ class HouseCache:
     def __init__(self, houses: Houses) -> None:
         """Keeps the houses, one house counting as a list of one; opens nothing."""
         alone = isinstance(houses, str | os.PathLike | House)
-        try:
-            given = [houses] if alone else list(houses)  # type: ignore[arg-type] # not alone
-        except TypeError:
-            raise ConfigError(
-                f"houses is {quoted(houses)}; expected HOUSE strings or Houses"
-            ) from None
+        expected = "expected HOUSE strings or Houses"
+        given = [houses] if alone else in_order("houses", houses, expected)
         if not given:
             raise ConfigError("houses: expected at least one HOUSE string or House, found none")
         self._given: dict[str, House] = {}

@@ -17,7 +17,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, text, to_json, whole
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
     KEPT,
@@ -301,7 +301,7 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
     def describe(self, level: str = "house") -> list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
         self._refuse_closed()
-        return self._shelf[self._house].native.describe(level)
+        return self._shelf[self._house].native.describe(text("level", level))
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""
