@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from dwell._native import ConfigError
 from dwell.arguments import finite, numbers, quoted
 
 #: Octave bands, 63 Hz to 8 kHz.
@@ -41,7 +42,7 @@ class Directivity:
                 where it is heard.
 
         Raises:
-            ValueError: No finite numbers, or neither one nor eight.
+            ConfigError: No finite numbers, or neither one nor eight.
         """
         return cls("first_order", tuple(_bands("gradient", gradient).tolist()))
 
@@ -60,20 +61,22 @@ class Directivity:
                 differ by from those on the axis counts; -inf is silence.
 
         Raises:
-            ValueError: For another shape, NaN, or a level more than 6 dB above that on the axis.
+            ConfigError: For another shape, NaN, or a level more than 6 dB above that on the axis.
         """
         levels = numbers("level_db", level_db, np.float64)
         if levels.ndim == 1:
             levels = np.repeat(levels[:, None], BANDS, axis=1)
         if levels.ndim != 2 or levels.shape[1] != BANDS or not 2 <= len(levels) <= 361:
             wanted = f"(angle,) or (angle, {BANDS}), 2 to 361 angles"
-            raise ValueError(f"level_db has the shape {levels.shape}; allowed is {wanted}")
+            raise ConfigError(f"level_db has the shape {levels.shape}; allowed is {wanted}")
         if not np.isfinite(levels[0]).all():
-            raise ValueError(f"level_db on the axis is {levels[0].tolist()}; allowed are numbers")
+            raise ConfigError(f"level_db on the axis is {levels[0].tolist()}; allowed are numbers")
         levels = levels - levels[0]
         if not (levels <= 6.0).all():
             above = "allowed is at most 6 dB above the axis, and no NaN"
-            raise ValueError(f"level_db is up to {levels.max()} dB above that on the axis; {above}")
+            raise ConfigError(
+                f"level_db is up to {levels.max()} dB above that on the axis; {above}"
+            )
         gain = np.where(levels <= SILENT_DB, 0.0, 10.0 ** (levels / 20.0))
         return cls("polar", tuple(tuple(row) for row in gain.tolist()))
 
@@ -87,11 +90,11 @@ class Directivity:
             index_db: 0 to 20 dB, or one for each octave from 63 Hz to 8 kHz.
 
         Raises:
-            ValueError: Out of that range, or neither one nor eight numbers.
+            ConfigError: Out of that range, or neither one nor eight numbers.
         """
         index = _bands("index_db", index_db)
         if not ((index >= 0.0) & (index <= 20.0)).all():
-            raise ValueError(f"index_db is {index_db}; allowed is 0 to 20 dB")
+            raise ConfigError(f"index_db is {index_db}; allowed is 0 to 20 dB")
         # The mean of the squared gain over the sphere is 1 / (2 n + 1).
         n = (10.0 ** (index / 10.0) - 1.0) / 2.0
         cosines = np.cos(np.radians(np.arange(181.0)))
@@ -102,7 +105,7 @@ class Directivity:
         """Level on the axis over that of the same power on all sides, dB. Shape (octave,).
 
         Raises:
-            ValueError: For a sphere, whose pattern the engine computes.
+            ConfigError: For a sphere, whose pattern the engine computes.
         """
         angles = np.radians(np.linspace(0.0, 180.0, 721))
         if self.form == "first_order":
@@ -113,7 +116,7 @@ class Directivity:
             known = np.linspace(0.0, math.pi, len(table))
             gain = np.stack([np.interp(angles, known, band) for band in table.T], axis=1)
         else:
-            raise ValueError("index_db: a sphere's pattern is the engine's")
+            raise ConfigError("index_db: a sphere's pattern is the engine's")
         weight = np.sin(angles)[:, None]
         mean = (gain**2 * weight).sum(axis=0) / weight.sum()
         return [float(db) for db in -10.0 * np.log10(mean)]
@@ -131,7 +134,7 @@ def _bands(name: str, value: float | Sequence[float]) -> npt.NDArray[np.float64]
     """One number for each octave."""
     bands = np.asarray(numbers(name, value, np.float64)).reshape(np.shape(value))
     if bands.shape not in ((), (BANDS,)) or not np.isfinite(bands).all():
-        raise ValueError(f"{name} is {quoted(value)}; allowed is a number, or {BANDS} of them")
+        raise ConfigError(f"{name} is {quoted(value)}; allowed is a number, or {BANDS} of them")
     return np.broadcast_to(bands, (BANDS,))
 
 
@@ -149,9 +152,9 @@ def directivity_json(directivity: str | Directivity) -> Any:  # noqa: ANN401 - a
     """The engine's form of a name or a directivity."""
     if isinstance(directivity, Directivity):
         return directivity.to_json()
-    if directivity not in DIRECTIVITIES:
+    if not isinstance(directivity, str) or directivity not in DIRECTIVITIES:
         names = ", ".join(DIRECTIVITIES)
-        raise ValueError(
+        raise ConfigError(
             f"directivity: no {quoted(directivity)}; there are {names}, and dwell.Directivity"
         )
     return DIRECTIVITIES[directivity]

@@ -246,9 +246,13 @@ def _claim_draft(place: Path) -> tuple[Path, int | None]:
             continue
         try:
             folder.mkdir(0o700)
+        except FileExistsError:
+            # Somebody was quicker.
+            continue
+        try:
             handle = _opened_folder(folder)
-        except (FileExistsError, FileNotFoundError):
-            # Somebody was quicker; or the folder above is gone, which the system says.
+        except FileNotFoundError:
+            # Somebody took it for one that was left; or the folder above is gone.
             if place.parent.is_dir():
                 continue
             raise

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
+from dwell import ConfigError, MeasuredDataError, _native, arguments
+from dwell.arguments import finite, numbers, whole
 from dwell.files import atomic_write, read
 
 #: A sound file that is read has at most so many bytes.
@@ -17,6 +18,8 @@ _MOST_READ_BYTES = 512 * 2**20
 
 #: Formats of samples in a WAV file: whole numbers, and numbers of IEEE 754.
 _PCM, _FLOAT = 1, 3
+#: What one sample of all channels takes has 16 bits.
+_MOST_FRAME_BYTES = 2**16 - 1
 #: Chunks have lengths of 32 bits.
 _MOST_BYTES = 2**32 - 256
 
@@ -39,23 +42,33 @@ def write_wav(
             clipped.
 
     Raises:
-        ValueError: `sound` is no table of at least one channel, is too long for a WAV file
-            (4 GiB), or `full_scale_pa` is no number above 0.
+        ConfigError: `sound` is no table of finite real numbers with at least one channel, or more
+            than a WAV file holds (4 GiB, 65,535 bytes for a sample of all channels, as many bytes
+            a second as 32 bits count), `rate_hz` no whole number from 1, or `full_scale_pa` no
+            number above 0.
         OSError: The system refuses, or something stands there that is no regular file.
     """
-    sound = np.asarray(sound)
+    sound = numbers("sound", sound, np.float64)
     if sound.ndim != 2 or not sound.shape[0]:
-        raise ValueError(f"sound: expected the shape (channel, sample), found {sound.shape}")
+        raise ConfigError(f"sound: expected the shape (channel, sample), found {sound.shape}")
+    if not np.isfinite(sound).all():
+        raise ConfigError("sound: allowed are finite numbers, Pa")
     if full_scale_pa is None:
+        if sound.size and np.abs(sound).max() > np.finfo(np.float32).max:
+            raise ConfigError(f"sound: found {np.abs(sound).max():g} Pa; 32 bits hold up to 3e38")
         form, samples = _FLOAT, sound.T.astype("<f4")
-    elif full_scale_pa > 0.0 and np.isfinite(full_scale_pa):
+    elif finite("full_scale_pa", full_scale_pa) > 0.0:
         scaled = np.clip(sound.T / full_scale_pa, -1.0, 1.0) * 32767.0
         form, samples = _PCM, np.rint(scaled).astype("<i2")
     else:
-        raise ValueError(f"full_scale_pa is {full_scale_pa}; allowed are numbers above 0")
+        raise ConfigError(f"full_scale_pa is {full_scale_pa}; allowed are numbers above 0")
     if samples.nbytes > _MOST_BYTES:
-        raise ValueError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MOST_BYTES}")
+        raise ConfigError(f"sound: {samples.nbytes} bytes; a WAV file holds {_MOST_BYTES}")
     channels, width = sound.shape[0], samples.itemsize
+    if channels * width > _MOST_FRAME_BYTES:
+        most = _MOST_FRAME_BYTES // width
+        raise ConfigError(f"sound: {channels} channels; a WAV file of such samples holds {most}")
+    rate_hz = whole("rate_hz", rate_hz, low=1, high=(2**32 - 1) // (channels * width))
     rates = (rate_hz, rate_hz * channels * width, channels * width, 8 * width)
     chunks = [(b"fmt ", struct.pack("<HHIIHH", form, channels, *rates))]
     if form == _FLOAT:
@@ -66,7 +79,7 @@ def write_wav(
     body = b"WAVE" + b"".join(
         name + struct.pack("<I", len(content)) + content for name, content in chunks
     )
-    with atomic_write(path) as draft:
+    with atomic_write(arguments.path("path", path)) as draft:
         draft.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
 
 
@@ -83,17 +96,24 @@ def read_wav(
         The sound, shape (channel, sample), Pa, and the samples a second.
 
     Raises:
-        ValueError: The file is no WAV, holds samples of another form, or has more than 512 MiB.
+        MeasuredDataError: The file is no WAV, holds samples of another form, or has more than
+            512 MiB.
         OSError: The system refuses, or it is no regular file.
     """
-    chunks = _chunks(os.fspath(path), read(path, _MOST_READ_BYTES))
+    try:
+        file = read(arguments.path("path", path), _MOST_READ_BYTES)
+    except ConfigError:
+        raise
+    except ValueError as error:
+        raise MeasuredDataError(str(error)) from None
+    chunks = _chunks(os.fspath(path), file)
     layout, data = chunks.get(b"fmt ", b""), chunks.get(b"data")
     if len(layout) < 16 or data is None:
-        raise ValueError(f"{path}: a WAV file has the chunks fmt and data")
+        raise MeasuredDataError(f"{path}: a WAV file has the chunks fmt and data")
     form, channels, rate_hz, _, _, bits = struct.unpack_from("<HHIIHH", layout)
     kinds = {(_FLOAT, 32): ("<f4", 1.0), (_PCM, 16): ("<i2", full_scale_pa / 32767.0)}
     if (form, bits) not in kinds or not channels:
-        raise ValueError(
+        raise MeasuredDataError(
             f"{path}: {channels} channels of format {form} with {bits} bits; "
             "expected format 3 (float) with 32 bits or 1 (PCM) with 16"
         )
@@ -106,7 +126,7 @@ def read_wav(
 def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
     """The first chunk of each name."""
     if file[:4] != b"RIFF" or file[8:12] != b"WAVE":
-        raise ValueError(f"{name}: no WAV file: it does not begin with RIFF and WAVE")
+        raise MeasuredDataError(f"{name}: no WAV file: it does not begin with RIFF and WAVE")
     chunks: dict[bytes, bytes] = {}
     at = 12
     while at + 8 <= len(file):

@@ -369,6 +369,14 @@ def test_a_draft_that_has_no_room_is_told_by_the_name_that_was_given(tmp_path: P
     assert not [*tmp_path.iterdir()]
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="there is no /proc")
+def test_the_system_says_why_nothing_can_be_written() -> None:
+    told = r"No such file or directory: '/proc/a\.json'"
+    with pytest.raises(OSError, match=told) as caught, files.atomic_write("/proc/a.json"):
+        pass
+    assert caught.value.errno == errno.ENOENT
+
+
 def test_a_journal_without_room_is_named(tmp_path: Path) -> None:
     from dwell.cli.job_journal import Journal
 

@@ -65,21 +65,34 @@ def test_sixteen_bits_have_the_scale_that_was_asked_for(tmp_path: Path) -> None:
 def test_what_is_no_sound_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "a.wav"
     for full_scale_pa in (0.0, -1.0, float("nan"), float("inf")):
-        with pytest.raises(ValueError, match="full_scale_pa"):
+        with pytest.raises(dwell.ConfigError, match="full_scale_pa"):
             write_wav(path, SOUND, 16_000, full_scale_pa=full_scale_pa)
-    with pytest.raises(ValueError, match="shape"):
+    with pytest.raises(dwell.ConfigError, match="shape"):
         write_wav(path, SOUND[0], 16_000)
+    for rate_hz in (0, -1, 8000.5, float("nan"), 2**33):
+        with pytest.raises(dwell.ConfigError, match=r"rate_hz is .*; allowed are whole numbers"):
+            write_wav(path, SOUND, rate_hz)  # type: ignore[arg-type] # the fault
+    hidden = np.ma.masked_array(SOUND, SOUND > 0.0)
+    for sound, said in (
+        (np.zeros((70_000, 1)), "70000 channels; a WAV file of such samples holds 16383"),
+        (np.full((1, 2), 1e300), r"found 1e\+300 Pa"),
+        (np.full((1, 2), np.nan), "allowed are finite numbers"),
+        (np.zeros((1, 2), complex), "expected real numbers"),
+        (hidden, "masked elements"),
+    ):
+        with pytest.raises(dwell.ConfigError, match=said):
+            write_wav(path, sound, 16_000)
     assert not path.exists()
     path.write_bytes(b"RIFF")
-    with pytest.raises(ValueError, match=r"a\.wav: no WAV file"):
+    with pytest.raises(dwell.MeasuredDataError, match=r"a\.wav: no WAV file"):
         read_wav(path)
     path.write_bytes(b"RIFF\4\0\0\0WAVE")
-    with pytest.raises(ValueError, match="fmt and data"):
+    with pytest.raises(dwell.MeasuredDataError, match="fmt and data"):
         read_wav(path)
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(3)
         file.setframerate(8000)
         file.writeframes(b"abcabc")
-    with pytest.raises(ValueError, match="24 bits"):
+    with pytest.raises(dwell.MeasuredDataError, match="24 bits"):
         read_wav(path)
