@@ -363,6 +363,8 @@ def observed(value: object, **spaces: Any) -> type[dwell.Task]:  # noqa: ANN401 
 
 
 BOX = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
+BYTES = gymnasium.spaces.Box(0, 255, (2,), np.uint8)
+INTS = gymnasium.spaces.Box(-5, 5, (1,), np.int32)
 MAKING: list[tuple[dict[str, Any], str]] = [
     ({"task": GoThere()}, "exists already"),
     ({"task": 5}, "task is 5"),
@@ -527,6 +529,9 @@ PLAYING: list[tuple[dict[str, Any], str]] = [
     ({"task": observed({"goal": [0, 2]}, goal=BOX)}, "Observed.observe: goal observed [0, 2]; its"),
     ({"task": observed({"goal": "a"}, goal=BOX)}, "goal observed 'a'; its space is Box"),
     ({"sensors": [observing([0.0, 2.0], BOX)]}, "sensor observing observed"),
+    ({"sensors": [observing([1, 256], BYTES)]}, "uint8); found int64 of shape (2,)"),
+    ({"sensors": [observing([1.5, 2.0], BYTES)]}, "uint8); found float64 of shape (2,)"),
+    ({"sensors": [observing([2**40], INTS)]}, "int32); found int64 of shape (1,)"),
     ({"sensors": [observing([0.0, float("nan")], BOX)]}, "sensor observing observed"),
     ({"sensors": [observing([0.0] * 3, BOX)]}, "sensor observing observed"),
     ({"sensors": [observing("text", BOX)]}, "sensor observing observed"),
@@ -543,6 +548,14 @@ def test_what_a_part_gives_is_checked(arguments: dict[str, Any], said: str) -> N
     with pytest.raises(dwell.DwellError) as refused:
         play_a_step(env)
     assert said in str(refused.value)
+
+
+@pytest.mark.parametrize("value", [[0, 255], np.array([0, 255]), np.array([0, 255], np.uint16)])
+def test_whole_numbers_that_fit_are_converted(value: object) -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=[observing(value, BYTES)])
+    seen = env.reset(seed=1)[0]["observing"]
+    assert seen.dtype == np.uint8
+    assert seen.tolist() == [0, 255]
 
 
 def test_a_task_without_an_expert_says_so() -> None:
@@ -576,7 +589,7 @@ def test_what_would_come_back_as_something_else_is_refused_by_the_snapshot(value
 
     env = DwellEnv(Keeps, houses="builtin:studio")
     env.reset(seed=1)
-    with pytest.raises(dwell.ConfigError, match=r"task.state\['kept'\]"):
+    with pytest.raises(dwell.ConfigError, match=r"task\.state(\['kept'\]|\.kept)"):
         env.snapshot()
 
 

@@ -78,6 +78,7 @@ def test_environment_k_plays_the_episodes_of_a_single_one(
                 own[k].append(move)
             if mode == "SameStep" and done[k]:
                 ends = infos["final_info"]["episode_id"][k]
+                assert infos["final_info"]["audio_clipped"][k] == 0
                 last = infos["final_obs"][k]
                 played[k].append(
                     [bits(last), None, ends, rewards[k], bool(terminated[k]), bool(truncated[k])]

@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
+from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import finite, flag, from_json, mapping, quoted, text, to_json
+from dwell.arguments import finite, flag, from_json, in_order, mapping, quoted, text, to_json
 from dwell.house import House
 from dwell.plugin_parts import factory
 from dwell.rewards import Reward
@@ -97,10 +98,7 @@ def _sensors(
         return settings, tuple(own)
     if isinstance(sensors, str):
         return sensors, ()
-    try:
-        rows = list(sensors)
-    except TypeError:
-        raise ConfigError(f"sensors is {quoted(sensors)}; expected names or classes") from None
+    rows = in_order("sensors", sensors, "expected names or classes")
     names = []
     for k, row in enumerate(rows):
         if not isinstance(row, str) or ":" in row:
@@ -349,16 +347,31 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
         ConfigError: It is no element; the message begins with ``at``.
     """
     element: Any = value
+    form = ""
     if not isinstance(space, spaces.Text):
         try:
-            element = np.asarray(value).astype(space.dtype, casting="same_kind")
+            given = np.asarray(value)
+            form = (
+                f"; found {given.dtype} of shape {given.shape}"
+                if given.dtype.kind in "biufc"
+                else ""
+            )
+            element = _converted(given, np.dtype(space.dtype))
         except (TypeError, ValueError):
             element = None
     # A Discrete space wants its elements as scalars.
     is_scalar = isinstance(space, spaces.Discrete) and element is not None and element.shape == ()
     if element is None or not space.contains(element[()] if is_scalar else element):
-        raise ConfigError(f"{at} observed {quoted(value)}; its space is {space}")
+        raise ConfigError(f"{at} observed {quoted(value)}; its space is {space}{form}")
     return element
+
+
+def _converted(given: NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any] | None:
+    """Numbers as another type, where that holds them: whole ones exactly; ``None`` elsewhere."""
+    if given.dtype.kind in "iu" and dtype.kind in "iu":
+        whole = given.astype(dtype)
+        return whole if (whole == given).all() else None
+    return given.astype(dtype, casting="same_kind")
 
 
 def _add(

@@ -13,7 +13,16 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, some, whole
+from dwell.arguments import (
+    in_order,
+    mapping,
+    quoted,
+    refuse_masked,
+    refuse_unknown,
+    some,
+    to_json,
+    whole,
+)
 from dwell.camera import camera_settings
 from dwell.envs.config import (
     KEPT,
@@ -270,6 +279,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if unknown := sorted(set(options) - {"reset_mask", "episode_id"}):
             raise ConfigError(f"options: no {unknown[0]!r}; allowed are reset_mask and episode_id")
         mask = options.get("reset_mask")
+        refuse_masked("reset_mask", mask)
         which = np.ones(self.num_envs, np.bool_) if mask is None else np.asarray(mask)
         if which.shape != (self.num_envs,) or which.dtype != np.bool_ or not which.any():
             raise ConfigError(
@@ -280,11 +290,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if isinstance(seed, int | np.integer):
             seeds = [whole("seed", seed) + k for k in range(self.num_envs)]
         elif seed is not None:
-            try:
-                given = list(seed)
-            except TypeError:
-                expected = "expected a whole number, or one for each environment"
-                raise ConfigError(f"seed is {quoted(seed)}; {expected}") from None
+            expected = "expected a whole number, or one for each environment"
+            given = in_order("seed", seed, expected)
             seeds = [None if one is None else whole("seed", one) for one in given]
             if len(seeds) != self.num_envs:
                 raise ConfigError(f"seed: expected {self.num_envs} seeds, found {len(seeds)}")
@@ -343,6 +350,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
         if self._stopped.any():
             which = some(np.flatnonzero(self._stopped).tolist())
             raise UsageError(f"step: no episode of environments {which} has begun; reset them")
+        refuse_masked("actions", actions)
         try:
             numbers = np.asarray(actions)
         except ValueError:
@@ -415,7 +423,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], NDArray[np.int64], NDArray[Any]],
                 for key, value in last.items()
             }
         final_info: dict[str, Any] = {}
-        for key in (*INFO_KEYS, "action_error", *own):
+        for key in (*INFO_KEYS, "action_error", "audio_clipped", *own):
             final_info |= {key: infos[key].copy(), f"_{key}": ended}
         self._start(ended)
         self._runner.observe(ended)
