@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import gymnasium
 import pytest
@@ -30,14 +31,10 @@ MARKDOWN = sorted(
 )
 
 
-#: Pages whose Python needs an adapter for graphics.
-NEED_AN_ADAPTER = ("docs/rendering.md",)
 PROGRAMS = [
     file
     for file in MARKDOWN
-    if file.startswith("docs/")
-    and file not in NEED_AN_ADAPTER
-    and "```python" in (ROOT / file).read_text("utf-8")
+    if file.startswith("docs/") and "```python" in (ROOT / file).read_text("utf-8")
 ]
 
 
@@ -54,6 +51,17 @@ def test_the_python_of_a_page_runs_from_its_beginning_to_its_end(file: str, tmp_
         check=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_one_agent_of_the_readme_is_visible_to_the_other() -> None:
+    text = (ROOT / "README.md").read_text("utf-8").split("## Run several agents", 1)[1]
+    program = re.search(r"```python\n(.*?)```", text, re.DOTALL)
+    assert program is not None
+    names: dict[str, Any] = {}
+    exec(program[1], names)
+    # Agents have the numbers behind those of the things.
+    agent_0 = 1 + max(row["id"] for row in names["world"].objects())
+    assert (names["seen"]["instance"] == agent_0).mean() > 0.05
 
 
 @pytest.fixture
