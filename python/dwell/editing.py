@@ -12,7 +12,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.arguments import choice, finite, flag, in_order, path, point, text, whole
 from dwell.house import House
 from dwell.sound_api import emitter_sound
 
@@ -88,12 +88,16 @@ class EditList:
             substance: What all of it is made of instead.
             srgb: The colour of all of it, 0 to 255.
         """
-        what = {"kind": text("kind", kind), "style": style, "seed": whole("seed", seed)}
+        what = {
+            "kind": text("kind", kind),
+            "style": _text("style", style),
+            "seed": whole("seed", seed),
+        }
         return self._note(
             "add",
             {
                 "what": {"catalogue": what},
-                "name": name,
+                "name": _text("name", name),
                 "place": _place(at, on, yaw_deg, anchor),
                 "look": _look(substance, srgb),
             },
@@ -148,12 +152,13 @@ class EditList:
             loop: whether over and over,
             start_s: and from when on.
         """
-        what = {"path": path("file", file), "scale": finite("scale", scale), "up": up}
+        what = {"path": path("file", file), "scale": finite("scale", scale)}
+        what["up"] = choice("up", up, ("y", "z"))
         return self._note(
             "add",
             {
                 "what": {"file": what},
-                "name": name,
+                "name": _text("name", name),
                 "place": _place(at, on, yaw_deg, anchor),
                 "traits": _traits(category, mobility, mass_kg, density_kg_m3, pickable, None),
                 "look": _look(substance, srgb, keep_look=True),
@@ -184,7 +189,7 @@ class EditList:
             "add",
             {
                 "what": {"box": {"size_m": point("size_m", size_m)}},
-                "name": name,
+                "name": _text("name", name),
                 "place": _place(at, on, yaw_deg, anchor),
                 "traits": _traits(category, mobility, mass_kg, density_kg_m3, None, None),
                 "look": _look(substance, srgb),
@@ -217,7 +222,9 @@ class EditList:
         if house is not None:
             what["house"] = path("house", house)
         place = _place(at, on, yaw_deg, anchor)
-        return self._note("add", {"what": {"copy": what}, "name": name, "place": place})
+        return self._note(
+            "add", {"what": {"copy": what}, "name": _text("name", name), "place": place}
+        )
 
     def remove(self, thing: str, *, with_things: bool = False) -> Self:
         """Removes an object, ``with_things`` also what stands on it or lies in it.
@@ -297,7 +304,7 @@ class EditList:
             wanted = choice("side", side, ("floor", "walls", "ceiling"))
             surfaces["room"] = {"name": text("room", room), "side": wanted}
         if thing is not None:
-            surfaces["object"] = {"name": text("thing", thing), "part": part}
+            surfaces["object"] = {"name": text("thing", thing), "part": _text("part", part)}
         if structure is not None:
             surfaces["structure"] = text("structure", structure)
         if material is not None:
@@ -308,7 +315,7 @@ class EditList:
                 f"re_material of {found}; expected one of room, thing, structure and material"
             )
         look = {
-            "substance": substance,
+            "substance": _text("substance", substance),
             "srgb": None if srgb is None else rgb("srgb", srgb),
             "opacity": None if opacity is None else finite("opacity", opacity),
             "roughness": None if roughness is None else finite("roughness", roughness),
@@ -346,9 +353,9 @@ class EditList:
             "add_emitter",
             {
                 "sound": emitter_sound(signal, sound, level_db, loop=loop, start_s=start_s),
-                "object": thing,
+                "object": _text("thing", thing),
                 "at": None if at is None else point("at", at),
-                "name": name,
+                "name": _text("name", name),
             },
         )
 
@@ -356,7 +363,7 @@ class EditList:
         self,
         at: Point | None = None,
         *,
-        kind: str = "ceiling_lamp",
+        kind: str | None = None,
         on: str | None = None,
         thing: str | None = None,
         yaw_deg: float | None = None,
@@ -372,9 +379,11 @@ class EditList:
 
         Args:
             at: Where the lamp goes, m.
-            kind: A lamp of the catalogue: ``"ceiling_lamp"``, ``"pendant"``, ``"floor_lamp"``, ...
+            kind: A lamp of the catalogue: ``"ceiling_lamp"`` (default), ``"pendant"``,
+                ``"floor_lamp"``, ...
             on: The object on which it goes.
-            thing: An object that shines from its middle, instead of a new lamp.
+            thing: An object that shines from its middle, instead of a new lamp: it has a place,
+                a look and a name already.
             yaw_deg: Where it faces.
             anchor: Which of its points ``at`` is: the top of lamps that hang, the foot of others.
             name: Its name.
@@ -384,15 +393,24 @@ class EditList:
             srgb: The light's colour, 0 to 255; without it warm white.
             lit: Whether it starts switched on.
         """
+        given = {"at": at, "on": on, "yaw_deg": yaw_deg, "anchor": anchor, "name": name}
+        given |= {"style": style, "kind": kind, "seed": seed or None}
+        beside = [key for key, value in given.items() if value is not None]
+        if thing is not None and beside:
+            raise ConfigError(
+                f"thing, {', '.join(beside)}: found both; expected a thing that shines from its "
+                "middle, or a new lamp and where it goes"
+            )
+        kind = "ceiling_lamp" if kind is None else text("kind", kind)
         hangs = kind in ("ceiling_lamp", "drum_lamp", "pendant", "chandelier")
         return self._note(
             "add_lamp",
             {
-                "object": thing,
-                "kind": text("kind", kind),
-                "style": style,
+                "object": _text("thing", thing),
+                "kind": kind,
+                "style": _text("style", style),
                 "seed": whole("seed", seed),
-                "name": name,
+                "name": _text("name", name),
                 "place": _place(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
                 "power_w": None if power_w is None else finite("power_w", power_w),
                 "srgb": None if srgb is None else rgb("srgb", srgb),
@@ -442,7 +460,7 @@ class EditList:
             "agent_start",
             {
                 "at": None if at is None else point("at", at),
-                "room": room,
+                "room": _text("room", room),
                 "yaw_deg": finite("yaw_deg", yaw_deg),
                 "agent": None if agent is None else whole("agent", agent),
             },
@@ -456,7 +474,11 @@ class EditList:
             opened: 0 closed, 1 fully open.
             joint: One of its joints; without it all that open.
         """
-        fields = {"object": text("thing", thing), "open": finite("opened", opened), "joint": joint}
+        fields = {
+            "object": text("thing", thing),
+            "open": finite("opened", opened),
+            "joint": _text("joint", joint),
+        }
         return self._note("set_door", fields)
 
     def describe(
@@ -490,7 +512,12 @@ class EditList:
             room: The room,
             kind: and what people call it: ``"living room"``.
         """
-        fields = {"object": thing, "room": room, "to": text("to", to), "kind": kind}
+        fields = {
+            "object": _text("thing", thing),
+            "room": _text("room", room),
+            "to": text("to", to),
+            "kind": _text("kind", kind),
+        }
         return self._note("rename", fields)
 
 
@@ -548,7 +575,7 @@ def _edited(base: House, edits: str) -> House:
 def _place(at: Point | None, on: str | None, yaw_deg: float | None, anchor: str) -> dict[str, Any]:
     return {
         "at": None if at is None else point("at", at),
-        "on": on,
+        "on": _text("on", on),
         "yaw_deg": None if yaw_deg is None else finite("yaw_deg", yaw_deg),
         "anchor": choice("anchor", anchor, ("foot", "middle", "top", "origin")),
     }
@@ -563,8 +590,8 @@ def _traits(
     switch: bool | None,
 ) -> dict[str, Any] | None:
     traits = {
-        "category": category,
-        "mobility": mobility,
+        "category": _text("category", category),
+        "mobility": _text("mobility", mobility),
         "mass_kg": None if mass_kg is None else finite("mass_kg", mass_kg),
         "density_kg_m3": None if density_kg_m3 is None else finite("density_kg_m3", density_kg_m3),
         "pickable": None if pickable is None else flag("pickable", pickable),
@@ -580,12 +607,17 @@ def _look(
     if substance is None and srgb is None:
         return None
     color = None if srgb is None else rgb("srgb", srgb)
-    return {"substance": substance, "srgb": color, "keep_look": keep_look}
+    return {"substance": _text("substance", substance), "srgb": color, "keep_look": keep_look}
+
+
+def _text(name: str, value: object) -> str | None:
+    return None if value is None else text(name, value)
 
 
 def rgb(name: str, color: Sequence[int]) -> list[int]:
     """A colour: three whole numbers, 0 to 255."""
-    parts = [whole(f"{name}[{k}]", value, high=255) for k, value in enumerate(color)]
+    rows = in_order(name, color, "expected three whole numbers, 0 to 255")
+    parts = [whole(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]
     if len(parts) != 3:
         raise ConfigError(f"{name} has {len(parts)} numbers; expected 3")
     return parts

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import file_name, finite, flag, point, text, whole
+from dwell.arguments import file_name, finite, flag, point, text, whole, within
 from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_settings
 
@@ -159,11 +159,15 @@ class House:
                 f"substance, absorption: found both, {substance!r} and {absorption!r}; expected "
                 "one of them, as a substance absorbs by its own table"
             )
+        edges = [
+            within(f"size_m[{k}]", edge, 0.1, 1000.0, "m")
+            for k, edge in enumerate(point("size_m", size_m))
+        ]
         again = (
-            point("size_m", size_m),
+            (edges[0], edges[1], edges[2]),
             None if substance is None else text("substance", substance),
-            None if absorption is None else finite("absorption", absorption),
-            None if scattering is None else finite("scattering", scattering),
+            None if absorption is None else within("absorption", absorption, 0.0, 1.0),
+            None if scattering is None else within("scattering", scattering, 0.0, 1.0),
         )
         return cls(_native.House.shoebox(*again), (_shoebox, again))
 

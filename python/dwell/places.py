@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import finite, whole
+from dwell.arguments import whole, within
 from dwell.house import House
 
 # How far a node may be, in x and z, from the middle of a cell of the floor, m: half and more.
@@ -29,8 +27,8 @@ def receiver_grid(house: House, spacing_m: float, height_m: float = 1.2) -> NDAr
     Raises:
         ConfigError: A number is out of range, or there is no such node.
     """
-    spacing = _within("spacing_m", spacing_m, 0.1, 10.0)
-    height = _within("height_m", height_m, 0.1, 2.0)
+    spacing = within("spacing_m", spacing_m, 0.1, 10.0)
+    height = within("height_m", height_m, 0.1, 2.0)
     stands = house.navigation().points().astype(np.float64)
     nodes = np.round(stands[:, [0, 2]] / spacing) * spacing
     near = np.abs(nodes - stands[:, [0, 2]]).max(axis=1) <= _NEAR_M
@@ -62,16 +60,9 @@ def random_sources(
         ConfigError: A number is out of range, or nobody can stand anywhere.
     """
     number = whole("count", count, low=1, high=10_000)
-    height = _within("height_m", height_m, 0.1, 2.0)
+    height = within("height_m", height_m, 0.1, 2.0)
     places = house.navigation().sample(whole("seed", seed), number).astype(np.float64)
     if len(places) < number:
         raise ConfigError(f"{house.name}: nobody can stand anywhere")
     raised: NDArray[np.float64] = places + np.array((0.0, height, 0.0))
     return raised
-
-
-def _within(name: str, value: Any, low: float, high: float) -> float:  # noqa: ANN401 - a number
-    number = finite(name, value)
-    if not low <= number <= high:
-        raise ConfigError(f"{name} is {number:g}; allowed are {low:g} to {high:g}")
-    return number

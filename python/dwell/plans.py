@@ -6,11 +6,12 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageColor, ImageDraw, ImageFont
 
-from dwell import _native
-from dwell.arguments import finite, whole
+from dwell import ConfigError, _native
+from dwell.arguments import finite, in_order, instance, point, quoted, text, whole
 from dwell.camera import Camera, Preset
+from dwell.editing import rgb
 from dwell.house import House
 from dwell.world import World
 
@@ -25,6 +26,8 @@ _PAINT = 190
 #: Lengths that a scale may show, m.
 _SCALES_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
 _MOST_PIXELS = 8192
+_WAYS = "expected a colour and positions (x, y, z) in metres for each"
+_SQUARES = "expected (x, z, edge, colour) for each, the edge in metres"
 
 _Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
 
@@ -48,8 +51,13 @@ def floor_plan(
             colour, which lets the plan shine through.
 
     Raises:
-        DwellError: There is no such storey.
+        DwellError: There is no such storey; a line or square that is none.
     """
+    world = instance("world", world, World)
+    strokes = [_stroke(f"ways[{k}]", row) for k, row in enumerate(in_order("ways", ways, _WAYS))]
+    tiles = [
+        _tile(f"squares[{k}]", row) for k, row in enumerate(in_order("squares", squares, _SQUARES))
+    ]
     edge = whole("longest_edge", longest_edge, low=16, high=_MOST_PIXELS)
     picture, (left, top), scale = world.map(_FINER * edge, level=level)
     plan = _native.floor_plan(world.native, whole("level", level))
@@ -61,10 +69,10 @@ def floor_plan(
     def place(x: float, z: float) -> tuple[float, float]:
         return (x - left) * scale, (z - top) * scale
 
-    if squares:
+    if tiles:
         paint = Image.new("RGBA", canvas.size)
         brush = ImageDraw.Draw(paint)
-        for x, z, wide, color in squares:
+        for x, z, wide, color in tiles:
             corners = [place(x - 0.5 * wide, z - 0.5 * wide), place(x + 0.5 * wide, z + 0.5 * wide)]
             brush.rectangle(corners, (*color, _PAINT))
         canvas.paste(paint, mask=paint)
@@ -73,12 +81,39 @@ def floor_plan(
         hinge = place(*door["hinge"])
         draw.line([hinge, place(*door["open"])], fill=_DOOR, width=2 * line)
         draw.line([place(*point) for point in _swing(door)], fill=_DOOR, width=line)
-    for stroke, way in ways:
+    for stroke, way in strokes:
         _way(draw, stroke, [place(x, z) for x, _, z in way], line)
     for room in plan["rooms"]:
         _name(draw, room, place(*room["place"]), _FINER * edge)
     _scale(draw, canvas.size, scale, foot, line)
     return _smooth(canvas)
+
+
+def _stroke(name: str, row: object) -> tuple[str, list[tuple[float, float, float]]]:
+    """A colour and positions."""
+    parts = in_order(name, row, _WAYS)
+    if len(parts) != 2:
+        raise ConfigError(f"{name} is {quoted(row)}; {_WAYS}")
+    color = text(f"{name}[0]", parts[0])
+    try:
+        ImageColor.getrgb(color)
+    except ValueError:
+        expected = "expected a colour, as 'red' or '#1f8f5f'"
+        raise ConfigError(f"{name}[0] is {quoted(color)}; {expected}") from None
+    places = in_order(f"{name}[1]", parts[1], "expected positions (x, y, z) in metres")
+    return color, [point(f"{name}[1][{k}]", place) for k, place in enumerate(places)]
+
+
+def _tile(name: str, row: object) -> tuple[float, float, float, tuple[int, int, int]]:
+    """The middle and the edge of a square, and its colour."""
+    parts = in_order(name, row, _SQUARES)
+    if len(parts) != 4:
+        raise ConfigError(f"{name} is {quoted(row)}; {_SQUARES}")
+    x, z, wide = (finite(f"{name}[{k}]", part) for k, part in enumerate(parts[:3]))
+    if wide <= 0.0:
+        raise ConfigError(f"{name}[2] is {wide:g}; allowed are edges above 0 m")
+    red, green, blue = rgb(f"{name}[3]", parts[3])
+    return x, z, wide, (red, green, blue)
 
 
 def dollhouse(
@@ -100,6 +135,7 @@ def dollhouse(
         down_deg: How far one looks down, 20 to 90.
         cut_m: Height of the cut over each floor, m, 0.3 to 10.
     """
+    world = instance("world", world, World)
     wide = _FINER * whole("width", width, low=16, high=_MOST_PIXELS)
     config = {
         "width": wide,
@@ -119,8 +155,8 @@ def dollhouse(
 
 
 def levels_of(house: House) -> int:
-    """Number of storeys of a house."""
-    return int(house.info()["levels"])
+    """How many storeys a house has."""
+    return int(instance("house", house, House).info()["levels"])
 
 
 def sheet(
@@ -154,7 +190,8 @@ def sheet(
 
 def house_sheet(world: World, *, columns: int = 4, preset: Preset = "lit") -> Image.Image:
     """One house: the doll's house, the plan of each storey, a view of each room."""
-    house, levels = world.house, range(levels_of(world.house))
+    house = instance("world", world, World).house
+    levels = range(levels_of(house))
     pictures = [(house.name, dollhouse(world, width=720))]
     for level in levels:
         title = f"storey {level + 1}" if len(levels) > 1 else "plan"

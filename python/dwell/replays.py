@@ -12,8 +12,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native
-from dwell.arguments import flag, mapping, quoted, text, texts, to_json, whole
+from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native, arguments
+from dwell.arguments import (
+    flag,
+    from_json,
+    instance,
+    mapping,
+    quoted,
+    text,
+    texts,
+    to_json,
+    whole,
+)
 from dwell.files import atomic_write, read_json
 from dwell.house import House
 
@@ -88,11 +98,13 @@ class Replay:
 
         Raises:
             MeasuredDataError: It is no replay, of another version, or its numbers do not fit.
+            ConfigError: ``path`` is no path.
         """
+        path = arguments.path("path", path)
         try:
             row = read_json(path)
         except OSError as error:
-            raise MeasuredDataError(f"{os.fspath(path)}: {error.strerror or error}") from error
+            raise MeasuredDataError(f"{path}: {error.strerror or error}") from error
         except ValueError as error:
             raise MeasuredDataError(str(error)) from None
         if not isinstance(row, dict) or row.get("format") != _FORMAT:
@@ -117,7 +129,7 @@ class Replay:
                 instruction=text("instruction", row["instruction"]),
                 success=flag("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
-                path=str(path),
+                path=path,
                 sums=None if version == 1 else mapping("sums", row["sums"]),
             )
             replay.check()
@@ -151,8 +163,12 @@ class Replay:
         """The fields of a file, but for its check sums."""
         row = {"format": _FORMAT, "version": _VERSION}
         row |= {name: getattr(self, name) for name in _FIELDS if name not in (*row, "sums")}
-        row["config"] = json.loads(self.config)
+        row["config"] = self._settings()
         return row
+
+    def _settings(self) -> dict[str, Any]:
+        at = f"{self._at()}: config"
+        return mapping(at, from_json(at, text(at, self.config)))
 
     def write(self, path: str | os.PathLike[str], *, new: bool = False) -> None:
         """Writes a file, whole or not at all.
@@ -163,6 +179,8 @@ class Replay:
 
         Raises:
             FileExistsError: It shall be new and is not.
+            OSError: The system refuses.
+            ConfigError: A field holds what no file can.
         """
         row = self._stated()
         row["sums"] = {name: _sum(value) for name, value in row.items()}
@@ -225,10 +243,10 @@ class Replay:
                 f"this episode was played with {[*self.parts] or 'no parts in Python'}, given are "
                 f"{given or 'none'}; task= and reward= take them"
             )
-        config = json.loads(self.config)
+        config = self._settings()
         if renderer is not None:
             config["world"] = {**config.get("world", {}), "renderer": renderer}
-        opened = House.open(self.house) if house is None else house
+        opened = House.open(self.house) if house is None else instance("house", house, House)
         return NativeBatch([opened], to_json(config), None, custom=custom)
 
     @contextmanager

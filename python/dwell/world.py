@@ -23,6 +23,7 @@ from dwell.arguments import (
     triple,
     unit_quaternion,
     whole,
+    within,
 )
 from dwell.camera import MOST_PIXELS, Camera, camera_settings
 from dwell.configs import bodies
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
 
     from dwell.engine_types import BodySettings, WorldSettings
 
+#: How steeply an agent looks up or down at most, the engine's 1.5 rad.
+_STEEPEST_DEG = 85.9
 #: Ids have 32 bits.
 _MOST_IDS = 2**32 - 1
 
@@ -236,7 +239,7 @@ class World(ActionApi, GuideApi, SoundApi):
         row = {
             "position": point("position", position),
             "yaw_deg": finite("yaw_deg", yaw_deg),
-            "pitch_deg": finite("pitch_deg", pitch_deg),
+            "pitch_deg": within("pitch_deg", pitch_deg, -_STEEPEST_DEG, _STEEPEST_DEG, "degrees"),
             "linear_m_s": triple("linear_m_s", linear_m_s),
             "yaw_rate_rad_s": finite("yaw_rate_rad_s", yaw_rate_rad_s),
             "crouched_by_m": finite("crouched_by_m", crouched_by_m),

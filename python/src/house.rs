@@ -119,7 +119,8 @@ impl PyHouse {
                     scattering.map_or_else(|| side.scattering.clone(), Bands::constant);
             }
             Ok(Self::from_house(
-                House::shoebox(size_m, &materials)?,
+                House::shoebox(size_m, &materials)
+                    .map_err(|error| PyFault::Config(error.to_string()))?,
                 json!([]),
             ))
         })

@@ -10,9 +10,17 @@ import numpy as np
 import pytest
 
 import dwell
-from dwell.envs import DwellEnv
+import dwell.house_list
+import dwell.measures
+from dwell import plans, sound_maps
+from dwell.envs import DwellEnv, DwellVectorEnv
 
 ROBOT = Path(__file__).parents[2] / "physics" / "tests" / "it" / "robots" / "gripper.urdf"
+
+
+class Never(dwell.Task):
+    max_steps = -5
+
 
 #: A call, and how its error begins or what it holds.
 CALLS = [
@@ -237,17 +245,14 @@ CALLS = [
     ),
     ("dwell.House.shoebox((1, 2, nan))", "size_m[2] is nan"),
     ("dwell.House.shoebox((1, 2, 1e300))", "size_m[2] is 1e+300"),
-    ("dwell.House.shoebox((1, 2, -3))", "shoebox: size_m is [1.0, 2.0, -3.0]"),
+    ("dwell.House.shoebox((1, 2, -3))", "size_m[2] is -3; allowed are 0.1 to 1000 m"),
     (
         'dwell.House.shoebox("abc")',
         "size_m: expected three numbers (x, y, z) in metres, found 'abc'",
     ),
     ('dwell.House.shoebox((3, 3, 3), substance="cheese")', 'no substance "cheese"'),
     ("dwell.House.shoebox((3, 3, 3), substance=5)", "substance is 5"),
-    (
-        "dwell.House.shoebox((3, 3, 3), absorption=2)",
-        'materials[0] "floor".absorption: bands must rise and stay in',
-    ),
+    ("dwell.House.shoebox((3, 3, 3), absorption=2)", "absorption is 2; allowed are 0 to 1"),
     ('dwell.House.shoebox((3, 3, 3), absorption="x")', "absorption is 'x'"),
     ("dwell.House.shoebox((3, 3, 3), scattering=nan)", "scattering is nan"),
     ('H.with_robot(None, "r", (1, 0, 1))', "path is None"),
@@ -321,6 +326,143 @@ CALLS = [
     ("DwellEnv(laws=5)", "laws: found 5; expected a law's name, a list of names and of {id"),
     ("DwellEnv(world=5)", "world is 5"),
     ('DwellEnv(threads="x")', "threads is 'x'"),
+    ('W.set_body("pillow_1", position=(1e9, 0, 0))', "pose is [1000000000, 0, 0], [0, 0.99"),
+    ('W.set_body("pillow_1", linear_m_s=(1e9, 0, 0))', "velocity is [1000000000, 0, 0] m/s, [0,"),
+    # What keeps no order, and what hides elements.
+    (
+        'DwellEnv(houses={"builtin:studio"})',
+        "houses is {'builtin:studio'}, which keeps no order; expected HOUSE strings or Houses",
+    ),
+    (
+        'DwellEnv(houses={"builtin:studio": 1}.keys())',
+        "houses is dict_keys(['builtin:studio']), which keeps no order",
+    ),
+    (
+        'DwellEnv(houses={"builtin:studio": 1})',
+        "houses is {'builtin:studio': 1}; expected HOUSE strings or Houses",
+    ),
+    ('DwellEnv(sensors={"gps", "rgb"})', "which keeps no order; expected names or classes"),
+    ('DwellEnv(sensors=dict(a="gps").values())', "which keeps no order; expected names or classes"),
+    ("W.place_agent({1, 2, 3})", "found {1, 2, 3}, which keeps no order"),
+    (
+        'W.set_body("pillow_1", rotation={0, 1, 2, 3})',
+        "rotation: expected a rotation (x, y, z, w), found {0, 1, 2, 3}, which",
+    ),
+    ("W.step({(0, 0, 0, 0)})", "controls is {(0, 0, 0, 0)}, which keeps no order"),
+    (
+        'W.render(channels={"rgb"})',
+        "channels is {'rgb'}, which keeps no order; expected a list of text",
+    ),
+    (
+        "H.edit().add_box((1, 1, 1), (1, 1, 1), srgb={1, 2, 3})",
+        "srgb is {1, 2, 3}, which keeps no order",
+    ),
+    (
+        "dwell.Receiver.array((1, 1, 1), {(0, 0, 0)})",
+        "microphones is {(0, 0, 0)}, which keeps no order",
+    ),
+    ('dwell.calibrate("x", peers={"a"})', "peers is {'a'}, which keeps no order"),
+    ('dwell.house_list.HouseList({"seed:1"})', "houses is {'seed:1'}, which keeps no order"),
+    ("DwellVectorEnv(2).reset(seed={1, 2})", "seed is {1, 2}, which keeps no order"),
+    (
+        "W.step(np.ma.masked_array(np.zeros((1, 4)), [[1, 0, 0, 0]]))",
+        "controls has masked elements",
+    ),
+    (
+        "dwell.measures.of_response(np.ma.masked_array([0.0, 1.0], [1, 0]), 8000)",
+        "response has masked elements",
+    ),
+    # Half of a pair of surrogates.
+    ('W.act("pick", SUR)', "object is '\\ud800'; expected text that UTF-8 can hold"),
+    ('W.act("pick", **{SUR: 1})', "a name is '\\ud800'; expected text that UTF-8 can hold"),
+    ('W.play("phone", at=SUR)', "at is '\\ud800'; expected text that UTF-8 can hold"),
+    ('W._native.play({"sound": {"signal": SUR}})', "expected text that UTF-8 can hold"),
+    ("dwell.House.expand(SUR)", "house is '\\ud800'; expected text that UTF-8 can hold"),
+    ("dwell.House.generate(1, style=SUR)", "style is '\\ud800'; expected text that UTF-8 can hold"),
+    ("dwell.calibrate(SUR)", "measured is '\\ud800'; expected text that UTF-8 can hold"),
+    ("dwell.AcousticScene(H, **{SUR: 1})", "expected text that UTF-8 can hold"),
+    (
+        'DwellEnv("Free", task_settings={"start": SUR})',
+        "task_settings.start is '\\ud800'; expected text that UTF-8 can hold",
+    ),
+    ("env.describe(SUR)", "level is '\\ud800'; expected text that UTF-8 can hold"),
+    # Names and numbers of calls that are seldom made.
+    (
+        'W.act("pick", True)',
+        "object is True; allowed are whole numbers from -2147483648 to 2147483647, and names",
+    ),
+    (
+        "W.place_agent((1, 0, 1), pitch_deg=86)",
+        "pitch_deg is 86; allowed are -85.9 to 85.9 degrees",
+    ),
+    ('H.edit().add("mug", on="table_1", name=3)', "name is 3; expected text"),
+    ('H.edit().add("mug", on=3)', "on is 3; expected text"),
+    ('H.edit().add("mug", (1, 1, 1), style=3)', "style is 3; expected text"),
+    ('H.edit().rename("a", thing=3)', "thing is 3; expected text"),
+    ('H.edit().add_file("a.glb", (1, 1, 1), up="x")', "up is 'x'; allowed are y, z"),
+    (
+        'H.edit().add_lamp((1, 2, 1), thing="mug_1")',
+        "thing, at: found both; expected a thing that shines",
+    ),
+    (
+        'H.edit().add_lamp(thing="mug_1", kind="pendant", on="table_1")',
+        "thing, on, kind: found both",
+    ),
+    (
+        "dwell.Camera(projection={})",
+        "camera.projection.kind is None; allowed are pinhole, brown_conrady,",
+    ),
+    (
+        'dwell.Camera(projection={"kind": "eye"})',
+        "camera.projection.kind is 'eye'; allowed are pinhole,",
+    ),
+    (
+        'dwell.Camera(projection={"kind": "cubemap", "fx": 1})',
+        "camera.projection: found 'fx'; cubemap has no numbers",
+    ),
+    (
+        'dwell.Camera(projection={"kind": "pinhole", "fx": 1})',
+        "camera.projection has no cx; pinhole has fx, fy, cx, cy",
+    ),
+    ("dwell.House.shoebox((4, 3, 5), scattering=-1)", "scattering is -1; allowed are 0 to 1"),
+    (
+        'dwell.House.open("builtin:studio").navigation().update(W)',
+        "world is over another house, 'apartment'; this navigation is of 'studio'",
+    ),
+    ("dwell.calibrate(None)", "measured is None; expected text or a path"),
+    ('dwell.calibrate("x", progress=5)', "progress is 5; expected a function or None"),
+    ("dwell.Replay.read(None)", "path is None; expected text or a path"),
+    ('dwell.Replay.read(b"x")', "path is b'x'; expected text"),
+    ('REPLAY.write("x.replay")', "replay: config: no JSON: line 1 column 1"),
+    ('next(REPLAY.play(house="builtin:studio"))', "replay: config: no JSON"),
+    ("dwell.Receiver({}, {})", "pose has nothing; expected position and rotation"),
+    (
+        'dwell.Source((1, 1, 1), directivity="no").to_json()',
+        "directivity: no 'no'; there are omni,",
+    ),
+    ("plans.floor_plan(None)", "world is None; expected a dwell.World"),
+    ("plans.levels_of(W)", "expected a dwell.House"),
+    (
+        'plans.floor_plan(W, ways=[("notacolour", [(1, 0, 1)])])',
+        "ways[0][0] is 'notacolour'; expected a colour",
+    ),
+    (
+        'plans.floor_plan(W, ways=[("red", [(nan, 0, 1)])])',
+        "ways[0][1][0][0] is nan; allowed are finite",
+    ),
+    (
+        "plans.floor_plan(W, squares=[(1, 1, -1, (1, 2, 3))])",
+        "squares[0][2] is -1; allowed are edges above 0 m",
+    ),
+    (
+        "plans.floor_plan(W, squares=[(1, 1, 1, (300, 2, 3))])",
+        "squares[0][3][0] is 300; allowed are whole numbers",
+    ),
+    ("sound_maps.sound_map(None, (1, 1, 1))", "scene is None; expected a dwell.AcousticScene"),
+    (
+        'dwell.register_task("me/Never-v0", Never)',
+        "Never.max_steps is -5; allowed are whole numbers from 1",
+    ),
 ]
 
 
@@ -342,6 +484,22 @@ def names() -> dict[str, Any]:
         "np": np,
         "dwell": dwell,
         "DwellEnv": DwellEnv,
+        "DwellVectorEnv": DwellVectorEnv,
+        "plans": plans,
+        "sound_maps": sound_maps,
+        "SUR": "\ud800",
+        "Never": Never,
+        "REPLAY": dwell.Replay(
+            house="builtin:studio",
+            seed=1,
+            config="nonsense",
+            parts=(),
+            actions=(),
+            hashes=("a",),
+            instruction="x",
+            success=False,
+            made_by="y",
+        ),
     }
 
 
