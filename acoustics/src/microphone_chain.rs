@@ -36,7 +36,7 @@ impl Borrow<LawSpec> for ChainStage {
     }
 }
 
-/// What must be remembered of microphones so that they go on bit for bit.
+/// The state of a microphone chain in a snapshot, from which signals continue bit for bit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ChainMemory {
     channels: u64,

@@ -214,7 +214,7 @@ class AcousticScene:
         return self._native.early_paths(plain(source_of(source).to_json()), point("mic", mic))
 
     def explain(self) -> dict[str, Any]:
-        """What sound meets: areas, mean absorption, which materials are guesses."""
+        """Surfaces that sound meets: areas, mean absorption, which materials are guesses."""
         return self._native.explain()
 
 

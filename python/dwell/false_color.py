@@ -95,7 +95,7 @@ _SHOWN: dict[str, Callable[[NDArray[Any]], NDArray[np.uint8]]] = {
 
 @functools.cache
 def _styles() -> dict[str, str | None]:
-    """How people are shown what each sensor gives."""
+    """The picture style of each sensor, by name."""
     return {row["name"]: row["picture_style"] for row in _native.sensors()}
 
 

@@ -92,7 +92,7 @@ class Navigation:
 
     @classmethod
     def _again(cls, house: House, walks: Mapping[str, Any], state: bytes | None) -> Navigation:
-        """What was pickled."""
+        """Restores a pickled navigation grid."""
         native = _native.Navigation(house.native, walks, state)
         return cls(house, walks, native)
 

@@ -1,4 +1,4 @@
-"""What holds between the things of a world, and what they are like."""
+"""Predicates, relations and attributes of the things of a world."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RelationApi(StateApi):
     _native: _native.World
 
     def holds(self, name: str, *things: Thing, viewer: Viewer | None = None) -> bool | None:
-        """Whether a predicate holds of things; :func:`dwell.relations.predicates` lists them.
+        """Returns whether a predicate holds of things; :func:`dwell.relations.predicates` lists them.
 
         Args:
             name: The predicate's name.
@@ -143,7 +143,7 @@ class RelationApi(StateApi):
         return found[0]
 
     def attributes(self, thing: Thing) -> dict[str, Any]:
-        """What an object is like.
+        """The attributes of an object.
 
         Returns:
             ``id``, ``name``, ``noun``; ``category``, its row in the table of categories, with
@@ -202,7 +202,7 @@ def _thing(name: str, thing: object) -> Thing:
 
 
 def viewer_argument(viewer: object) -> int | dict[str, Any] | None:
-    """What the native side takes for a viewer.
+    """The viewer in the form that the native side takes.
 
     Raises:
         ConfigError: It is neither an agent's number nor a camera's place.

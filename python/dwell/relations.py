@@ -1,4 +1,4 @@
-"""What can be true of things: the predicates, the orders, and scene graphs in other forms."""
+"""The predicates, the orders, and scene graphs in other forms."""
 
 from __future__ import annotations
 

@@ -328,7 +328,7 @@ class World(ActionApi, GuideApi, SoundApi):
         return image, (x, z), scale
 
     def navigation(self, walker: Walker | None = None) -> Navigation:
-        """Where one can walk in the house as it stands now."""
+        """The navigation grid of the house as it stands now."""
         walks = walker_settings(walker)
         return Navigation(self.house, walks, self._native.navigation(walks))
 
@@ -459,7 +459,7 @@ class World(ActionApi, GuideApi, SoundApi):
         self._native.set_bodies([row])
 
     def parameter(self, address: str) -> dict[str, Any]:
-        """What stands at an address: value, unit, low, high."""
+        """The parameter at an address: value, unit, low, high."""
         return self._native.parameter(text("address", address))
 
     def parameters(self, prefix: str = "") -> dict[str, dict[str, Any]]:

@@ -31,7 +31,7 @@ _EXPECTED = (
 
 @functools.cache
 def _laws() -> dict[str, dict[str, Any]]:
-    """What is known of each law, by id."""
+    """Descriptions of all laws, by id."""
     return {law["id"]: law for law in _native.laws()}
 
 

@@ -1,4 +1,4 @@
-//! What engines answer, as values of Python: mappings, lists, text and numbers, without JSON text in between.
+//! Results of the engines as values of Python: mappings, lists, text and numbers, without JSON text in between.
 
 use crate::errors::PyFault;
 use pyo3::IntoPyObject;

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// How many names an error lists, the nearest first.
+/// Number of names that an error lists, the nearest first.
 const NAMES: usize = 12;
 /// From which number down negative numbers of the array are storeys; above it they are rooms.
 const STOREYS: i32 = -1001;
@@ -209,7 +209,7 @@ fn number(house: &dwell_scene::House, term: Term) -> i32 {
     }
 }
 
-/// Whether a predicate holds of things, nothing where that cannot be asked, and why it cannot.
+/// Returns whether a predicate holds of things; where that is undecided, `None` and the reason.
 #[pyfunction]
 pub(crate) fn world_holds(
     py: Python<'_>,
@@ -299,7 +299,7 @@ pub(crate) fn world_relation_array<'py>(
     rows.into_pyarray(py).reshape([count, 3])
 }
 
-/// What an object is like: one mapping.
+/// Returns the attributes of an object as one mapping.
 #[pyfunction]
 pub(crate) fn world_attributes(
     py: Python<'_>,

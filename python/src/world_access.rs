@@ -16,7 +16,7 @@ pub(crate) type ActiveGuide = Option<([u32; 3], ShortestPathFollower)>;
 pub(crate) struct WorldAccess<'a> {
     pub(crate) world: &'a mut World,
     pub(crate) guide: &'a mut ActiveGuide,
-    /// How far discrete actions of each agent go; of those beyond, as by default. Shape (agent,).
+    /// Lengths and angles of each agent's movement actions; agents beyond its end have the default. Shape (agent,).
     pub(crate) strides: IdVec<AgentId, StepSizes>,
 }
 

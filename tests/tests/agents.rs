@@ -11,7 +11,7 @@ use dwell_scene::{AgentBody, AgentId, LawSpec};
 use dwell_tests::observations::observe;
 use serde_json::{Value, json};
 
-/// What tells where an agent is and what it did.
+/// Sensors of an agent's position and motion.
 const OWN: [&str; 4] = ["gps", "compass", "gyro", "wheel_odometry"];
 
 fn sensors(rows: &[(&str, Value)]) -> Vec<SensorConfig> {
@@ -62,7 +62,7 @@ fn batch(env: Env) -> Batch {
     Batch::new(vec![env], Threads::exactly(2)).unwrap()
 }
 
-/// What each agent of a batch of one environment observes, in order. Shape (agent,) of (sensor,).
+/// Returns the observations of each agent of a batch of one environment, in order. Shape (agent,) of (sensor,).
 fn seen(batch: &mut Batch) -> Vec<Vec<Vec<u8>>> {
     let mut by_agent = vec![Vec::new(); batch.agents().len()];
     for (agent, bits) in batch.sensor_agents().into_iter().zip(observe(batch)) {
@@ -83,7 +83,7 @@ fn play(batch: &mut Batch, actions: &[Vec<DiscreteAction>]) -> Vec<Moment> {
     actions.iter().map(step).collect()
 }
 
-/// Where two agents draw starts in different rooms.
+/// A seed for which two agents start in different rooms.
 const SEED: u64 = 4;
 const FIRST: [DiscreteAction; 6] = [
     TurnLeft,
@@ -143,7 +143,7 @@ fn the_order_of_agents_permutes_what_they_get_and_nothing_else() {
     assert_ne!(first[4], second[4]);
 }
 
-/// Who stands where the other stood, and does what it did, gets what it got.
+/// Two agents that exchange places and actions exchange their results.
 #[test]
 fn exchanged_agents_get_exchanged_results() {
     let mut batch = batch(env(vec![acting(0), acting(1)], own_sensors()));
@@ -269,7 +269,7 @@ fn agents_have_tasks_and_sensors_of_their_own() {
     assert!(free.is_none() && following.is_some());
 }
 
-/// Who has ended stands still, is paid nothing more, and goes on observing; the other plays on.
+/// An agent whose episode has ended stands still, gets no more reward, and goes on observing; the other plays on.
 #[test]
 fn one_agent_may_end_before_the_other() {
     let rows = [

@@ -1,4 +1,4 @@
-//! What a generated house may hold: the entries of all files of `models`.
+//! The catalogue of furniture for generated houses: the entries of all files of `models`.
 
 use super::models;
 use super::style::Style;

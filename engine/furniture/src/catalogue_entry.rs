@@ -7,13 +7,13 @@ use dwell_scene::random::RandomKey;
 /// A way to make one kind of thing.
 #[derive(Clone, Copy, Debug)]
 pub struct CatalogueEntry {
-    /// What furnishing rules ask for: `"dining_chair"`. Several entries of one kind are looks of it.
+    /// The name that furnishing rules use: `"dining_chair"`. Entries of one kind differ in appearance.
     pub kind: &'static str,
     /// A row of `assets/categories.csv`; the model's.
     pub category: &'static str,
     /// The names of the styles that it suits; empty: all.
     pub styles: &'static [&'static str],
-    /// How many there are in one style: sizes and colours drawn anew.
+    /// Number of variants in one style, each with sizes and colours of its own.
     pub variants: u64,
     /// The seed of its draws, together with its kind. It never changes, so that houses stay the same. A new kind takes 0, a
     /// further entry of a kind a number that is not taken there.

@@ -4,10 +4,10 @@ use super::textures::{Srgb, TexturePattern};
 use dwell_scene::material::{Substance, library};
 use dwell_scene::{Material, TextureId};
 
-/// What a surface is made of and how it looks.
+/// The substance and the appearance of a surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finish {
-    /// What the material is called; a number is added where looks differ.
+    /// Name of the material; a number is appended where appearances differ.
     pub name: &'static str,
     /// A name of `assets/materials.toml`.
     pub substance: &'static str,

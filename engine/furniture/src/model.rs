@@ -16,34 +16,34 @@ pub struct Model {
     pub name: &'static str,
     /// A row of `assets/categories.csv`; its name is what instances are called.
     pub category: &'static str,
-    /// How instances move.
+    /// Mobility of the instances.
     pub mobility: Mobility,
-    /// Whether a hand can take it.
+    /// True if a hand can pick it up.
     pub pickable: bool,
-    /// Whether it is on at the start; `None` without a switch.
+    /// Initial state of its switch, true for on; `None` without a switch.
     pub switch: Option<bool>,
     /// The root first.
     pub parts: Vec<ModelPart>,
-    /// What moves between parts.
+    /// The joints between parts.
     pub joints: Vec<ModelJoint>,
-    /// What shines while it is on.
+    /// The lights that shine while it is on.
     pub lights: Vec<ModelLight>,
-    /// What can be heard of it.
+    /// The sound sources.
     pub sounds: Vec<ModelSound>,
-    /// Where it can hold other things.
+    /// The surfaces and volumes that can hold other things.
     pub spaces: Vec<ModelReceptacle>,
 }
 
 /// A rigid part; its space is the model's while all joints are at 0.
 #[derive(Clone, Debug)]
 pub struct ModelPart {
-    /// What the part, joint or space is called in the model.
+    /// Name in the model.
     pub name: &'static str,
-    /// What is seen, in the space of the part.
+    /// Visual mesh, in the space of the part.
     pub mesh: Arc<Mesh>,
     /// One for each slot of the mesh.
     pub finishes: Vec<Finish>,
-    /// What touches: convex pieces in the space of the part.
+    /// Collision geometry: convex pieces in the space of the part.
     pub colliders: Vec<Collider>,
     /// Mass, kg.
     pub mass_kg: f32,
@@ -54,7 +54,7 @@ pub struct ModelPart {
 /// A joint between two parts.
 #[derive(Clone, Debug)]
 pub struct ModelJoint {
-    /// What the part, joint or space is called in the model.
+    /// Name in the model.
     pub name: &'static str,
     /// Hinge or slide.
     pub kind: JointKind,
@@ -70,7 +70,7 @@ pub struct ModelJoint {
     pub open: f32,
     /// The position at the start.
     pub initial: f32,
-    /// Whether it is the model's switch.
+    /// True for the model's switch.
     pub switches: bool,
 }
 
@@ -105,9 +105,9 @@ pub struct ModelSound {
 pub struct ModelReceptacle {
     /// Index of the part that carries it.
     pub part: usize,
-    /// What the part, joint or space is called in the model.
+    /// Name in the model.
     pub name: &'static str,
-    /// Whether things lie on it or in it.
+    /// Kind: a surface with things on it or a volume with things in it.
     pub holding: ReceptacleKind,
     /// The room for things, in the space of the part, m.
     pub space: Aabb,

@@ -9,7 +9,7 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What reaches higher is as high as a person, m.
+/// Height above which a door leaf counts as high as a person, m.
 const HIGH_M: f32 = 1.4;
 /// Positions of a joint at which its part is looked at.
 const STATIONS: usize = 6;
@@ -19,19 +19,19 @@ const CUT_M: f32 = 0.15;
 /// A model with the boxes around its collision pieces.
 #[derive(Debug)]
 pub struct CachedModel {
-    /// What rules call it.
+    /// The name that furnishing rules use.
     pub kind: &'static str,
     /// The model, shared by all houses of the process.
     pub model: Arc<Model>,
     /// Around each collision piece at the start, model space.
     pub boxes: Vec<Aabb>,
-    /// Where its doors and drawers pass, model space.
+    /// Boxes swept by its doors and drawers, model space.
     pub swept_boxes: Vec<Aabb>,
-    /// Where the leaves of those of its doors stand, wide open, that are as high as a person, model space.
+    /// Boxes of the leaves, wide open, of its doors that are as high as a person, model space.
     pub open_leaves: Vec<Aabb>,
     /// Around everything that is felt, model space.
     pub collider_bounds: Aabb,
-    /// What a picture shows.
+    /// The motif of a picture.
     pub picture_id: Option<&'static str>,
 }
 

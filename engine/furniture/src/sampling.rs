@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-/// How one dimension of one model spreads.
+/// The distribution of one dimension of one model.
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct SizeDistribution {
     /// A model of the catalogue.
@@ -18,7 +18,7 @@ pub(crate) struct SizeDistribution {
     pub low_m: f32,
     /// None is larger, m.
     pub high_m: f32,
-    /// Where that is written; `docs/furniture.md` lists the works.
+    /// The source of the numbers; `docs/furniture.md` lists the works.
     #[cfg(test)]
     source: String,
 }

@@ -9,7 +9,7 @@ use serde::Deserialize;
 /// A row of `assets/categories.csv`; the file's README describes the columns.
 #[derive(Debug, Clone, Deserialize)]
 pub struct CategoryRow {
-    /// What it is called in plain words with underscores.
+    /// Name in plain words with underscores.
     pub name: String,
     aliases: String,
     /// Its class among the 40 of NYU Depth v2.

@@ -29,11 +29,11 @@ pub struct Env {
     pub(crate) agents: Vec<EnvAgent>,
     pub(crate) requests: Requests,
     pub(crate) results: Results,
-    /// Where all agents of the world stood when the episodes began. Shape (agent of the world,).
+    /// Poses of all agents of the world at the beginning of the episodes. Shape (agent of the world,).
     pub(crate) starts: IdVec<AgentId, Pose>,
     pub(crate) seed: u64,
     pub(crate) episode_key: RandomKey,
-    /// Whether the world is as it was made.
+    /// True while the world is as it was made.
     is_new: bool,
     /// Steps of the episodes.
     pub(crate) steps: u64,

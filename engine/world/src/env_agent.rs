@@ -13,7 +13,7 @@ use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id};
 use serde_json::Value;
 
-/// What an agent is asked and senses, and how its episode stands.
+/// The task, sensors and episode of an agent.
 #[derive(Debug)]
 pub(crate) struct EnvAgent {
     pub(crate) id: AgentId,
@@ -22,9 +22,9 @@ pub(crate) struct EnvAgent {
     pub(crate) stride: StepSizes,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     pub(crate) episode: Option<Episode>,
-    /// Whether its episode has ended.
+    /// True once its episode has ended.
     pub(crate) done: bool,
-    /// Whether what was asked was done in the latest step.
+    /// True if the task counted as done in the latest step.
     pub(crate) success: bool,
 }
 
@@ -125,7 +125,7 @@ impl EnvAgent {
         (self.done, self.success) = (verdict.terminated, verdict.success);
     }
 
-    /// What a step reports of an agent whose episode had ended before.
+    /// Returns the report of a step for an agent whose episode had ended before.
     pub(crate) fn rest(&self) -> Option<StepInfo> {
         Some(StepInfo {
             agent: self.id,

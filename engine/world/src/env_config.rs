@@ -1,4 +1,4 @@
-//! What environments are made of.
+//! Configuration of environments.
 
 use crate::actions::StepSizes;
 use crate::config::WorldConfig;
@@ -7,7 +7,7 @@ use dwell_scene::{AgentId, Id};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// What an environment is made of. Every field has a default; unknown fields are refused.
+/// The configuration of an environment. Every field has a default; unknown fields are refused.
 ///
 /// Task, strides and sensors hold for every agent that states no others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct EnvConfig {
     pub task_settings: Value,
     /// Rates, laws, parameters, and the bodies of all agents.
     pub world: WorldConfig,
-    /// How far movement actions go.
+    /// Lengths and angles of movement actions.
     pub stride: StepSizes,
     /// Sensors by name with their settings; `None`: the task's own choice.
     pub sensors: Option<Vec<SensorConfig>>,
@@ -40,7 +40,7 @@ pub struct AgentConfig {
     /// The settings of its task. Where it has a task of its own and states none: the task's defaults.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub task_settings: Option<Value>,
-    /// How far its movement actions go.
+    /// Lengths and angles of its movement actions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stride: Option<StepSizes>,
     /// Its sensors by name with their settings.

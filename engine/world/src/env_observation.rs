@@ -1,4 +1,4 @@
-//! What the agents of an environment observe.
+//! The observations of the agents of an environment.
 
 use crate::camera_capture::PictureRequest;
 use crate::env::Env;

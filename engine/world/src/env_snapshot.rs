@@ -8,7 +8,7 @@ use crate::metrics::NavigationMetrics;
 use dwell_scene::{AgentId, IdVec, Pose};
 use serde::{Deserialize, Serialize};
 
-/// What [`Env::snapshot`] begins with: its kind and version.
+/// The first bytes of an [`Env::snapshot`]: its kind and version.
 const MAGIC: &[u8] = b"dwenv5";
 
 /// Episodes at one moment. Their goals come from the seed again.

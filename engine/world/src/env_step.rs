@@ -1,4 +1,4 @@
-//! How the agents of an environment act: one control step of all together.
+//! The step of an environment: one control step of all its agents together.
 
 use crate::actions::{DiscreteAction, DiscreteStep};
 use crate::env::{Env, no_agent, no_episode};

@@ -13,13 +13,13 @@ pub struct Episode {
     pub tokens: Vec<i32>,
     /// The agent that it is about.
     pub agent: AgentId,
-    /// Where that agent started.
+    /// The pose in which that agent started.
     pub start: Pose,
     /// Distance, path, collisions.
     pub progress: NavigationMetrics,
 }
 
-/// How a step is judged.
+/// The task's verdict on a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Verdict {
     /// The reward of the step.

@@ -336,7 +336,7 @@ def _checked(task: str, verdict: object) -> Verdict:
 
 @functools.cache
 def _asks(base: str) -> bool:
-    """Whether a task of the engine asks for something, so that its expert knows what to do."""
+    """Returns whether a task of the engine has a goal, so that it has an expert."""
     return any(row["name"] == base and row["asks"] for row in _native.tasks())
 
 

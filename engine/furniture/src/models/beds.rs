@@ -21,7 +21,7 @@ struct Bed {
     mattress_m: [f32; 2],
     /// Height of the headboard, m.
     head_m: f32,
-    /// What the body is made of.
+    /// Finish of the body.
     wood: Finish,
     /// Headboard of posts and bars instead of a panel.
     barred: bool,

@@ -16,7 +16,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
     CatalogueEntry::new("storage_box", "box", 191, storage_box),
 ];
 
-/// How far the lids of bins turn, rad: beyond upright, so that they stay up.
+/// Opening angle of the lids of bins, rad: beyond upright, so that they stay up.
 const LID_RAD: f32 = 1.6;
 
 /// A basket for laundry with a lid that turns up.

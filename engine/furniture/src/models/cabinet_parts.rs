@@ -1,4 +1,4 @@
-//! What cupboards share: carcass, doors, drawers, handles.
+//! The common parts of cupboards: carcass, doors, drawers, handles.
 
 use crate::finishes::Finish;
 use crate::model::PartBuilder;
@@ -15,7 +15,7 @@ pub(super) const TOP: usize = 3;
 /// Gap between neighbouring fronts, m.
 pub(super) const GAP_M: f32 = 0.005;
 
-/// What the compartments of a bookcase are called, from below.
+/// The names of a bookcase's compartments, from below.
 pub(super) const SHELVES: [&str; 6] = [
     "shelf_1", "shelf_2", "shelf_3", "shelf_4", "shelf_5", "shelf_6",
 ];

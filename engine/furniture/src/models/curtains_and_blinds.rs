@@ -22,7 +22,7 @@ pub struct Curtains {
     pub height_m: f32,
     /// Share of the window that each curtain covers, 0.1 to 0.5.
     pub drawn: f32,
-    /// What hangs.
+    /// Finish of the cloth.
     pub cloth: Finish,
 }
 

@@ -22,11 +22,11 @@ struct Desk {
     depth_m: f32,
     /// m.
     height_m: f32,
-    /// What the top is made of.
+    /// Finish of the top.
     top: Finish,
-    /// What the carcass is made of.
+    /// Finish of the carcass.
     body: Finish,
-    /// What doors and drawers look like.
+    /// Style of doors and drawers.
     front: FrontStyle,
 }
 

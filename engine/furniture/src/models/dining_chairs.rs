@@ -26,7 +26,7 @@ struct Chair {
     back_m: f32,
     /// Number of level slats in the back.
     slats: usize,
-    /// What the body is made of.
+    /// Finish of the body.
     wood: Finish,
     /// A flat cushion on the seat.
     pad: Option<Finish>,

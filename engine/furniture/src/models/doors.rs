@@ -27,13 +27,13 @@ pub struct Door {
     pub height_m: f32,
     /// Thickness of the wall, m.
     pub wall_m: f32,
-    /// What the leaf is made of.
+    /// Finish of the leaf.
     pub leaf: Finish,
-    /// What the frame is made of.
+    /// Finish of the frame.
     pub frame: Finish,
-    /// Whether the leaf has a pane.
+    /// True if the leaf has a pane.
     pub glazed: bool,
-    /// Whether the leaf hangs on the right (+X) jamb instead.
+    /// True if the leaf hangs on the right (+X) jamb instead.
     pub hinge_right: bool,
 }
 

@@ -24,9 +24,9 @@ struct Dresser {
     depth_m: f32,
     /// Drawers above each other.
     rows: usize,
-    /// What the body is made of.
+    /// Finish of the body.
     wood: Finish,
-    /// What doors and drawers look like.
+    /// Style of doors and drawers.
     front: FrontStyle,
 }
 

@@ -7,7 +7,7 @@ use crate::shapes::{block, rounded_block, tapered_leg};
 /// A rectangular table.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
-    /// What instances are called: `"dining_table"`.
+    /// Name of the instances: `"dining_table"`.
     pub(super) name: &'static str,
     /// A row of `assets/categories.csv`.
     pub(super) category: &'static str,
@@ -21,9 +21,9 @@ pub(super) struct Table {
     pub(super) leg_m: f32,
     /// A board between the legs at this height, m.
     pub(super) shelf_m: Option<f32>,
-    /// What the top is made of.
+    /// Finish of the top.
     pub(super) top: Finish,
-    /// What the legs are made of.
+    /// Finish of the legs.
     pub(super) legs: Finish,
 }
 

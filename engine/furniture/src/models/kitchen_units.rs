@@ -24,7 +24,7 @@ pub(super) const WORKTOP_M: f32 = 0.91;
 /// Depth of worktops, m.
 pub(super) const UNIT_DEPTH_M: f32 = 0.62;
 
-/// What stands under one stretch of worktop.
+/// The kind of base unit under one stretch of worktop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum UnitKind {
     /// A door with its hinge on the left.
@@ -42,9 +42,9 @@ struct KitchenUnit {
     bay_m: f32,
     /// From left to right as one stands before it, at most four.
     bays: Vec<UnitKind>,
-    /// What doors and drawers look like.
+    /// Style of doors and drawers.
     front: FrontStyle,
-    /// What the worktop is made of.
+    /// Finish of the worktop.
     worktop: Finish,
 }
 

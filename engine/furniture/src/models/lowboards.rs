@@ -18,7 +18,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
 /// A sideboard or media cabinet: doors left and right, open shelves between.
 #[derive(Clone, Debug)]
 struct Lowboard {
-    /// What instances are called: `"dining_table"`.
+    /// Name of the instances: `"tv_stand"`.
     name: &'static str,
     /// A row of `assets/categories.csv`.
     category: &'static str,
@@ -28,9 +28,9 @@ struct Lowboard {
     height_m: f32,
     /// m.
     depth_m: f32,
-    /// What the body is made of.
+    /// Finish of the body.
     wood: Finish,
-    /// What doors and drawers look like.
+    /// Style of doors and drawers.
     front: FrontStyle,
 }
 

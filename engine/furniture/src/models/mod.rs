@@ -104,7 +104,7 @@ pub mod windows;
 
 use super::catalogue_entry::CatalogueEntry;
 
-/// What the catalogue lists, by file: a file with a new model is one line here. The order is of no consequence.
+/// The entries of the catalogue, by file: a file with a new model is one line here. The order is of no consequence.
 pub(crate) const ENTRIES: &[&[CatalogueEntry]] = &[
     aquarium::ENTRIES,
     audio_devices::ENTRIES,

@@ -14,7 +14,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
     CatalogueEntry::new("poster", "picture_frame", 109, sample_poster).many(),
 ];
 
-/// What pictures show: recipes of textures.
+/// The motifs of pictures: names of texture recipes.
 const MOTIFS: [&str; 7] = [
     "shapes",
     "branch",

@@ -26,15 +26,15 @@ struct Plant {
     pot_m: f32,
     /// Length and width of a leaf, m.
     leaf_m: [f32; 2],
-    /// How many leaves.
+    /// Number of leaves.
     leaves: usize,
     /// Bare stem between soil and crown, m.
     stem_m: f32,
-    /// What the pot is made of.
+    /// Finish of the pot.
     pot: Finish,
-    /// What the leaves look like.
+    /// Finish of the leaves.
     leaf: Finish,
-    /// What the shapes of the leaves are drawn by.
+    /// Random key of the leaves' shapes.
     key: RandomKey,
 }
 

@@ -27,7 +27,7 @@ struct Bookshelf {
     depth_m: f32,
     /// Number of compartments, 2 to 6.
     levels: usize,
-    /// What the body is made of.
+    /// Finish of the body.
     wood: Finish,
 }
 

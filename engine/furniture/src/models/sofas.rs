@@ -13,7 +13,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
     CatalogueEntry::new("armchair", "armchair", 1, armchair),
 ];
 
-/// How the arms of a seat are made.
+/// The construction of a seat's arms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ArmStyle {
     /// An upholstered block.
@@ -43,9 +43,9 @@ struct Sofa {
     arm_top_m: f32,
     /// Height of the legs, m.
     leg_m: f32,
-    /// What cushions are covered with.
+    /// Finish of the cushions' covers.
     cover: Finish,
-    /// What the body is made of.
+    /// Finish of the frame.
     wood: Finish,
 }
 

@@ -29,13 +29,13 @@ pub struct Stairs {
     pub depth_m: f32,
     /// From floor to floor, m.
     pub rise_m: f32,
-    /// Whether another flight starts above.
+    /// True if another flight starts above.
     pub goes_on: bool,
-    /// Whether the first flight is at the right instead.
+    /// True if the first flight is at the right instead.
     pub mirrored: bool,
-    /// What the body is made of.
+    /// Finish of the wooden parts.
     pub wood: Finish,
-    /// What is painted.
+    /// Finish of the painted parts.
     pub paint: Finish,
 }
 

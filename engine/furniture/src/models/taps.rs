@@ -18,7 +18,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[CatalogueEntry::new(
     sample_mixer_tap,
 )];
 
-/// How far the lever turns from off to full, rad.
+/// Angle of the lever from off to full, rad.
 const TURN_RAD: f32 = 0.9;
 
 /// A mixer tap that stands on a rim, its spout towards +Z, its lever upright on the right; the lever comes forward.

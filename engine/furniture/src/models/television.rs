@@ -18,7 +18,7 @@ pub(super) const ENTRIES: &[CatalogueEntry] = &[
     ),
 ];
 
-/// What it shows.
+/// The picture on its screen.
 const PROGRAMME: Finish = Finish::picture(
     "television_picture",
     "glass",

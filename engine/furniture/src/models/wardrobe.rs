@@ -28,9 +28,9 @@ struct Wardrobe {
     depth_m: f32,
     /// Doors beside each other.
     doors: usize,
-    /// What the carcass is made of.
+    /// Finish of the carcass.
     body: Finish,
-    /// What doors and drawers look like.
+    /// Style of doors and drawers.
     front: FrontStyle,
 }
 

@@ -17,7 +17,7 @@ pub struct Window {
     pub lights: usize,
     /// The glass.
     pub pane: Finish,
-    /// How far the sill stands into the room, m.
+    /// Depth of the sill into the room, m.
     pub sill_m: f32,
 }
 

@@ -1,8 +1,8 @@
-//! How doors and drawers look.
+//! The appearance of doors and drawers.
 
 use crate::finishes::Finish;
 
-/// How a front is opened.
+/// Finishes, handles and panels of the fronts of doors and drawers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrontStyle {
     /// The board's finish.

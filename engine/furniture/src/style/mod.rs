@@ -22,7 +22,7 @@ pub enum StyleSplit {
     Test,
 }
 
-/// How legs are made.
+/// The shape of legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LegStyle {
     /// Square, thinner towards the foot.
@@ -70,9 +70,9 @@ pub struct Style {
     pub appliance: Finish,
     /// Legs of tables, seats and beds.
     pub leg: LegStyle,
-    /// Whether doors and drawers have knobs instead of bars.
+    /// True if doors and drawers have knobs instead of bars.
     pub knobs: bool,
-    /// Whether doors and drawers are framed panels instead of plain boards.
+    /// True if doors and drawers are framed panels instead of plain boards.
     pub panelled: bool,
 }
 

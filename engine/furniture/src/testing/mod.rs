@@ -1,4 +1,4 @@
-//! What several modules' tests share: oracles and helpers.
+//! Oracles and helpers for the tests of several modules.
 
 pub mod meshes;
 pub mod overlap;

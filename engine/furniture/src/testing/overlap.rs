@@ -1,4 +1,4 @@
-//! How far convex pieces reach into each other: an oracle that shares no code with the physics.
+//! Penetration depths of convex pieces: an oracle that shares no code with the physics.
 
 use dwell_scene::{Aabb, Collider, House, ObjectId, PartId, Pose};
 use glam::Vec3;

@@ -1,4 +1,4 @@
-//! What people expect of things by their category, they can do.
+//! Tests that models have the affordances of their category.
 
 use crate::catalogue::entries;
 use crate::model::Model;
@@ -8,8 +8,8 @@ use dwell_scene::ReceptacleKind;
 use dwell_scene::random::RandomKey;
 use std::collections::BTreeMap;
 
-/// What the catalogue leaves out, by category: what `assets/categories.csv` says of the whole category holds for things that
-/// are not made here, or is of no use to agents yet.
+/// Affordances that models lack, with their categories: `assets/categories.csv` states them for things of the category that are
+/// not modelled here, or agents have no use for them yet.
 const LEFT_OUT: &[(&str, &[&str])] = &[
     (
         "opens",

@@ -10,7 +10,7 @@ use dwell_scene::{Collider, Mobility, Pose};
 use glam::Vec3;
 use std::f32::consts::TAU;
 
-/// What sticks out of what is felt: stalks, antennas, stems, hoses.
+/// Kinds whose visual mesh sticks out of their collision geometry: stalks, antennas, stems, hoses.
 const STALKS: [&str; 11] = [
     "vase",
     "radio",

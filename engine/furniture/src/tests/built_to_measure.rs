@@ -1,4 +1,4 @@
-//! What houses build to their own measure, which the catalogue does not list: doors, windows, stairs, railings.
+//! Tests of models that are built to the measure of a house and not listed in the catalogue: doors, windows, stairs, railings.
 
 use crate::finishes::{oak, painted_steel, steel, white_lacquer};
 use crate::model::Model;

@@ -33,7 +33,7 @@ impl Case {
     }
 }
 
-/// What is kept of one draw of an entry in a style.
+/// The properties of one draw of an entry in a style.
 pub(super) struct Summary {
     pub entry: &'static CatalogueEntry,
     style: &'static str,

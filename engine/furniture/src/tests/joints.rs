@@ -7,7 +7,7 @@ use crate::testing::overlap::{ConvexPiece, deepest};
 use dwell_scene::{JointKind, Mobility, Pose};
 use glam::Vec3;
 
-/// How far a part may reach into its own body on the way, m: seals and stops.
+/// Largest penetration of a moving part into its own body, m: seals and stops.
 const TOLERANCE_M: f32 = 0.004;
 /// Positions of a joint that are looked at.
 const STEPS: usize = 8;

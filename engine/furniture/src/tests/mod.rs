@@ -1,4 +1,4 @@
-//! What must hold for every entry of the catalogue, in every style, whatever is drawn, and for what is built to measure.
+//! Invariants of every entry of the catalogue, in every style, whatever is drawn, and of models that are built to measure.
 
 mod affordances;
 mod bodies;

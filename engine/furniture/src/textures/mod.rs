@@ -32,14 +32,14 @@ pub struct TexturePattern {
     pub seed: u64,
 }
 
-/// What a recipe works with.
+/// The inputs of a recipe: colours, noise and random key.
 struct TexturePaint {
     colors: [[f32; 3]; 3],
     noise: ValueNoise,
     key: RandomKey,
 }
 
-/// How one kind of image is made.
+/// The recipe of one kind of image.
 struct TextureGenerator {
     name: &'static str,
     /// Pixels across and down.

@@ -222,7 +222,7 @@ pub(super) fn pose(pose: &mjcf_rs::Pose) -> Pose {
     Pose::new(pose.translation.as_vec3(), rotation)
 }
 
-/// What holds a root.
+/// The attachment of a root body to the world.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum RootAttachment {
     /// Nothing: it falls.

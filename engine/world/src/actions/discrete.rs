@@ -7,14 +7,14 @@ use dwell_physics::{ActionOutcome, AgentControl, OutcomeCode};
 use dwell_scene::{AgentId, Id};
 use serde_json::Map;
 
-/// What one agent does in a control step.
+/// A discrete action of one agent in a control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiscreteStep {
-    /// Who.
+    /// The agent.
     pub agent: AgentId,
-    /// What.
+    /// The action.
     pub action: DiscreteAction,
-    /// How far its movement actions go.
+    /// Lengths and angles of its movement actions.
     pub stride: StepSizes,
 }
 

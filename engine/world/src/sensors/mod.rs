@@ -108,9 +108,9 @@ pub struct SensorContext<'a> {
     pub world: &'a World,
     /// The episode of the agent whose sensor it is.
     pub episode: &'a Episode,
-    /// Where all agents of the world stood when it began. Shape (agent,).
+    /// Poses of all agents of the world at the beginning of the episode. Shape (agent,).
     pub starts: &'a IdVec<AgentId, Pose>,
-    /// What the engines computed.
+    /// The results of the engines.
     pub results: &'a Results,
     /// The sensor's random stream in this step.
     pub key: RandomKey,

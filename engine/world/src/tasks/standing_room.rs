@@ -1,4 +1,4 @@
-//! Where agents have room to start beside those who have their starts already.
+//! Free places to start for agents, beside those that have their starts already.
 
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -9,9 +9,9 @@ use glam::Vec3;
 /// Between the bodies of two agents at their starts, m.
 const APART_M: f32 = 0.1;
 
-/// What agents who have their starts leave free.
+/// The floor that agents with a start leave free.
 pub(super) struct StandingRoom {
-    /// Where they stand, and how far from there the agent's middle must be, m.
+    /// Their positions, each with the least distance of the new agent's middle, m.
     taken: Vec<(Vec3, f32)>,
 }
 
