@@ -26,7 +26,7 @@ class RelationApi(StateApi):
     _native: _native.World
 
     def holds(self, name: str, *things: Thing, viewer: Viewer | None = None) -> bool | None:
-        """Returns whether a predicate holds of things; :func:`dwell.relations.predicates` lists them.
+        """Returns whether a predicate holds; :func:`dwell.relations.predicates` lists them.
 
         Args:
             name: The predicate's name.
@@ -53,7 +53,7 @@ class RelationApi(StateApi):
         return self._truth(name, things, viewer)[0]
 
     def why_undecided(self, name: str, *things: Thing, viewer: Viewer | None = None) -> str | None:
-        """Why :meth:`holds` is ``None``, as a sentence; ``None`` where it is not.
+        """The reason why :meth:`holds` is ``None``, as a sentence; ``None`` where it is not.
 
         Examples:
             >>> import dwell

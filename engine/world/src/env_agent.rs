@@ -24,7 +24,7 @@ pub(crate) struct EnvAgent {
     pub(crate) episode: Option<Episode>,
     /// True once its episode has ended.
     pub(crate) done: bool,
-    /// True if the task counted as done in the latest step.
+    /// True if the task was fulfilled in the latest step.
     pub(crate) success: bool,
 }
 

@@ -336,7 +336,7 @@ def _checked(task: str, verdict: object) -> Verdict:
 
 @functools.cache
 def _asks(base: str) -> bool:
-    """Returns whether a task of the engine has a goal, so that it has an expert."""
+    """Returns whether a task of the engine states a goal, by which its expert acts."""
     return any(row["name"] == base and row["asks"] for row in _native.tasks())
 
 

@@ -8,15 +8,15 @@ use crate::truth::{Truth, UndecidedReason};
 /// The answer to a question.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// Of a question whether something is true.
+    /// The verdict on a question for a truth value.
     Truth(Verdict),
-    /// The things of which the clause is true, rising; may be none.
+    /// The things of which the clause is true, ascending; may be empty.
     Things(Vec<Term>),
-    /// How many there are.
+    /// The number of things that fit.
     Number(usize),
     /// Words: colours, the adjective of a substance.
     Words(Vec<String>),
-    /// There is none, and why.
+    /// No answer, with the reason.
     None(UndecidedReason),
 }
 
@@ -113,7 +113,7 @@ impl Checker<'_> {
     }
 }
 
-/// A clause with a phrase in place of its hole.
+/// Returns the clause with a phrase in place of its hole.
 fn filled(clause: &Clause, with: Phrase) -> Clause {
     let fill = |phrase: &Phrase| match phrase {
         Phrase::Hole => with.clone(),
@@ -139,7 +139,7 @@ fn filled(clause: &Clause, with: Phrase) -> Clause {
 }
 
 impl Answer {
-    /// Returns whether the question has an answer that is decided.
+    /// Returns whether there is an answer that is not undecided.
     pub fn is_decided(&self) -> bool {
         match self {
             Self::None(_) => false,

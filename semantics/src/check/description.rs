@@ -1,4 +1,4 @@
-//! The things that descriptions fit.
+//! The extensions of descriptions.
 
 use super::Checker;
 use super::witness::Judged;
@@ -9,14 +9,14 @@ use crate::selections;
 use crate::truth::{Truth, UndecidedReason};
 use std::rc::Rc;
 
-/// The things that a description fits.
+/// The extension of a description: the things that it fits.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Extension {
-    /// Those that it fits, rising.
+    /// The things that it fits, ascending.
     pub(super) fits: Vec<Term>,
-    /// Those of which it cannot be decided, rising.
+    /// The things of which it is undecided, ascending, with the reasons.
     pub(super) open: Vec<(Term, UndecidedReason)>,
-    /// Why it means nothing here.
+    /// The reason why it has no extension in this scene.
     pub(super) fault: Option<UndecidedReason>,
 }
 
@@ -48,7 +48,7 @@ impl Checker<'_> {
         found
     }
 
-    /// The things that may be called by a noun.
+    /// The things that a noun can name.
     fn called(&self, noun: &Noun) -> Vec<Term> {
         match noun {
             Noun::Object(noun) => {
@@ -131,7 +131,7 @@ impl Checker<'_> {
         }
     }
 
-    /// The one thing that a phrase means.
+    /// The one thing that a phrase denotes.
     fn only(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
         if let Some(named) = self.named(phrase) {
             return named;

@@ -1,4 +1,4 @@
-//! Forms against a scene: true, false or undecided, with what decided.
+//! Evaluation of forms in a scene: true, false or undecided, with the facts that decided.
 //!
 //! Truth values are those of strong three-valued logic ([`Truth`]). A definite description that several things fit is decided
 //! where all of them would decide alike, and undecided else (supervaluation); where nothing fits, a claim about it is false.
@@ -30,17 +30,17 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use witness::Judged;
 
-/// Who is spoken to, and from where left and right are meant.
+/// The listener of a form: the agent that "you" denotes, and the viewer of left and right.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Listener {
-    /// From where left, right, in front and behind are meant.
+    /// The viewer from whom left, right, in front and behind are meant.
     pub viewer: Option<Viewer>,
-    /// Who "you" is.
+    /// The agent that "you" denotes.
     pub agent: Option<AgentId>,
 }
 
 impl Listener {
-    /// An agent with its own eyes.
+    /// Returns an agent as listener, with its own eyes as viewer.
     pub fn agent(scene: &SemanticScene<'_>, agent: AgentId) -> Self {
         Self {
             viewer: Viewer::of_agent(scene.state, agent),
@@ -49,16 +49,16 @@ impl Listener {
     }
 }
 
-/// A clause checked: its truth value, and the facts that decided it.
+/// The verdict on a clause: its truth value, and the facts that decided it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// The value.
+    /// The truth value.
     pub truth: Truth,
-    /// Facts that suffice for it: those of one example where one is enough, of one counterexample where one refutes; at most 16.
+    /// Facts that suffice for it: those of one example or counterexample where one decides, else of all; at most 16.
     pub witnesses: Vec<Witness>,
 }
 
-/// Checks forms of one scene for one listener. What descriptions fit is found once for each description.
+/// A checker of forms in one scene for one listener. The extension of each description is computed once.
 pub struct Checker<'a> {
     scene: &'a SemanticScene<'a>,
     listener: Listener,
@@ -66,7 +66,7 @@ pub struct Checker<'a> {
 }
 
 impl<'a> Checker<'a> {
-    /// A checker of a scene.
+    /// Returns a checker of a scene.
     pub fn new(scene: &'a SemanticScene<'a>, listener: Listener) -> Self {
         Self {
             scene,
@@ -75,13 +75,13 @@ impl<'a> Checker<'a> {
         }
     }
 
-    /// Returns whether a clause is true.
+    /// Returns the verdict on a clause.
     pub fn check(&self, clause: &Clause) -> Verdict {
         let Judged { truth, witnesses } = self.judge(clause);
         Verdict { truth, witnesses }
     }
 
-    /// The things that fit a description, its quantifier left aside; rising. What it cannot be decided of is left out.
+    /// Returns the things that a description fits, regardless of its quantifier, ascending; without those of which it is undecided.
     pub fn fitting(&self, description: &Description) -> Vec<Term> {
         self.extension(description).fits.clone()
     }
@@ -150,7 +150,7 @@ impl<'a> Checker<'a> {
         )
     }
 
-    /// The thing that a phrase names, where it names one by itself.
+    /// The thing that a phrase denotes by id, as the listener or as a storey; `None` for descriptions and holes.
     fn named(&self, phrase: &Phrase) -> Option<Result<Term, UndecidedReason>> {
         let house = self.scene.house();
         Some(match phrase {

@@ -1,4 +1,4 @@
-//! Quantified phrases, the first of a clause outermost.
+//! Evaluation of quantified phrases; the first of a clause has the widest scope.
 
 use super::Checker;
 use super::witness::Judged;
@@ -6,11 +6,11 @@ use crate::form::{Description, Phrase, Quantifier};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
-/// A clause of its arguments.
+/// A clause as a function of its arguments.
 type Body<'a> = &'a dyn Fn(&[Term]) -> Judged;
 
 impl Checker<'_> {
-    /// The truth of `body` of all arguments, those that were chosen before among them.
+    /// Evaluates `body` for the `chosen` terms followed by all that the `arguments` range over.
     pub(super) fn quantify(
         &self,
         arguments: &[Phrase],
@@ -43,7 +43,7 @@ impl Checker<'_> {
         if let Some(reason) = extension.fault {
             return Judged::undecided(reason);
         }
-        // What may or may not fit is undecided, however the clause would be decided of it: but where that settles nothing.
+        // Of a thing that may or may not fit the clause is undecided, except where the result is the same either way.
         let fitting = extension.fits.iter().map(|term| (*term, None));
         let open = extension
             .open
@@ -96,7 +96,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Of a definite description: false where nothing fits; of several that fit what is decided alike of all.
+    /// Evaluates a definite description: false where nothing fits; where several fit, the common truth value, else undecided.
     fn of_the_only(
         &self,
         fits: &[Term],
@@ -125,7 +125,7 @@ impl Checker<'_> {
     }
 }
 
-/// How many of things a clause is true of: at least and at most.
+/// Bounds on the number of things of which a clause is true.
 struct Counted {
     low: u32,
     high: u32,
@@ -160,7 +160,7 @@ impl Counted {
         counted
     }
 
-    /// `decide` is given the least and the largest number.
+    /// Evaluates `decide` on the lower and upper bound; `None` is undecided.
     fn judged(self, decide: impl Fn(u32, u32) -> Option<bool>) -> Judged {
         let reason = self.reason.unwrap_or(UndecidedReason::SeveralFit);
         let decided = decide(self.low, self.high);

@@ -1,29 +1,29 @@
-//! Sentences against a scene.
+//! Checking and grounding of sentences in a scene.
 
 use super::{Answer, Checker};
 use crate::form::{Form, Phrase};
 use crate::language::{Said, Unread};
 use crate::scene::Term;
 
-/// A sentence, read and checked.
+/// A sentence with its readings, checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckedText {
     /// The preferred reading.
     pub form: Form,
-    /// Other readings.
+    /// The other readings.
     pub others: Vec<Form>,
-    /// The truth value of a claim, the answer to a question; nothing for a request.
+    /// The verdict on a claim or the answer to a question; `None` for a request.
     pub answer: Option<Answer>,
 }
 
-/// A noun phrase of a text with the things that it means.
+/// A noun phrase of a text, grounded: the things that it denotes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundedPhrase {
     /// The first byte.
     pub start: usize,
-    /// The byte behind the last.
+    /// The byte after the last.
     pub end: usize,
-    /// The things that fit, its quantifier left aside; rising.
+    /// The things that it fits, regardless of its quantifier, ascending.
     pub terms: Vec<Term>,
 }
 
@@ -53,7 +53,7 @@ impl Checker<'_> {
         })
     }
 
-    /// The noun phrases of a text with the things that they mean here.
+    /// Grounds the noun phrases of a text: finds the things that each denotes in the scene.
     pub fn ground(&self, said: &Said) -> Vec<GroundedPhrase> {
         let phrases = said.phrases.iter();
         phrases

@@ -1,19 +1,19 @@
-//! What decided a clause.
+//! Witnesses: the facts that decide a clause.
 
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
-/// How many facts are named for one clause.
+/// Largest number of witnesses of one clause.
 const MOST_WITNESSES: usize = 16;
 
-/// A fact that decided.
+/// A fact that decided a clause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Witness {
-    /// The predicate's name, a word of quality, or `"exists"`.
+    /// The predicate's name, the word of a quality, or `"exists"`.
     pub predicate: String,
-    /// The things that it was asked of.
+    /// Its arguments.
     pub terms: Vec<Term>,
-    /// What it is of them.
+    /// Its truth value.
     pub truth: Truth,
 }
 
@@ -55,12 +55,12 @@ impl Judged {
         }
     }
 
-    /// True where all are: with the facts of all, or of the first that is false.
+    /// Conjunction, with the facts of all parts, or of the first that is false.
     pub(super) fn all(parts: impl Iterator<Item = Self>) -> Self {
         Self::until(parts, Truth::False, Truth::and)
     }
 
-    /// True where one is: with the facts of the first that is true, or of all.
+    /// Disjunction, with the facts of the first part that is true, or of all.
     pub(super) fn any(parts: impl Iterator<Item = Self>) -> Self {
         Self::until(parts, Truth::True, Truth::or)
     }

@@ -1,10 +1,10 @@
-//! Clauses: what is true or false.
+//! Clauses: forms that are true or false of a scene.
 
 use super::phrase::Phrase;
 use crate::size::SizeClass;
 use serde::{Deserialize, Serialize};
 
-/// What "is" ascribes to a thing.
+/// A quality that "is" ascribes to a thing.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quality {
@@ -18,11 +18,11 @@ pub enum Quality {
     State(String),
 }
 
-/// Something that is true or false of a scene.
+/// A clause: true, false or undecided of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Clause {
-    /// A predicate of its arguments: "the cup is on the table".
+    /// A predicate applied to arguments: "the cup is on the table".
     Holds {
         /// The predicate's name.
         predicate: String,
@@ -36,12 +36,12 @@ pub enum Clause {
         /// The quality.
         quality: Quality,
     },
-    /// So many things are there: "there are two chairs in the kitchen".
+    /// The existence of things: "there are two chairs in the kitchen".
     Exists(Phrase),
-    /// The opposite.
+    /// The negation of a clause.
     Not(Box<Clause>),
-    /// All of several.
+    /// The conjunction of clauses.
     All(Vec<Clause>),
-    /// At least one of several.
+    /// The disjunction of clauses.
     Any(Vec<Clause>),
 }

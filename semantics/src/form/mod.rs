@@ -1,7 +1,7 @@
-//! The logical form: what is claimed, asked for or asked, apart from its words.
+//! The logical form: the meaning of a claim, a request or a question, apart from its words.
 //!
-//! Captions, instructions, questions, goals and claims of foreign texts are forms. [`crate::language`] turns forms into text and
-//! text into forms; `docs/words.md` says what each means.
+//! Captions, instructions, questions, goals and the claims of other authors' texts are forms. [`crate::language`] turns forms into
+//! text and text into forms; `docs/words.md` defines the meaning of each.
 
 mod clause;
 mod phrase;
@@ -15,14 +15,14 @@ pub use request::{Plan, Step};
 
 use serde::{Deserialize, Serialize};
 
-/// A claim, a request or a question.
+/// The logical form of a sentence: a claim, a request or a question.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// Something that is true or false.
+    /// A clause that is asserted.
     Claim(Clause),
-    /// Something to do.
+    /// A plan to carry out.
     Request(Plan),
-    /// Something to answer.
+    /// A question to answer.
     Question(Question),
 }

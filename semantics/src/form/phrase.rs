@@ -3,25 +3,25 @@
 use crate::size::SizeClass;
 use serde::{Deserialize, Serialize};
 
-/// How many of the things that fit a description are meant.
+/// The number of things that a clause holds of, among those that a description fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantifier {
     /// At least one: "a chair".
     Some,
-    /// The only one that fits: "the chair". Where none or several fit, nothing is said that could be true.
+    /// The only one: "the chair". Where none fits, the clause is false; where several fit, undecided unless all decide alike.
     The,
-    /// All of them: "every chair"; true of none.
+    /// All of them: "every chair"; true where none fits.
     Every,
     /// None: "no chair".
     No,
-    /// So many and no more: "two chairs".
+    /// This number: "two chairs".
     Exactly(u32),
-    /// So many or more: "at least two chairs".
+    /// This number or more: "at least two chairs".
     AtLeast(u32),
 }
 
-/// The kind of thing that is described, by its spoken noun for one.
+/// The noun of a description, singular.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Noun {
@@ -31,51 +31,51 @@ pub enum Noun {
     Room(String),
 }
 
-/// A relation, a place or its negation, said of what is described.
+/// A modifier of a description: a relation, a place or the negation of one.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Modifier {
-    /// Set for "but not on the table".
+    /// True for a negation: "but not on the table".
     pub negated: bool,
-    /// The predicate's name; what is described is its first argument.
+    /// The predicate's name; its first argument is the described thing.
     pub predicate: String,
     /// Its other arguments.
     pub arguments: Vec<Phrase>,
 }
 
-/// One thing out of those that a description fits, by an order.
+/// The choice of one of the things that a description fits, by its place in an order.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Selection {
     /// The order's name: `"from_left"`, `"largest"`, `"closest_to"`.
     pub order: String,
     /// The place in it, counted from 1.
     pub place: u32,
-    /// What the order refers to, where it refers to something.
+    /// The reference of an order that needs one: the bed in "closest to the bed".
     pub reference: Option<Box<Phrase>>,
 }
 
-/// A thing by what is true of it.
+/// A description: a noun phrase that picks out things by their kind, qualities and relations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Description {
-    /// How many are meant.
+    /// The quantifier.
     pub quantifier: Quantifier,
-    /// The kind of thing.
+    /// The noun.
     pub noun: Noun,
     /// Its size for its kind; never [`SizeClass::Normal`].
     pub size: Option<SizeClass>,
     /// A state by name: `"open"`, `"switched_off"`.
     pub state: Option<String>,
-    /// Plain colour words, all of which it shows; at most two.
+    /// Plain colour words, at most two; the thing shows all of them.
     pub colors: Vec<String>,
     /// The adjective of a substance.
     pub material: Option<String>,
-    /// What else is true of it.
+    /// The modifiers, all of which hold.
     pub modifiers: Vec<Modifier>,
-    /// Which of those that fit, where an order decides; then the quantifier is [`Quantifier::The`].
+    /// The choice by an order; with one the quantifier is [`Quantifier::The`].
     pub selection: Option<Selection>,
 }
 
 impl Description {
-    /// A description by its noun alone.
+    /// Returns a description by a noun alone.
     pub fn new(quantifier: Quantifier, noun: Noun) -> Self {
         Self {
             quantifier,
@@ -89,26 +89,26 @@ impl Description {
         }
     }
 
-    /// The same of another quantifier.
+    /// Returns the same description with another quantifier.
     #[must_use]
     pub fn with_quantifier(self, quantifier: Quantifier) -> Self {
         Self { quantifier, ..self }
     }
 }
 
-/// What a form is about.
+/// A noun phrase: an argument of a clause.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phrase {
-    /// A thing by the id that sensors and graph give it: "object 12".
+    /// A thing by the id that sensors and scene graph give it: "object 12".
     Id(u32),
-    /// Things by what is true of them.
+    /// Things by a description.
     Described(Box<Description>),
-    /// Who is spoken to: "you".
+    /// The listener: "you".
     Listener,
-    /// A storey, counted from 1 from below: "on the second floor".
+    /// A storey, counted upwards from 1: "on the second floor".
     Storey(u32),
-    /// What a question asks for.
+    /// The open argument of a question.
     Hole,
 }
 

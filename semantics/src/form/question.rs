@@ -1,24 +1,24 @@
-//! Questions: clauses in which something is left open.
+//! Questions: clauses with an open argument, counts and attributes.
 
 use super::clause::Clause;
 use super::phrase::{Description, Phrase};
 use serde::{Deserialize, Serialize};
 
-/// An attribute that is asked for.
+/// An attribute that a question asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AttributeKind {
-    /// The plain colour words.
+    /// Its plain colour words.
     Color,
-    /// The adjective of what it is mostly made of.
+    /// The adjective of its main substance.
     Material,
-    /// What it is in or on, or next to.
+    /// The things that it is in or on, else next to.
     Place,
     /// The room it is in.
     Room,
 }
 
-/// What is asked.
+/// A question.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
@@ -26,7 +26,7 @@ pub enum Question {
     Whether(Clause),
     /// Which things, put in place of [`Phrase::Hole`], make the clause true? Answered by ids.
     Which {
-        /// The kind of things, [`None`] for "what"; its quantifier says nothing.
+        /// A description of the candidates, whose quantifier is ignored; `None` for "what".
         kind: Option<Box<Description>>,
         /// The clause.
         clause: Clause,

@@ -1,23 +1,23 @@
-//! Requests: what somebody is to do.
+//! Requests: steps for an agent to carry out.
 
 use super::clause::Clause;
 use super::phrase::Phrase;
 use serde::{Deserialize, Serialize};
 
-/// One thing to do.
+/// A step of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Step {
-    /// Be in a room.
+    /// Go to a room.
     GoTo(Phrase),
-    /// Do something with a thing: a verb of the lexicon, such as `"pick_up"`.
+    /// Act on a thing, by a verb of the lexicon such as `"pick_up"`.
     Do {
         /// The verb.
         verb: String,
         /// The thing.
         object: Phrase,
     },
-    /// Do not do it.
+    /// Refrain from acting on a thing.
     DoNot {
         /// The verb.
         verb: String,
@@ -37,17 +37,17 @@ pub enum Step {
     Bring {
         /// The thing.
         object: Phrase,
-        /// Where to.
+        /// The destination.
         to: Phrase,
     },
 }
 
-/// Steps in their order, with conditions.
+/// Steps in order, or a conditional step.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Plan {
     /// One after the other.
     Sequence(Vec<Step>),
-    /// A step if something is true when it is said.
+    /// A step to carry out if a clause is true at the time of the request.
     If(Clause, Step),
 }

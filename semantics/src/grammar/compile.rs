@@ -8,18 +8,18 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A category with a variant, such as `np.several`.
 pub(super) type NonTerminal = usize;
 
-/// A piece of a production.
+/// A symbol on the right-hand side of a production.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Symbol {
     Word(String),
-    /// An argument: its number and what it is.
+    /// An argument: its number, counted from 0, and its kind.
     Argument(usize, ArgumentKind),
 }
 
-/// What stands for an argument.
+/// The kind of text that an argument becomes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum ArgumentKind {
-    /// Text made by rules.
+    /// A phrase of a category, made by rules.
     Rules(NonTerminal),
     /// An entry of a class of the lexicon, in a variant.
     Entry(String, usize),
@@ -31,16 +31,16 @@ pub(super) enum ArgumentKind {
     Digits,
 }
 
-/// A wording of a rule in one choice of variants.
+/// A wording of a rule for one choice of variants.
 #[derive(Clone, Debug)]
 pub(super) struct Production {
     pub(super) function: String,
     pub(super) arity: usize,
     pub(super) result: NonTerminal,
     pub(super) symbols: Vec<Symbol>,
-    /// Which of the wordings that are said; `None` for one that is only read.
+    /// Index among the function's wordings that are said; `None` for a wording that is only read.
     pub(super) wording: Option<usize>,
-    /// Productions of less cost are preferred when a text has several readings.
+    /// Cost of a reading that uses it; readings of less cost are preferred.
     pub(super) cost: u32,
 }
 
@@ -48,9 +48,9 @@ pub(super) struct Production {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Productions {
     pub(super) all: Vec<Production>,
-    /// By category with variant.
+    /// Productions by the non-terminal of their result.
     pub(super) of_result: Vec<Vec<usize>>,
-    /// By function and category with variant.
+    /// Productions by function and the non-terminal of their result.
     pub(super) of_function: BTreeMap<(String, NonTerminal), Vec<usize>>,
     pub(super) numbers: BTreeMap<(String, usize), NonTerminal>,
 }
@@ -101,7 +101,7 @@ impl Compiler<'_> {
         number
     }
 
-    /// The variants that the variables of a wording may have together: `Any` of the k-th piece is the variable `"#k"`.
+    /// The assignments of variants to the variables of a wording; `Any` of the k-th piece is the variable `"#k"`.
     fn choices(
         &self,
         rule: &RuleFile,
@@ -240,7 +240,7 @@ impl Compiler<'_> {
     }
 }
 
-/// The name of a variable or variant: of the piece's own where it may be any.
+/// The name of a variant or variable; a piece that takes any variant has a variable of its own.
 fn name_of(variant: &Variant, piece: usize) -> String {
     match variant {
         Variant::Any => format!("#{piece}"),
@@ -248,7 +248,7 @@ fn name_of(variant: &Variant, piece: usize) -> String {
     }
 }
 
-/// Makes the productions of a file.
+/// Compiles a grammar file to productions.
 ///
 /// # Errors
 /// [`GrammarError`] names the rule and what is wrong in it.
@@ -286,7 +286,7 @@ pub(super) fn compile(file: &GrammarFile) -> Result<Productions, GrammarError> {
 }
 
 impl Compiler<'_> {
-    /// How many wordings a function has so far.
+    /// The number of wordings that a function has so far.
     fn wordings_of(&self, function: &str) -> usize {
         let own = self.found.all.iter().filter(|one| one.function == function);
         let last = own.filter_map(|one| one.wording).max();
@@ -294,7 +294,7 @@ impl Compiler<'_> {
     }
 }
 
-/// Checks that no category leads to itself by productions of one argument and nothing else, of which no parse would come to an end.
+/// Checks that there is no cycle of unit productions (one argument and nothing else): a text would have infinitely many parses.
 fn no_circles(found: &Productions) -> Result<(), GrammarError> {
     let single = |number: NonTerminal| {
         let own = found.of_result[number].iter().map(|at| &found.all[*at]);

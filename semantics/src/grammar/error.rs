@@ -1,10 +1,10 @@
 //! Errors of grammars.
 
-/// Why a grammar or a lexicon cannot be used.
+/// A fault of a grammar or a lexicon.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum GrammarError {
-    /// The file is no TOML of this form.
+    /// A file that is not TOML of this schema.
     #[error("{0}")]
     Syntax(String),
     /// A template that cannot be read.
@@ -27,7 +27,7 @@ pub enum GrammarError {
         /// The names that are defined.
         known: Vec<String>,
     },
-    /// A template that says an argument not once but never, or not in every wording.
+    /// A wording that leaves out an argument.
     #[error("rule {rule:?}: {template:?} leaves out argument {argument}")]
     LeftOut {
         /// The function of the rule.

@@ -1,4 +1,4 @@
-//! A grammar as it stands in its file.
+//! The file format of grammars.
 
 use super::GrammarError;
 use serde::Deserialize;
@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 pub(super) struct GrammarFile {
     /// The categories of whole texts.
     pub(super) start: Vec<String>,
-    /// The variants of categories and of classes of the lexicon; of others there is one.
+    /// The variants of categories and of lexicon classes; those not named have one.
     #[serde(default)]
     pub(super) variants: BTreeMap<String, Vec<String>>,
-    /// Words that agree with others: forms by variant.
+    /// Words that agree with an argument, by name: their forms by variant.
     #[serde(default)]
     pub(super) words: BTreeMap<String, BTreeMap<String, String>>,
     /// The rules.
@@ -26,7 +26,7 @@ pub(super) struct GrammarFile {
 pub(super) struct RuleFile {
     /// The function's name.
     pub(super) function: String,
-    /// The category that it makes: `cn.n`.
+    /// The category of its result, with a variant: `cn.n`.
     pub(super) result: String,
     /// The categories or classes of its arguments.
     #[serde(default)]

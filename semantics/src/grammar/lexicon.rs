@@ -3,7 +3,7 @@
 use super::GrammarError;
 use std::collections::BTreeMap;
 
-/// The words of one entry in one variant: the first is said, all are read.
+/// The forms of one entry in one variant, each as words: the first is said, all are read.
 pub type WordForms = Vec<Vec<String>>;
 
 /// An entry of the lexicon.
@@ -13,11 +13,11 @@ pub struct LexiconEntry {
     pub class: String,
     /// Its name in the class.
     pub id: String,
-    /// By variant of its class, in the order in which the grammar names them.
+    /// Forms by variant of its class, in the order in which the grammar names the variants.
     pub forms: Vec<WordForms>,
 }
 
-/// Splits text into words as they are compared: lower case, punctuation marks apart, `an` as `a`.
+/// Splits text into normalized words: lower case, punctuation marks apart, `an` as `a`.
 pub fn words(text: &str) -> Vec<String> {
     let mut words = split(text);
     for word in &mut words {
@@ -54,40 +54,40 @@ fn split(text: &str) -> Vec<String> {
     words
 }
 
-/// All entries, and where their words begin.
+/// The lexicon: its entries, indexed by name and by first word.
 #[derive(Clone, Debug, Default)]
 pub struct Lexicon {
     entries: Vec<LexiconEntry>,
     by_name: BTreeMap<(String, String), usize>,
-    /// By the first word.
+    /// Forms by their first word.
     by_first_word: BTreeMap<String, Vec<EntryForm>>,
     counts: Vec<String>,
     ordinals: Vec<String>,
 }
 
-/// A form of an entry, as it is compared.
+/// A form of an entry in normalized words.
 #[derive(Clone, Debug)]
 struct EntryForm {
     entry: usize,
     variant: usize,
-    /// 0 for what would be said, 1 for a synonym.
+    /// 0 for the form that is said, 1 for a synonym.
     cost: u32,
     words: Vec<String>,
 }
 
-/// A lexicon's entry at a place of a text.
+/// An entry that matches at a place of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct EntryMatch {
     pub(super) entry: usize,
     pub(super) variant: usize,
-    /// Words.
+    /// Number of words.
     pub(super) length: usize,
-    /// 0 for what would be said, 1 for a synonym.
+    /// 0 for the form that is said, 1 for a synonym.
     pub(super) cost: u32,
 }
 
 impl Lexicon {
-    /// Adds an entry; of one class and name the forms are joined, so that more words are read.
+    /// Adds an entry. If one of its class and name exists, that gains the forms as synonyms.
     pub fn add(&mut self, entry: LexiconEntry) {
         let key = (entry.class.clone(), entry.id.clone());
         let at = if let Some(at) = self.by_name.get(&key) {
@@ -121,7 +121,7 @@ impl Lexicon {
         }
     }
 
-    /// Adds an entry by its texts: `forms` by variant, the first text of each is said.
+    /// Adds an entry by the texts of its forms, by variant; the first text of each variant is said.
     pub fn add_texts(&mut self, class: &str, id: &str, forms: &[&[&str]]) {
         let of = |texts: &&[&str]| texts.iter().map(|text| split(text)).collect();
         self.add(LexiconEntry {
@@ -131,10 +131,10 @@ impl Lexicon {
         });
     }
 
-    /// Sets the words of whole numbers from 0, and of ordinals from 1.
+    /// Sets the words for whole numbers, from 0, and for ordinals, from 1.
     ///
     /// # Errors
-    /// [`GrammarError::Template`] for words of several words.
+    /// [`GrammarError::Template`] for a number of several words.
     pub fn set_numbers(
         &mut self,
         counts: &[String],
@@ -163,7 +163,7 @@ impl Lexicon {
         &self.entries[at]
     }
 
-    /// Returns whether an entry, a number or an ordinal may have this word in it.
+    /// Returns whether the word occurs in an entry, or is a number or an ordinal.
     pub(super) fn has_word(&self, word: &str) -> bool {
         word.bytes().all(|letter| letter.is_ascii_digit())
             || self.count_of(word).is_some()
@@ -171,13 +171,13 @@ impl Lexicon {
             || self.all_words().any(|known| known == word)
     }
 
-    /// Every word of every entry, as it is compared.
+    /// The normalized words of all entries.
     pub(super) fn all_words(&self) -> impl Iterator<Item = &str> {
         let forms = self.by_first_word.values().flatten();
         forms.flat_map(|form| form.words.iter().map(String::as_str))
     }
 
-    /// The entries that stand at `at`.
+    /// The entries that match `text` from the word `at` on.
     pub(super) fn at<'a>(
         &'a self,
         text: &'a [String],
@@ -195,14 +195,14 @@ impl Lexicon {
         })
     }
 
-    /// The whole number that a word says: `"two"`, `"12"`.
+    /// The whole number that a word stands for: `"two"`, `"12"`.
     pub(super) fn count_of(&self, word: &str) -> Option<u32> {
         let spelt = self.counts.iter().position(|known| known == word);
         let digits = || word.parse().ok().filter(|_| word.len() < 7);
         spelt.map(|number| number as u32).or_else(digits)
     }
 
-    /// The place that a word says, from 1: `"second"`, `"12th"`.
+    /// The number that an ordinal stands for, from 1: `"second"`, `"12th"`.
     pub(super) fn ordinal_of(&self, word: &str) -> Option<u32> {
         let spelt = self.ordinals.iter().position(|known| known == word);
         let digits = || {
@@ -219,7 +219,7 @@ impl Lexicon {
         spelt.cloned().unwrap_or_else(|| number.to_string())
     }
 
-    /// The word for a place, counted from 1; beyond the words that are given digits with the ending that English has.
+    /// The ordinal of a number from 1; beyond the words that were set, digits with their English ending.
     pub(super) fn ordinal(&self, number: u32) -> String {
         let spelt = (number as usize)
             .checked_sub(1)

@@ -1,17 +1,17 @@
-//! Trees to text.
+//! Linearization: trees to phrases.
 
 use super::compile::{ArgumentKind, NonTerminal, Symbol};
 use super::{Grammar, Tree};
 
-/// The words of a tree, with those of its parts inside.
+/// The words of a tree, with those of its arguments nested.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Phrase {
     Word(String),
-    /// A part: the number of the argument that it is, and its words.
+    /// An argument: its number, counted from 0, and its words.
     Part(usize, Vec<Phrase>),
 }
 
-/// Chooses wordings: called with how many there are, it returns a number below that.
+/// A choice of wordings: called with their number, it returns an index below that.
 pub type ChooseWording<'a> = &'a mut dyn FnMut(usize) -> usize;
 
 impl Grammar {

@@ -1,8 +1,8 @@
-//! Grammars as data: rules and words from files, by which trees become text and text becomes trees.
+//! Grammars as data: rules and words from files, for linearization (trees to text) and parsing (text to trees).
 //!
 //! A *function* of the abstract syntax has a result, arguments and wordings; the wordings are the rules of a context-free grammar
 //! once every variant (singular, plural) is written out. One file serves both directions, so that whatever is said can be read.
-//! This module knows nothing of houses: what functions mean stands in [`crate::form`].
+//! This module knows nothing of houses: the meanings of functions are in [`crate::language`].
 //!
 //! # Source
 //! A. Ranta, "Grammatical Framework: a type-theoretical grammar formalism", Journal of Functional Programming 14(2), 145 (2004):
@@ -30,18 +30,18 @@ use compile::{NonTerminal, Productions, Symbol};
 use file::GrammarFile;
 use std::collections::BTreeSet;
 
-/// Rules and words of a language.
+/// The rules and the lexicon of a language.
 #[derive(Clone, Debug)]
 pub struct Grammar {
     productions: Productions,
     start: Vec<NonTerminal>,
-    /// The words of rules.
+    /// The words that occur in rules.
     words: BTreeSet<String>,
     lexicon: Lexicon,
 }
 
 impl Grammar {
-    /// Makes a grammar of rules (TOML) and words.
+    /// Compiles a grammar from rules (TOML) and a lexicon.
     ///
     /// # Errors
     /// [`GrammarError`] names the rule and the fault.
@@ -77,12 +77,12 @@ impl Grammar {
         })
     }
 
-    /// The words.
+    /// The lexicon.
     pub fn lexicon(&self) -> &Lexicon {
         &self.lexicon
     }
 
-    /// The same rules with other words.
+    /// Returns the same rules with another lexicon.
     #[must_use]
     pub fn with_lexicon(&self, lexicon: Lexicon) -> Self {
         Self {
@@ -91,13 +91,13 @@ impl Grammar {
         }
     }
 
-    /// The text of a tree, with the places of its parts; `None` where the grammar has no words for it.
+    /// Linearizes a tree: its text, with the spans of its parts; `None` if the grammar has no wording for it.
     pub fn linearize(&self, tree: &Tree, choose: ChooseWording<'_>) -> Option<(String, Vec<Span>)> {
         let phrases = (self.start.iter()).find_map(|start| self.phrases(tree, *start, choose))?;
         Some(text::write(&phrases))
     }
 
-    /// Returns whether some text may have this word in it, lower case.
+    /// Returns whether the word, in lower case, occurs in the rules or the lexicon.
     pub fn has_word(&self, word: &str) -> bool {
         self.words.contains(word) || self.lexicon.has_word(word)
     }

@@ -1,8 +1,8 @@
-//! Words that somebody may have meant.
+//! Spelling suggestions for unknown words.
 
 use super::Grammar;
 
-/// The edit distance of two words, in letters that are put in, left out, changed, or swapped with the next.
+/// The edit distance of two words: insertions, deletions, substitutions, and swaps of adjacent letters.
 ///
 /// # Source
 /// F. J. Damerau, Communications of the ACM 7(3), 171 (1964), in the form of optimal string alignment.
@@ -26,7 +26,7 @@ fn distance(a: &str, b: &str) -> usize {
 }
 
 impl Grammar {
-    /// The known words nearest to `word`, at most `most`, none that differs in more than a third of its letters.
+    /// The known words nearest to `word`, the nearest first; at most `most`, none that differs in more than a third of its letters.
     pub fn nearest_words(&self, word: &str, most: usize) -> Vec<String> {
         let length = word.chars().count();
         // Long strings are no words of any language that is read here.

@@ -8,10 +8,10 @@ use super::{Grammar, Tree};
 use dwell_scene::interrupt;
 use std::collections::BTreeMap;
 
-/// How many readings are kept of each span of a text.
+/// Largest number of readings that are kept for each span of a text.
 const MOST_READINGS: usize = 16;
 
-/// A production that was read up to its dot.
+/// An Earley item: a production that was recognized up to its dot, from the word at `origin` on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Item {
     production: usize,
@@ -19,17 +19,17 @@ struct Item {
     origin: usize,
 }
 
-/// The text that the last symbol before the dot stands for.
+/// The match of the last symbol before the dot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Child {
     Word,
     Entry(usize, u32),
     Number(u32),
-    /// A category over the words from the first number to the set that the item is in.
+    /// A category over the words from this place up to that of the item's set.
     Span(NonTerminal, usize),
 }
 
-/// How an item came to be: the item with the dot one place before, the set it is in, and what was read since.
+/// A derivation step of an item: the item with the dot one symbol before, its set, and the match of that symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Step {
     before: Item,
@@ -37,12 +37,12 @@ struct Step {
     child: Child,
 }
 
-/// The items that end at one place.
+/// The Earley set of one place: the items that end there.
 #[derive(Default)]
 struct ItemSet {
     order: Vec<Item>,
     steps: BTreeMap<Item, Vec<Step>>,
-    /// Items that wait for a category, by that category.
+    /// Items with their dot before a category, by that category.
     waiting: BTreeMap<NonTerminal, Vec<Item>>,
 }
 
@@ -62,11 +62,11 @@ impl ItemSet {
 /// The readings of a text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Parse {
-    /// Trees with their costs, the least first.
+    /// Trees with their costs, in ascending order of cost.
     pub trees: Vec<(u32, Tree)>,
-    /// How many words could be the beginning of a sentence.
+    /// The number of words that could be the beginning of a sentence.
     pub understood: usize,
-    /// The words and classes of the lexicon that could follow them.
+    /// The words and lexicon classes that could follow them.
     pub expected: Vec<String>,
 }
 
@@ -141,7 +141,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Works through all items that end at `at`.
+    /// Completes, predicts and scans all items that end at `at`.
     fn close(&mut self, at: usize) {
         let mut next = 0;
         while let Some(item) = self.sets[at].order.get(next).copied() {
@@ -271,7 +271,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What could follow the first `at` words.
+    /// The words and lexicon classes that could follow the first `at` words.
     fn expected(&self, at: usize) -> Vec<String> {
         let mut expected: Vec<String> = Vec::new();
         for item in &self.sets[at].order {

@@ -5,13 +5,13 @@ use super::GrammarError;
 /// A variant of a category, such as singular or plural.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Variant {
-    /// Any that the argument has.
+    /// Any variant of the argument.
     Any,
-    /// The one called so; else a variable that takes every variant of its category, the same wherever it stands in a rule.
+    /// The variant of this name; else a variable over the variants of its category, with one value throughout a rule.
     Named(String),
 }
 
-/// A piece of a template.
+/// An element of a template.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Piece {
     /// A word as it stands, in lower case, or a punctuation mark.
@@ -30,10 +30,10 @@ pub(super) fn category(text: &str) -> (String, Variant) {
     }
 }
 
-/// Reads `"{1.n} [be.n] {2} {3} ."`, pieces apart by spaces.
+/// Reads a template such as `"{1.n} [be.n] {2} {3} ."`; pieces are separated by spaces.
 ///
 /// # Errors
-/// [`GrammarError::Template`] for brackets that do not close and arguments that are no number from 1 to `arity`.
+/// [`GrammarError::Template`] for brackets that do not close and arguments that are not a number from 1 to `arity`.
 pub(super) fn read(text: &str, arity: usize) -> Result<Vec<Piece>, GrammarError> {
     let fault = |why: &'static str| GrammarError::Template {
         template: text.to_owned(),

@@ -1,16 +1,16 @@
-//! Phrases as written text: spaces, capitals, articles by sound; and where the parts of a tree stand in it.
+//! Phrases as written text: spaces, capitals, articles by sound; and the spans of a tree's parts.
 
 use super::linearize::Phrase;
 use crate::english::article;
 
-/// A part of a tree in its text.
+/// The place of a subtree in the text of its tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Span {
-    /// The numbers of the arguments that lead to the part, from 0.
+    /// Argument numbers from the root to the subtree, counted from 0.
     pub path: Vec<usize>,
     /// The first byte of the text.
     pub start: usize,
-    /// The byte behind the last.
+    /// The byte after the last.
     pub end: usize,
 }
 
@@ -42,7 +42,7 @@ impl Writer {
     }
 }
 
-/// The text of `phrases` as a sentence, and its parts with the bytes that they take.
+/// Returns the text of `phrases` as a sentence, and the spans of its parts in bytes.
 pub(super) fn write(phrases: &[Phrase]) -> (String, Vec<Span>) {
     let mut writer = Writer::default();
     writer.add(phrases, &mut Vec::new());

@@ -1,7 +1,7 @@
-//! Abstract syntax: what a sentence says, apart from its words.
+//! Abstract syntax trees: the content of a sentence, apart from its words.
 
-/// A tree of functions applied to arguments, in the sense of Ranta's Grammatical Framework: two languages that share functions
-/// share trees, and differ in how these become text.
+/// An abstract syntax tree, as in Ranta's Grammatical Framework: functions applied to arguments. Languages with the same functions
+/// share trees, and differ in their linearization.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Tree {
     /// A function of the grammar with its arguments.
@@ -18,7 +18,7 @@ pub enum Tree {
         /// Its name in the class.
         id: String,
     },
-    /// A whole number of a class that counts or orders.
+    /// A whole number.
     Number {
         /// `"count"`, `"ordinal"` or `"digits"`.
         class: String,
@@ -28,7 +28,7 @@ pub enum Tree {
 }
 
 impl Tree {
-    /// A function with its arguments.
+    /// Returns a function applied to arguments.
     pub fn apply(function: &str, arguments: impl Into<Vec<Self>>) -> Self {
         Self::Apply {
             function: function.to_owned(),

@@ -1,4 +1,4 @@
-//! Trees to forms: what the functions of the grammar mean.
+//! Trees to forms: the meanings of the grammar's functions.
 
 use super::lexicon::RELATION;
 use crate::form::{
@@ -33,7 +33,7 @@ fn number(tree: &Tree) -> Option<u32> {
     }
 }
 
-/// The form that a tree of a whole text stands for; `None` for trees that no form has.
+/// The form of the tree of a sentence; `None` for trees without a form.
 pub(super) fn form(tree: &Tree) -> Option<Form> {
     Some(match parts(tree)? {
         ("claim", [inner]) => Form::Claim(clause(inner)?),
@@ -158,7 +158,7 @@ fn room(tree: &Tree) -> Option<Phrase> {
     Some(description.into())
 }
 
-/// The phrase that a part of a tree stands for; `None` for parts that are none.
+/// The noun phrase of a subtree; `None` for other parts.
 pub(super) fn noun_phrase(tree: &Tree) -> Option<Phrase> {
     phrase(tree).or_else(|| room(tree))
 }
@@ -224,7 +224,7 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
     }
 }
 
-/// A noun with what is said of it; its quantifier is set by the caller.
+/// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
 fn described(tree: &Tree) -> Option<Description> {
     let (function, arguments) = parts(tree)?;
     let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));

@@ -1,4 +1,4 @@
-//! The words of English: the file of function words, and the tables of nouns, rooms, colours and materials.
+//! The English lexicon: the file of function words, and the tables of nouns, rooms, colours and materials.
 
 use crate::category::categories;
 use crate::color::ColorVocabulary;
@@ -21,7 +21,7 @@ pub(super) const ORDER_TO: &str = "order_to";
 pub(super) const SUPERLATIVE: &str = "superlative";
 pub(super) const VERB: &str = "verb";
 
-/// Words that gather things: colour and substance stand behind their "of".
+/// Nouns for groups and amounts of things ("pair of shoes"): adjectives of colour and material follow their "of".
 const GATHERING_WORDS: [(&str, &str); 8] = [
     ("bunch", "bunches"),
     ("pair", "pairs"),
@@ -52,7 +52,7 @@ struct LexiconFile {
     verb: Texts,
 }
 
-/// Adds a noun: as one entry, or as what gathers and what is gathered.
+/// Adds a noun in singular and plural. Of "pair of shoes" only the noun after the "of" is added.
 pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
     if let Some((head, tail)) = one.split_once(" of ")
         && GATHERING_WORDS.iter().any(|(word, _)| *word == head)
@@ -63,7 +63,7 @@ pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
     lexicon.add_texts(NOUN, one, &[&[one], &[several]]);
 }
 
-/// Adds a room's noun; `preposition` is the word that says where one is: "in" or "on".
+/// Adds a room's noun; `preposition` is that of being there: "in" or "on".
 pub(super) fn add_room(lexicon: &mut Lexicon, noun: &str, preposition: &str) {
     if preposition == "on" {
         lexicon.add_texts(ROOM, noun, &[&[], &[noun]]);
@@ -76,7 +76,7 @@ fn borrowed(texts: &[String]) -> Vec<&str> {
     texts.iter().map(String::as_str).collect()
 }
 
-/// The words of English.
+/// Builds the English lexicon from `lexicon.toml` and the tables.
 ///
 /// # Errors
 /// [`GrammarError`] for a file that cannot be read.

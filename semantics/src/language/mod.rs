@@ -1,7 +1,7 @@
-//! Forms and text: saying and reading by one grammar.
+//! Forms to text and text to forms, by one grammar.
 //!
-//! What is said by a [`Language`] is read back by it as the same form, the first of its readings; `docs/words.md` shows the
-//! grammar.
+//! A text that a [`Language`] makes of a form reads back as that form, the preferred one of its readings; `docs/words.md` describes
+//! the grammar.
 
 mod from_tree;
 mod lexicon;
@@ -15,15 +15,15 @@ pub use say::{PhraseSpan, Said};
 use crate::grammar::{Grammar, GrammarError};
 use std::sync::LazyLock;
 
-/// A grammar whose functions are those of forms.
+/// A natural language: a grammar with a function for each kind of form.
 #[derive(Clone, Debug)]
 pub struct Language {
     grammar: Grammar,
 }
 
 impl Language {
-    /// A language of the rules in `grammar` (TOML) and the words in `lexicon` (TOML), with the nouns of the tables that ship with
-    /// the engine.
+    /// Builds a language from the rules in `grammar` (TOML) and the words in `lexicon` (TOML), with the nouns of the tables that
+    /// ship with the engine.
     ///
     /// # Errors
     /// [`GrammarError`] names the rule and what is wrong in it.
@@ -34,8 +34,8 @@ impl Language {
         })
     }
 
-    /// A language of a grammar whose functions are those of `assets/language/en/grammar.toml`; of those it lacks nothing is said
-    /// or read.
+    /// Builds a language from a grammar with functions of `assets/language/en/grammar.toml`; forms that need a function it lacks
+    /// are neither said nor read.
     pub fn of(grammar: Grammar) -> Self {
         Self { grammar }
     }
@@ -52,7 +52,7 @@ impl Language {
         &ENGLISH
     }
 
-    /// The same language with more nouns, each for one and for several.
+    /// Returns the same language with more nouns, each in singular and plural.
     #[must_use]
     pub fn with_nouns<'a>(&self, nouns: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let mut lexicon = self.grammar.lexicon().clone();
@@ -64,7 +64,7 @@ impl Language {
         }
     }
 
-    /// The same language with more nouns of rooms, each with the word that says where one is: "in" or "on".
+    /// Returns the same language with more nouns of rooms, each with its preposition, "in" or "on".
     #[must_use]
     pub fn with_rooms<'a>(&self, rooms: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let mut lexicon = self.grammar.lexicon().clone();
@@ -76,7 +76,7 @@ impl Language {
         }
     }
 
-    /// The rules and words.
+    /// The grammar, with its lexicon.
     pub fn grammar(&self) -> &Grammar {
         &self.grammar
     }

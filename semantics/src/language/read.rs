@@ -4,52 +4,52 @@ use super::{Language, from_tree};
 use crate::form::Form;
 use crate::grammar::words;
 
-/// How long a text may be, bytes.
+/// Largest length of a text, bytes.
 pub const MAX_TEXT_BYTES: usize = 4096;
-/// How many words a sentence may have.
+/// Largest number of words in a sentence.
 pub const MAX_WORDS: usize = 60;
-/// How many known words are named for one that is unknown.
+/// Largest number of suggestions for an unknown word.
 const MOST_NEAREST: usize = 5;
 
-/// A word that no text of the language has.
+/// A word that the language lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownWord {
     /// The word, lower case.
     pub word: String,
-    /// Known words that differ from it in few letters.
+    /// The most similar known words, the nearest first.
     pub nearest: Vec<String>,
 }
 
-/// Why a text was not read.
+/// The reason why a text has no reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Unread {
-    /// It has no words.
+    /// The text has no words.
     #[error("the text has no words")]
     Empty,
-    /// It is too long.
+    /// The text is too long.
     #[error("the text has {found} {unit}; allowed are {allowed}")]
     TooLong {
         /// Bytes or words.
         unit: &'static str,
         /// Its length.
         found: usize,
-        /// The most.
+        /// The largest length allowed.
         allowed: usize,
     },
-    /// It has words that the language lacks.
+    /// Some words are not in the language.
     #[error("unknown {}", list_unknown(.0))]
     UnknownWords(Vec<UnknownWord>),
-    /// All words are known, their order is not.
+    /// All words are known, but they form no sentence of the grammar.
     #[error(
         "understood as far as {understood:?}; then {found} was found, and one of {expected:?} can follow"
     )]
     NotASentence {
-        /// The words that could begin a sentence.
+        /// The longest beginning of the text that could begin a sentence.
         understood: String,
-        /// The word behind them, in quotes, or "the end".
+        /// The word after it, in quotes, or "the end".
         found: String,
-        /// The words and kinds of words that could follow; at most 12.
+        /// Words and lexicon classes that could follow; at most 12.
         expected: Vec<String>,
     },
 }
@@ -74,7 +74,7 @@ pub struct Reading {
 }
 
 impl Language {
-    /// The forms that `text`, one sentence, may stand for. Case, articles before the only noun, known synonyms and the order of
+    /// Returns the readings of `text`, one sentence. Case, articles before the only noun, known synonyms and the order of
     /// adjectives do not matter.
     ///
     /// # Errors

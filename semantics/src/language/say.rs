@@ -7,21 +7,21 @@ use crate::form::{Form, Phrase};
 use crate::grammar::Tree;
 use dwell_scene::random::RandomKey;
 
-/// A noun phrase of a form in its text.
+/// The place of a noun phrase in the text of a form.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PhraseSpan {
-    /// What it means.
+    /// The phrase.
     pub phrase: Phrase,
     /// The first byte.
     pub start: usize,
-    /// The byte behind the last.
+    /// The byte after the last.
     pub end: usize,
 }
 
-/// A form in words.
+/// The text of a form.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Said {
-    /// One sentence, with its capital letter and its mark.
+    /// One sentence, with capital letter and final punctuation mark.
     pub text: String,
     /// The places of noun phrases, the outer before the inner, from left to right.
     pub phrases: Vec<PhraseSpan>,
@@ -35,8 +35,8 @@ fn at<'a>(tree: &'a Tree, path: &[usize]) -> Option<&'a Tree> {
 }
 
 impl Language {
-    /// The text of `form`; `None` where the grammar has no words for it: an unknown noun, a modifier where none may stand.
-    /// Without a key every rule has its first wording; with one wordings are drawn.
+    /// Returns the text of `form`; `None` if the grammar has no wording for it: an unknown noun, a modifier where none is allowed.
+    /// Without a key every rule uses its first wording; with one, wordings are drawn.
     ///
     /// # Determinism
     /// Equal forms and keys give equal texts.

@@ -1,4 +1,4 @@
-//! Forms to trees: which functions of the grammar say a form.
+//! Forms to trees: the functions of the grammar that express a form.
 
 use super::lexicon::{
     ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, SUPERLATIVE, VERB,
@@ -11,7 +11,7 @@ use crate::form::{
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
 
-/// Makes trees for a lexicon.
+/// A builder of trees from forms, with the words of a lexicon.
 pub(super) struct TreeBuilder<'a> {
     pub(super) lexicon: &'a Lexicon,
 }
@@ -31,10 +31,10 @@ fn ordinal(value: u32) -> Tree {
     Tree::Number { class, value }
 }
 
-/// A noun phrase's function and arguments in a landmark have names of their own, with fewer modifiers.
+/// The position of a noun phrase. Landmarks have grammar functions of their own (`i_the`), with fewer modifiers.
 #[derive(Clone, Copy, PartialEq)]
 enum Position {
-    /// Subject, object, what is asked for.
+    /// Subject, object, or the topic of a question.
     Free,
     /// Inside another noun phrase.
     Landmark,
@@ -281,7 +281,7 @@ impl TreeBuilder<'_> {
         (*place == 1).then(|| Tree::apply("superlative", [order, noun]))
     }
 
-    /// The noun with all that is said of it, affirmed modifiers first.
+    /// The noun with its adjectives and modifiers, in their order.
     fn with_modifiers(&self, description: &Description) -> Option<Tree> {
         let mut noun = Tree::apply("plain", [self.adjectives(description)?]);
         for modifier in &description.modifiers {
@@ -312,8 +312,8 @@ impl TreeBuilder<'_> {
         }
     }
 
-    /// Size, state, colours, material, noun, in this order; of what is gathered ("pair of black shoes") those of look before the
-    /// last word.
+    /// Size, state, colours, material and noun, in this order; of groups ("pair of black shoes") colours and material stand after
+    /// the "of".
     fn adjectives(&self, description: &Description) -> Option<Tree> {
         let Noun::Object(noun) = &description.noun else {
             return None;
