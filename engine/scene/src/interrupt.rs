@@ -44,7 +44,7 @@ thread_local! {
     /// That of the call that this thread works for; none: the call cannot be cancelled.
     static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
     /// Only on the thread that called.
-    static ASK: RefCell<Option<PollSchedule>> = const { RefCell::new(None) };
+    static POLL: RefCell<Option<PollSchedule>> = const { RefCell::new(None) };
 }
 
 /// Restores the previous values, also when the stack unwinds.
@@ -65,7 +65,7 @@ impl ScopeGuard {
 impl Drop for ScopeGuard {
     fn drop(&mut self) {
         TOKEN.set(self.token.take());
-        ASK.set(self.ask.take());
+        POLL.set(self.ask.take());
     }
 }
 
@@ -106,7 +106,7 @@ pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
 
 /// Unwinds here when the call is to stop. Costs some nanoseconds; meant for loops whose turns take a millisecond or so.
 pub fn check() {
-    if ASK.with_borrow(|asks| asks.as_ref().is_some_and(PollSchedule::is_due)) {
+    if POLL.with_borrow(|poll| poll.as_ref().is_some_and(PollSchedule::is_due)) {
         ask_now();
     }
     if TOKEN.with_borrow(|token| token.as_ref().is_some_and(is_set)) {
@@ -155,12 +155,12 @@ impl PollSchedule {
 }
 
 fn schedule() -> Option<PollSchedule> {
-    ASK.with_borrow(Clone::clone)
+    POLL.with_borrow(Clone::clone)
 }
 
 /// Returns whether this thread has somebody to ask.
-pub(crate) fn asks() -> bool {
-    ASK.with_borrow(Option::is_some)
+pub(crate) fn polls() -> bool {
+    POLL.with_borrow(Option::is_some)
 }
 
 /// Polls, and stores the result for all threads of the call.
@@ -172,7 +172,7 @@ pub(crate) fn ask_now() {
         token.store(true, Ordering::Relaxed);
     }
     let next = Instant::now() + INTERVAL;
-    ASK.set(Some(PollSchedule { ask, next, token }));
+    POLL.set(Some(PollSchedule { ask, next, token }));
 }
 
 /// Returns the token of the call that this thread works for.
@@ -283,7 +283,7 @@ mod tests {
             let mut pace = PollEvery::new(10);
             for count in turns {
                 // Every look is one that asks.
-                ASK.set(Some(PollSchedule {
+                POLL.set(Some(PollSchedule {
                     ask: note,
                     next: Instant::now(),
                     token: CancelToken::default(),
