@@ -38,20 +38,14 @@ struct GridAtState {
 
 impl PyNavigation {
     /// Of a house as it starts: every house keeps the grids of its latest walkers.
-    fn of_start(engines: &Engines, config_json: &str) -> Result<Self, PyFault> {
-        let grid = engines
-            .grid(&serde_json::from_str(config_json)?)
-            .map_err(refused)?;
+    fn of_start(engines: &Engines, walker: Data) -> Result<Self, PyFault> {
+        let grid = engines.grid(&walker.read()?).map_err(refused)?;
         Ok(Self::at(engines.house(), grid, None))
     }
 
     /// Of a house as it stands in a state.
-    pub(crate) fn build(
-        house: &Arc<House>,
-        state: &State,
-        config_json: &str,
-    ) -> Result<Self, PyFault> {
-        let config: NavConfig = serde_json::from_str(config_json)?;
+    pub(crate) fn build(house: &Arc<House>, state: &State, walker: Data) -> Result<Self, PyFault> {
+        let config: NavConfig = walker.read()?;
         let grid = Arc::new(NavGrid::build(house, state, &config).map_err(refused)?);
         Ok(Self::at(house, grid, Some(state.clone())))
     }

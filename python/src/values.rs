@@ -39,11 +39,6 @@ fn refused(what: &str) -> PyErr {
     to_python(PyFault::Config(what.to_owned()))
 }
 
-fn words(text: &Bound<'_, PyString>) -> PyResult<String> {
-    let refuse = |_| refused("text that is no Unicode: half of a surrogate pair");
-    Ok(text.to_str().map_err(refuse)?.to_owned())
-}
-
 fn value(object: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value> {
     if depth > DEEPEST {
         return Err(refused(
@@ -100,32 +95,4 @@ fn written(text: &Bound<'_, PyString>) -> PyResult<String> {
         Ok(text) => Ok(text.to_owned()),
         Err(_) => Err(refused("expected text that UTF-8 can hold")),
     }
-}
-
-/// A value as Python's own.
-pub(crate) fn object<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
-    Ok(match value {
-        Value::Null => py.None().into_bound(py),
-        Value::Bool(flag) => PyBool::new(py, *flag).to_owned().into_any(),
-        Value::String(text) => PyString::new(py, text).into_any(),
-        Value::Number(number) => match (number.as_i64(), number.as_u64()) {
-            (Some(number), _) => number.into_pyobject(py)?.into_any(),
-            (_, Some(number)) => number.into_pyobject(py)?.into_any(),
-            _ => PyFloat::new(py, number.as_f64().unwrap_or(f64::NAN)).into_any(),
-        },
-        Value::Array(rows) => {
-            let list = PyList::empty(py);
-            for row in rows {
-                list.append(object(py, row)?)?;
-            }
-            list.into_any()
-        }
-        Value::Object(rows) => {
-            let dict = PyDict::new(py);
-            for (name, part) in rows {
-                dict.set_item(name, object(py, part)?)?;
-            }
-            dict.into_any()
-        }
-    })
 }
