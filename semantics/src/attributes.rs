@@ -1,4 +1,4 @@
-//! What a thing is like, all of it as data.
+//! All attributes of a thing, as data.
 
 use crate::scene::{SemanticScene, Term};
 use crate::size::SizeClass;
@@ -36,9 +36,9 @@ pub struct ObjectAttributes {
     pub room: Option<u32>,
     /// The storey it is on, counted from 0.
     pub storey: Option<u32>,
-    /// How far it is open, 0 to 1; nothing for what does not open.
+    /// Openness, 0 to 1; nothing for what does not open.
     pub openness: Option<f32>,
-    /// Whether it is switched on; nothing for what has no switch.
+    /// The position of its switch; nothing for what has none.
     pub switched_on: Option<bool>,
     /// The agent that holds it, counted from 0.
     pub held_by: Option<u32>,

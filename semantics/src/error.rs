@@ -15,9 +15,9 @@ pub enum SemanticsError {
     /// A name that no order has.
     #[error("no selection {name:?}; there are {known:?}")]
     UnknownSelection {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The names that exist.
         known: Vec<&'static str>,
     },
     /// A house in which nothing of the wanted kind can be asked for.

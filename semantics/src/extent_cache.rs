@@ -10,7 +10,7 @@ const KEPT: usize = 4;
 /// The latest poses of a thing's parts with where it was then.
 type Known = Vec<(Box<[Pose]>, Arc<Extent>)>;
 
-/// Where moved things were when it was last asked.
+/// Extents of moved things as of the last query.
 #[derive(Debug)]
 pub(crate) struct ExtentCache {
     /// Shape (object,).

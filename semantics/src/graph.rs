@@ -47,7 +47,7 @@ pub struct AgentNode {
     pub agent: u32,
     /// The point between its feet, m.
     pub position: [f32; 3],
-    /// Where it faces, rad to the left of -Z.
+    /// Heading, rad to the left of -Z.
     pub yaw_rad: f32,
     /// The room it is in.
     pub room: Option<u32>,

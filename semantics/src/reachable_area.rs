@@ -1,4 +1,4 @@
-//! Where an agent can get to, for questions about what it can reach.
+//! The area that an agent can walk to, for questions about its reach.
 
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, AgentBody, AgentState, House, State};
@@ -6,7 +6,7 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// How far from a walkable cell an agent may stand, m.
+/// Largest distance of an agent from a walkable cell, m.
 const NEAR_M: f32 = 0.5;
 /// Edge of the squares by which cells are found, m.
 const SQUARE_M: f32 = 0.5;

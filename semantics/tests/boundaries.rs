@@ -19,7 +19,7 @@ struct Stage {
     room: RoomId,
 }
 
-/// What was built, and questions about it.
+/// A built house, and questions about it.
 struct Asked {
     house: Arc<House>,
     semantics: Semantics,

@@ -220,7 +220,7 @@ pub enum WarningKind {
         path: String,
         /// Why.
         reason: String,
-        /// What is not known because of it.
+        /// The consequence of it.
         consequence: String,
     },
     /// A metadata row that could not be read.

@@ -275,7 +275,7 @@ fn an_obj_file_may_be_a_link_to_elsewhere() {
     assert!(report.is_empty(), "{report}");
 }
 
-/// What is there and cannot be read is told once, and not as missing.
+/// An existing file that cannot be read is reported once, and not as missing.
 #[cfg(unix)]
 #[test]
 fn what_cannot_be_read_is_not_told_to_be_missing() {

@@ -5,8 +5,9 @@
 //! thread. When it returns true, `check` unwinds the stack, of pool threads too, with [`Interrupted`], and `interruptible`
 //! returns it. That is no panic: no hook sees it. (salsa cancels its queries in the same way.)
 //!
-//! What must not stop half-way runs in [`uninterruptible`], where the question is asked all the same; what holds a lock or half a result meanwhile uses [`catch_interrupt`]. What a
-//! `LazyLock` makes must not meet a `check`: stopped once, it is lost for good. A `OnceLock` stays empty, and is filled the next time.
+//! Code that must not stop half-way runs in [`uninterruptible`], where polling goes on; code that holds a lock or half a result
+//! meanwhile uses [`catch_interrupt`]. The initializer of a `LazyLock` must not meet a `check`: interrupted once, it is poisoned for
+//! good. A `OnceLock` stays empty, and is filled the next time.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -32,7 +33,7 @@ impl Interrupted {
 /// Set when a call is to stop. Shared with all threads that work for it.
 pub(crate) type CancelToken = Arc<AtomicBool>;
 
-/// What is asked, when again, and what is set when the answer is yes.
+/// The function that is polled, the next time for it, and the token that is set when it returns true.
 #[derive(Clone, Debug)]
 struct PollSchedule {
     ask: fn() -> bool,
@@ -43,7 +44,7 @@ struct PollSchedule {
 thread_local! {
     /// That of the call that this thread works for; none: the call cannot be cancelled.
     static TOKEN: RefCell<Option<CancelToken>> = const { RefCell::new(None) };
-    /// Only on the thread that called.
+    /// Set only on the calling thread.
     static POLL: RefCell<Option<PollSchedule>> = const { RefCell::new(None) };
 }
 
@@ -97,7 +98,7 @@ pub fn catch_interrupt<R>(work: impl FnOnce() -> R) -> Result<R, Interrupted> {
     })
 }
 
-/// Does `work` to its end: nothing in it stops. Who called is asked meanwhile, and a yes stops the call at its next [`check`]
+/// Runs `work` to its end: it is not cancelled. Polling goes on, and a cancellation meanwhile stops the call at its next [`check`]
 /// after this work.
 pub fn uninterruptible<R>(work: impl FnOnce() -> R) -> R {
     let _restore = ScopeGuard::set_and_guard(None, schedule());
@@ -158,7 +159,7 @@ fn schedule() -> Option<PollSchedule> {
     POLL.with_borrow(Clone::clone)
 }
 
-/// Returns whether this thread has somebody to ask.
+/// Returns whether this thread polls.
 pub(crate) fn polls() -> bool {
     POLL.with_borrow(Option::is_some)
 }
@@ -182,7 +183,7 @@ pub(crate) fn token() -> Option<CancelToken> {
 
 /// Runs a piece of the work of the call that `token` belongs to, on any thread.
 pub(crate) fn run_piece<R>(token: Option<&CancelToken>, work: impl FnOnce() -> R) -> R {
-    // The thread that called asks, too, when it has pieces to do itself.
+    // The calling thread polls, too, when it has pieces to do itself.
     let _restore = ScopeGuard::set_and_guard(token.cloned(), schedule());
     check();
     work()

@@ -31,7 +31,7 @@ pub enum Question {
         /// The clause.
         clause: Clause,
     },
-    /// How many things fit? Answered by a number.
+    /// The number of things that fit.
     HowMany(Box<Description>),
     /// An attribute of one thing. Answered by words.
     Attribute {

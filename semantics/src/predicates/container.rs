@@ -1,4 +1,4 @@
-//! What holds things inside.
+//! Containers and their contents.
 
 use super::inside::{BESIDE_M, is_in};
 use crate::scene::SemanticScene;

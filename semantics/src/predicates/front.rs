@@ -11,7 +11,7 @@ const LEVEL: f32 = 0.5;
 /// The largest gap at which something is still at a thing's front, m.
 const REACH_M: f32 = 3.7;
 
-/// Where a thing's own front looks, seen from above: (x, z), unit length; of an agent where it faces. `None` for kinds of
+/// The direction of a thing's own front, seen from above: (x, z), unit length; of an agent its heading. `None` for kinds of
 /// things without a front, and for what does not stand upright.
 pub(super) fn front_of(scene: &SemanticScene<'_>, term: Term) -> Option<Vec2> {
     let ahead = match term {
@@ -30,7 +30,7 @@ pub(super) fn front_of(scene: &SemanticScene<'_>, term: Term) -> Option<Vec2> {
     (level.length() >= LEVEL).then(|| level.normalize_or_zero())
 }
 
-/// Where models look: +Z as in glTF 2.0, SUNCG, ProcTHOR and our own catalogue; -Z in Habitat.
+/// The direction in which models face: +Z as in glTF 2.0, SUNCG, ProcTHOR and our own catalogue; -Z in Habitat.
 fn model_front(scene: &SemanticScene<'_>) -> Vec3 {
     if scene.house().source.starts_with("habitat") {
         Vec3::NEG_Z

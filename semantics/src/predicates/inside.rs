@@ -7,7 +7,7 @@ use dwell_scene::{Aabb, House, ObjectId};
 
 /// Largest number of things that a thing is in.
 const MOST_AROUND: usize = 32;
-/// How far beside a container's box the middle of what it contains may lie, m: more than its brim.
+/// Largest distance of the middle of a content from the container's box, m: more than its brim.
 pub(super) const BESIDE_M: f32 = 0.025;
 
 impl SemanticScene<'_> {

@@ -1,4 +1,4 @@
-//! What can be true of things: the one engine that is used for saying and for checking.
+//! Predicates: the one engine that is used for saying and for checking.
 //!
 //! To add one: a file here that implements [`Predicate`], and a line in [`all`].
 
@@ -65,7 +65,7 @@ use crate::semantics::Semantics;
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::{ObjectId, State};
 
-/// What always holds of a relation; checked for every relation by the tests. Of one between three things it is said of the last
+/// The algebra of a relation; checked for every relation by the tests. Of one between three things it is that of the last
 /// two.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(
@@ -131,7 +131,7 @@ pub trait Predicate: Sync {
     /// When it holds, in one sentence with thresholds and units.
     fn definition(&self) -> &'static str;
 
-    /// Where definition and thresholds come from.
+    /// The source of the definition and its thresholds.
     fn source(&self) -> &'static str;
 
     /// Returns what always holds of it.
@@ -191,7 +191,7 @@ const AGENT: &[TermKind] = &[TermKind::Agent];
 const OBJECT_OR_AGENT: &[TermKind] = &[TermKind::Object, TermKind::Agent];
 const OBJECT_OR_STRUCTURE: &[TermKind] = &[TermKind::Object, TermKind::Structure];
 const OBJECT_OR_ROOM: &[TermKind] = &[TermKind::Object, TermKind::Room];
-/// What has a middle and an outline.
+/// Kinds of terms with a middle and an outline.
 const THING: &[TermKind] = &[TermKind::Object, TermKind::Structure, TermKind::Agent];
 
 /// Every predicate.

@@ -1,4 +1,4 @@
-//! Where a thing is, whatever kind of thing it is.
+//! The place and shape of a term of any kind.
 
 use crate::geometry::Hull;
 use crate::scene::{SemanticScene, Term};

@@ -1,4 +1,4 @@
-//! Where things fall in a viewer's picture.
+//! Places of things in a viewer's picture.
 
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::Aabb;

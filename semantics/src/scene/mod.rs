@@ -39,7 +39,7 @@ pub struct SemanticScene<'a> {
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
     windows: OnceCell<IdVec<RoomId, usize>>,
-    /// What each thing carries, and what each holds; found by predicates.
+    /// The load of each thing, and the contents of each container; found by predicates.
     pub(crate) loads: OnceCell<BTreeMap<Term, Vec<ObjectId>>>,
     pub(crate) contents: OnceCell<BTreeMap<ObjectId, Vec<ObjectId>>>,
     rays: OnceCell<RayScene>,

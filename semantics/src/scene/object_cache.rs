@@ -26,11 +26,11 @@ pub(crate) struct ObjectCache {
     pub(crate) supports: OnceCell<Vec<SurfaceSupport>>,
     /// Its containers, rising.
     pub(crate) around: OnceCell<Vec<ObjectId>>,
-    /// What it hangs on.
+    /// The mount that it hangs on.
     pub(crate) mount: OnceCell<Option<Term>>,
-    /// What it stands against, rising.
+    /// Objects that it stands against, rising.
     pub(crate) against: OnceCell<Vec<ObjectId>>,
-    /// What may be next to it, rising.
+    /// Candidates for being next to it, rising.
     pub(crate) near: OnceCell<Vec<ObjectId>>,
     /// Objects next to it, rising.
     pub(crate) beside: OnceCell<Vec<ObjectId>>,

@@ -1,4 +1,4 @@
-//! What a predicate speaks about, and who looks.
+//! The arguments of predicates, and viewers.
 
 use super::SemanticScene;
 use dwell_scene::{

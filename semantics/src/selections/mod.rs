@@ -32,10 +32,10 @@ pub trait Selection: Sync {
     /// The name, in letters and underscores.
     fn name(&self) -> &'static str;
 
-    /// What the order is, in one sentence with units.
+    /// The definition of the order, in one sentence with units.
     fn definition(&self) -> &'static str;
 
-    /// Where the order and its margin come from.
+    /// The source of the order and its margin.
     fn source(&self) -> &'static str;
 
     /// Returns whether it means anything only from somebody's point of view.

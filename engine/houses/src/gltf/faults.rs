@@ -1,4 +1,4 @@
-//! What the `gltf` crate finds invalid, with what the file holds there.
+//! Faults found by the `gltf` crate, with the file's value at their place.
 
 use serde_json::Value;
 
@@ -54,7 +54,7 @@ fn shortened(value: &Value) -> String {
     }
 }
 
-/// What glTF 2.0 allows in a field whose values are few; `None` where the sentence alone says it.
+/// The values that glTF 2.0 allows in a field, where these are few; `None` where the sentence alone says it.
 fn allowed(place: &str) -> Option<&'static str> {
     let field = place.rsplit('.').next().unwrap_or(place);
     Some(match field {

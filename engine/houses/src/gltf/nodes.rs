@@ -76,7 +76,7 @@ struct DwellNodeExtras {
 /// A node in the traversal.
 struct PendingNode {
     node: usize,
-    /// Where the file names it.
+    /// The place in the file that names it.
     named: NodeReference,
     world_from_parent: Affine3A,
     /// The name of the topmost node above, which is a storey's in our files.

@@ -32,7 +32,7 @@ pub(super) enum TemplateKind {
 }
 
 impl TemplateKind {
-    /// Where the data set's file lists the folders of such templates.
+    /// The field of the data set's file that lists the folders of such templates.
     fn field(self) -> &'static str {
         match self {
             Self::Stage => "stages.paths",
@@ -187,7 +187,7 @@ impl Dataset {
     /// the star also matches.
     ///
     /// # Errors
-    /// What is wrong with a pattern that is not followed.
+    /// The fault of a pattern that is not followed.
     fn folders(&self, pattern: &str) -> Result<Vec<String>, WarningKind> {
         let Ok(clean) = DataRoot::resolve("", pattern) else {
             let path = pattern.to_owned();

@@ -27,7 +27,7 @@ pub(super) fn scale(instance: &SceneInstance) -> Option<Vec3> {
     scale.to_array().into_iter().all(usable).then_some(scale)
 }
 
-/// Where an instance stands, its scale, and [`template_from_asset`].
+/// The pose of an instance, its scale, and [`template_from_asset`].
 ///
 /// # Errors
 /// The field that is not usable, and what it holds.

@@ -25,7 +25,7 @@ const HALF_TURN: f32 = std::f32::consts::PI;
 /// Stretching beyond which, or below the inverse of which, it is reported.
 const ODD_STRETCH: f32 = 3.0;
 
-/// How far outside of a room's box the middle of a thing of that room may be, m: things hang in and on walls.
+/// Largest distance of a thing's middle from the box of its room, m: things hang in and on walls.
 const OUTSIDE_M: f32 = 0.5;
 
 /// A row of `assets/ai2thor_types.csv`.

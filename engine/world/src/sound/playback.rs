@@ -29,7 +29,7 @@ impl fmt::Display for SoundName {
     }
 }
 
-/// Where it is played.
+/// The place of a sound.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SoundPlace {
