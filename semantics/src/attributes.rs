@@ -1,4 +1,4 @@
-//! All attributes of a thing, as data.
+//! The attributes of objects, as data.
 
 use crate::scene::{SemanticScene, Term};
 use crate::size::SizeClass;
@@ -36,9 +36,9 @@ pub struct ObjectAttributes {
     pub room: Option<u32>,
     /// The storey it is on, counted from 0.
     pub storey: Option<u32>,
-    /// Openness, 0 to 1; nothing for what does not open.
+    /// Openness, 0 to 1; `None` for an object that does not open.
     pub openness: Option<f32>,
-    /// The position of its switch; nothing for what has none.
+    /// State of its switch, true for on; `None` without a switch.
     pub switched_on: Option<bool>,
     /// The agent that holds it, counted from 0.
     pub held_by: Option<u32>,

@@ -19,7 +19,7 @@ const TURN_RAD: f32 = std::f32::consts::FRAC_PI_6;
 /// The sides of a door or archway.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RoomDoorway {
-    /// The rooms on its sides, rising: two as a rule; one where it leads outside, or stands within a room.
+    /// The rooms on its sides, ascending: two as a rule; one where it leads outside, or stands within a room.
     pub rooms: Vec<RoomId>,
     /// True if one of its sides is in the open air, outside of every room.
     pub outside: bool,

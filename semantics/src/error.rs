@@ -17,7 +17,7 @@ pub enum SemanticsError {
     UnknownSelection {
         /// The requested name.
         name: String,
-        /// The names that exist.
+        /// The known names.
         known: Vec<&'static str>,
     },
     /// A house in which nothing of the wanted kind can be asked for.

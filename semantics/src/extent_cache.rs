@@ -4,13 +4,13 @@ use crate::geometry::Extent;
 use dwell_scene::{House, Id, ObjectId, Pose, State};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Of how many poses of a thing the latest are kept.
+/// Number of latest poses that are kept of each thing.
 const KEPT: usize = 4;
 
-/// The latest poses of a thing's parts with where it was then.
+/// The latest poses of a thing's parts, each with its extent.
 type Known = Vec<(Box<[Pose]>, Arc<Extent>)>;
 
-/// Extents of moved things as of the last query.
+/// A cache of the extents of moved things in their latest poses.
 #[derive(Debug)]
 pub(crate) struct ExtentCache {
     /// Shape (object,).
@@ -25,7 +25,7 @@ impl ExtentCache {
         }
     }
 
-    /// Returns where an object is in a state: what [`Extent::measure`] gives.
+    /// Returns the extent of an object in a state, as [`Extent::measure`] does.
     pub(crate) fn get(&self, house: &House, state: &State, object: ObjectId) -> Arc<Extent> {
         let parts = || house.objects[object].parts();
         let stands = |poses: &[Pose]| {

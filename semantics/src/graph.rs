@@ -69,7 +69,7 @@ pub struct RoomNode {
     pub storey: u32,
     /// Floor area, m².
     pub area_m2: f32,
-    /// The rooms that it is open to without a door between, rising.
+    /// The rooms that it is open to without a door between, ascending.
     #[serde(default)]
     pub passages: Vec<u32>,
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 struct NounClass {
     /// One of them, for its words.
     first: ObjectId,
-    /// All of them, rising.
+    /// All of them, ascending.
     things: Vec<ObjectId>,
 }
 
@@ -56,7 +56,7 @@ impl NounIndex {
         called.map(|(k, _)| k as u32).collect()
     }
 
-    /// The things of some kinds, rising.
+    /// The things of some kinds, ascending.
     pub(crate) fn things(&self, kinds: &[u32]) -> Vec<ObjectId> {
         let kinds = kinds.iter().map(|kind| &self.all[*kind as usize]);
         let mut things: Vec<ObjectId> =
@@ -65,7 +65,7 @@ impl NounIndex {
         things
     }
 
-    /// All windows, rising.
+    /// All windows, ascending.
     pub(crate) fn windows(&self) -> &[ObjectId] {
         &self.windows
     }

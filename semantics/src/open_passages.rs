@@ -19,7 +19,7 @@ const LEAST_M: f32 = 0.6;
 /// Distance from a door's box within which a place belongs to the door, m.
 const DOORWAY_M: f32 = 0.15;
 
-/// For each room the rooms that open passages lead to, rising; the relation is symmetric.
+/// For each room the rooms that open passages lead to, ascending; the relation is symmetric.
 ///
 /// A passage is where at least 0.6 m of a room's border can be crossed at three heights without meeting a wall or a thing,
 /// and another room lies half a metre beyond. `doors`: the boxes of what closes openings; there are no passages there.

@@ -1,4 +1,4 @@
-//! The area that an agent can walk to, for questions about its reach.
+//! The area that an agent can walk to, for questions about what it can reach.
 
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
 use dwell_scene::{Aabb, AgentBody, AgentState, House, State};
@@ -6,14 +6,14 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Largest distance of an agent from a walkable cell, m.
+/// The largest distance between an agent and the nearest walkable cell, m.
 const NEAR_M: f32 = 0.5;
 /// Edge of the squares by which cells are found, m.
 const SQUARE_M: f32 = 0.5;
 /// Grids that are kept for later questions.
 const KEPT: usize = 4;
 
-/// The places to which a way leads from where an agent stands, doors as they are.
+/// The places to which a path leads from an agent's place, with doors as they are.
 #[derive(Debug)]
 pub(crate) struct ReachableArea {
     /// The middles of cells on their surfaces, m, by square of the ground plane.

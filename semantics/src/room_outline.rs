@@ -10,7 +10,7 @@ const CORNER_COSINE: f32 = 0.707_11;
 /// A room seen from above.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RoomOutline {
-    /// Corners: points where two borders meet at 45 to 135 degrees on the room's side, (x, z), m.
+    /// The corners at which two borders meet at 45 to 135 degrees on the room's side, (x, z), m.
     pub(crate) corners: Vec<Vec2>,
     /// Along the longest border, unit length.
     along: Vec2,

@@ -40,7 +40,7 @@ pub struct RoomProperties {
     pub floor_color: Option<&'static str>,
     /// The colour word of most of its walls' inner faces.
     pub wall_color: Option<&'static str>,
-    /// The rooms that it is open to without a door between, rising.
+    /// The rooms that it is open to without a door between, ascending.
     pub passages: Vec<RoomId>,
 }
 

@@ -137,7 +137,7 @@ impl Semantics {
         self.doorways.get(&door)
     }
 
-    /// The doors and archways with their rooms, rising.
+    /// The doors and archways with their rooms, ascending.
     pub(crate) fn doorways(&self) -> impl Iterator<Item = (ObjectId, &RoomDoorway)> {
         self.doorways.iter().map(|(door, doorway)| (*door, doorway))
     }
@@ -164,7 +164,7 @@ impl Semantics {
         &self.structure[piece].1
     }
 
-    /// The structure pieces whose boxes share a point with `reach`, rising.
+    /// The structure pieces whose boxes share a point with `reach`, ascending.
     pub(crate) fn structure_at(&self, reach: &Aabb) -> impl Iterator<Item = StructureId> + use<> {
         let touching = self.structure_boxes.touching(reach).into_iter();
         touching.map(StructureId::from_index)

@@ -1,44 +1,44 @@
-//! Three truth values: what cannot be asked of these things here is neither true nor false.
+//! Truth values of three-valued logic: true, false, and undecided with a reason.
 
 use serde::{Deserialize, Serialize};
 
-/// Why a question has no answer here.
+/// The reason why a truth value or an answer is undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UndecidedReason {
-    /// It is asked of more or fewer things than it relates.
+    /// The number of arguments is not that of the predicate.
     WrongCount,
-    /// It says nothing about such a kind of thing.
+    /// The predicate is not defined for this kind of thing.
     WrongKind,
     /// The house or the state has no such thing.
     UnknownTerm,
-    /// It is meant from somebody's place, and nobody is named.
+    /// It depends on a viewer, and none is given.
     NoViewer,
     /// One of the things is not in front of the viewer.
     NotInFront,
     /// No predicate or order has this name.
     UnknownPredicate,
-    /// A definite description fits several things of which the clause is not decided alike.
+    /// A definite description fits several things, and the clause has not the same truth value for all.
     SeveralFit,
-    /// Nothing is named to which distances are measured.
+    /// The order needs a reference, and none is given.
     NoReference,
     /// The reference has no front of its own, or lies on its side.
     NoFront,
-    /// It does not open.
+    /// The thing does not open.
     DoesNotOpen,
-    /// It has no switch.
+    /// The thing has no switch.
     NoSwitch,
-    /// It is no container.
+    /// The thing is no container.
     NoContainer,
-    /// One of the things has no colour of its own, as glass and mirrors.
+    /// One of the things has no colour of its own, like glass and mirrors.
     NoColor,
-    /// One of the things is made of no one substance.
+    /// One of the things has no main substance.
     NoMaterial,
-    /// The agent stands where nobody can walk.
+    /// The agent does not stand on walkable floor.
     NotOnFloor,
-    /// There are fewer things than the number asked for.
+    /// There are fewer things than the place in the order.
     TooFew,
-    /// Two things come so close in the order that nobody could tell them apart.
+    /// Neighbours in the order differ by less than its margin.
     TooClose,
 }
 
@@ -78,22 +78,22 @@ pub enum Truth {
     True,
     /// It does not hold.
     False,
-    /// It cannot be asked of these things here.
+    /// It is not decided, for this reason.
     Undecided(UndecidedReason),
 }
 
 impl Truth {
-    /// Returns whether it holds.
+    /// Returns whether it is true.
     pub fn is_true(self) -> bool {
         self == Self::True
     }
 
-    /// Returns whether it is decided and does not hold.
+    /// Returns whether it is false.
     pub fn is_false(self) -> bool {
         self == Self::False
     }
 
-    /// The value; `None` where it is undecided.
+    /// Returns the value; `None` where it is undecided.
     pub fn value(self) -> Option<bool> {
         match self {
             Self::True => Some(true),
@@ -110,7 +110,7 @@ impl Truth {
         }
     }
 
-    /// Both hold: false where one is false, undecided (for the first such reason) where none is false and one undecided.
+    /// Conjunction: false where one is false; else undecided, for the first reason, where one is undecided.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -120,7 +120,7 @@ impl Truth {
         }
     }
 
-    /// One of them holds: true where one is true, undecided where none is true and one undecided.
+    /// Disjunction: true where one is true; else undecided, for the first reason, where one is undecided.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         !((!self).and(!other))
@@ -158,7 +158,7 @@ mod tests {
     const U: Truth = Truth::Undecided(UndecidedReason::NoViewer);
     const V: Truth = Truth::Undecided(UndecidedReason::NoFront);
 
-    /// The tables of Kleene 1952, § 64.
+    /// The truth tables of Kleene 1952, § 64.
     #[test]
     fn the_tables_are_those_of_strong_three_valued_logic() {
         use Truth::{False, True};

@@ -227,7 +227,7 @@ fn every_predicate_keeps_its_laws_in_every_arrangement() {
     );
 }
 
-/// The table of a relation, found without asking for each pair, is what asking for each pair finds.
+/// `Predicate::related` finds the same things as a test of every pair.
 #[test]
 fn what_is_related_is_what_holds() {
     let small = small_house();
@@ -263,7 +263,7 @@ fn what_is_related_is_what_holds() {
     }
 }
 
-/// Empty things contain nothing, whether that is asked of one thing or found for all.
+/// An empty container contains nothing, whether one container is asked for its contents or all are.
 #[test]
 fn what_is_empty_contains_nothing() {
     let (house, _) = dwell_houses::open("builtin:apartment").expect("the house opens");

@@ -19,7 +19,7 @@ struct Stage {
     room: RoomId,
 }
 
-/// A built house, and questions about it.
+/// A built stage, and questions about it.
 struct Asked {
     house: Arc<House>,
     semantics: Semantics,

@@ -1,4 +1,4 @@
-//! Above.
+//! The predicate `above`.
 
 use super::{
     Predicate, RelationProperties, THING,
@@ -7,9 +7,9 @@ use super::{
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
-/// The least gap, m: what is nearer rests on the other.
+/// The least gap, m: a thing that is nearer rests on the other.
 const LEAST_M: f32 = 0.03;
-/// The share of the smaller outline that both must have in common.
+/// The least overlap of the outlines, as share of the smaller one.
 const SHARE: f32 = 1.0 / 3.0;
 
 /// See [`Predicate::definition`].

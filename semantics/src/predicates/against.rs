@@ -1,4 +1,4 @@
-//! Against.
+//! The predicate `against`.
 
 use super::{
     OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, on::On, shape::shared_height_m,
@@ -11,11 +11,11 @@ use dwell_scene::{Aabb, ObjectId, StructureId, StructureKind, interrupt};
 
 /// The largest gap, m.
 const GAP_M: f32 = 0.06;
-/// The share of the narrower width that is so near, and of the height that both share.
+/// The least share of the narrower width within the gap, and of the height that both share.
 const SHARE: f32 = 0.5;
 
 impl SemanticScene<'_> {
-    /// Returns the objects against which the object stands, rising.
+    /// Returns the objects against which the object stands, ascending.
     fn stands_against(&self, object: ObjectId) -> &[ObjectId] {
         let against = &self.cache(object).against;
         against.get_or_init(|| {
@@ -26,7 +26,7 @@ impl SemanticScene<'_> {
     }
 }
 
-/// Returns whether a thing stands along the side of something, its height and outline told.
+/// Returns whether a thing stands along the side of something with these bounds and outline.
 fn is_along(scene: &SemanticScene<'_>, thing: ObjectId, bounds: &Aabb, outline: &Hull) -> bool {
     let extent = scene.extent(thing);
     if !extent.bounds.grown(GAP_M).intersects(bounds) {

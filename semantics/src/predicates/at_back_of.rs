@@ -1,10 +1,10 @@
-//! At the back of, by the reference's own front.
+//! The predicate `at_back_of`, by the reference's own front.
 
 use super::{OBJECT_OR_AGENT, Predicate, RelationProperties, THING, front::is_at_side};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
-/// See [`Predicate::definition`]; [`super::behind::Behind`] is meant from a viewer.
+/// See [`Predicate::definition`]; [`super::behind::Behind`] is relative to a viewer.
 pub(super) struct AtBackOf;
 
 impl Predicate for AtBackOf {

@@ -1,10 +1,10 @@
-//! At the front of, by the reference's own front.
+//! The predicate `at_front_of`, by the reference's own front.
 
 use super::{OBJECT_OR_AGENT, Predicate, RelationProperties, THING, front::is_at_side};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
-/// See [`Predicate::definition`]; [`super::in_front_of::InFrontOf`] is meant from a viewer.
+/// See [`Predicate::definition`]; [`super::in_front_of::InFrontOf`] is relative to a viewer.
 pub(super) struct AtFrontOf;
 
 impl Predicate for AtFrontOf {

@@ -1,4 +1,4 @@
-//! Attached to.
+//! The predicate `attached_to`.
 
 use super::mount::mount_of;
 use super::{OBJECT_OR_STRUCTURE, Predicate, RelationProperties};
@@ -10,7 +10,7 @@ use dwell_scene::{ObjectId, StructureId, StructureKind};
 const WALL_GAP_M: f32 = 0.06;
 const ATTACHED: &[TermKind] = &[TermKind::Object, TermKind::Part];
 
-/// Returns what a thing or a part is attached to.
+/// Returns the term to which a thing or a part is attached.
 fn holder_of(scene: &SemanticScene<'_>, term: Term) -> Option<Term> {
     match term {
         Term::Part(id) => Some(Term::Object(scene.house().parts[id].object)),
@@ -21,7 +21,7 @@ fn holder_of(scene: &SemanticScene<'_>, term: Term) -> Option<Term> {
     }
 }
 
-/// The nearest wall of a door or window; the first of equals.
+/// The nearest wall of a door or window; the first where several are equally near.
 fn wall_of(scene: &SemanticScene<'_>, opening: ObjectId) -> Option<StructureId> {
     let row = scene.facts(opening).category?;
     if !["door", "window"].contains(&row.nyu40_name) {

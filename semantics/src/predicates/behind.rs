@@ -1,4 +1,4 @@
-//! Behind, from a viewer.
+//! The predicate `behind`, relative to a viewer.
 
 use super::{Predicate, RelationProperties, THING, in_front_of::InFrontOf};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,4 +1,4 @@
-//! Below.
+//! The predicate `below`.
 
 use super::{Predicate, RelationProperties, THING, above::Above};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

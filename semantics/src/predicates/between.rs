@@ -1,4 +1,4 @@
-//! Between.
+//! The predicate `between`.
 
 use super::{
     Predicate, RelationProperties, THING,

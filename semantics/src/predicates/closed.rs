@@ -1,4 +1,4 @@
-//! Closed.
+//! The predicate `closed`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -5,13 +5,13 @@ use crate::scene::SemanticScene;
 use dwell_scene::{ObjectId, ReceptacleKind, interrupt};
 use std::collections::BTreeMap;
 
-/// Returns whether things go into an object.
+/// Returns whether an object can contain things.
 pub(super) fn is_container(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
     let row = scene.facts(object).category;
     row.is_some_and(|row| row.contains) || spaces(scene, object).next().is_some()
 }
 
-/// The volume of an object's spaces that hold things, m³; of its box where none is marked.
+/// The volume of an object's receptacles with things inside, m³; of its box where it has none.
 pub(super) fn space_m3(scene: &SemanticScene<'_>, object: ObjectId) -> f32 {
     let marked: f32 = spaces(scene, object).sum();
     if marked > 0.0 {
@@ -28,7 +28,7 @@ fn spaces(scene: &SemanticScene<'_>, object: ObjectId) -> impl Iterator<Item = f
 }
 
 impl SemanticScene<'_> {
-    /// Returns what is in an object, rising.
+    /// Returns the contents of an object, ascending.
     pub(crate) fn contents_of(&self, container: ObjectId) -> Vec<ObjectId> {
         if let Some(known) = self.contents.get() {
             return known.get(&container).cloned().unwrap_or_default();
@@ -37,7 +37,7 @@ impl SemanticScene<'_> {
         self.within(&reach, usize::MAX, |thing| is_in(self, thing, container))
     }
 
-    /// Returns what is in each object, rising: of all at once, each thing looked at once.
+    /// Returns the contents of every object, ascending, in one pass over all things.
     pub(crate) fn all_contents(&self) -> &BTreeMap<ObjectId, Vec<ObjectId>> {
         self.contents.get_or_init(|| {
             let mut contents: BTreeMap<ObjectId, Vec<ObjectId>> = BTreeMap::new();

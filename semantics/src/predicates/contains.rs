@@ -1,4 +1,4 @@
-//! Contains.
+//! The predicate `contains`.
 
 use super::{OBJECT, Predicate, RelationProperties, inside::Inside};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

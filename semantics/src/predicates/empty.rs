@@ -1,4 +1,4 @@
-//! Empty.
+//! The predicate `empty`.
 
 use super::{OBJECT, Predicate, RelationProperties, container::is_container};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

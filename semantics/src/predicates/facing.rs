@@ -1,4 +1,4 @@
-//! Facing.
+//! The predicate `facing`.
 
 use super::{
     OBJECT_OR_AGENT, Predicate, RelationProperties,

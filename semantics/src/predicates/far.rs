@@ -1,4 +1,4 @@
-//! Far from.
+//! The predicate `far`.
 
 use super::{
     Predicate, RelationProperties, THING,

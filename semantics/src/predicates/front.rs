@@ -1,4 +1,4 @@
-//! The front that a thing has of its own.
+//! The intrinsic front of a thing.
 
 use super::shape::{Shape, shape_of, share_room};
 use crate::scene::{SemanticScene, Term};
@@ -6,13 +6,13 @@ use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::space::forward_from_yaw;
 use glam::{Vec2, Vec3};
 
-/// The least length, seen from above, of a front of unit length: 60 degrees from level.
+/// The least horizontal length of a front direction of unit length: 60 degrees from level.
 const LEVEL: f32 = 0.5;
 /// The largest gap at which something is still at a thing's front, m.
 const REACH_M: f32 = 3.7;
 
-/// The direction of a thing's own front, seen from above: (x, z), unit length; of an agent its heading. `None` for kinds of
-/// things without a front, and for what does not stand upright.
+/// The horizontal direction of a thing's own front, (x, z), unit length; of an agent its heading. `None` for kinds of things
+/// without a front, and for things that do not stand upright.
 pub(super) fn front_of(scene: &SemanticScene<'_>, term: Term) -> Option<Vec2> {
     let ahead = match term {
         Term::Agent(id) => forward_from_yaw(scene.state.agents.get(id)?.yaw_rad),
@@ -30,7 +30,7 @@ pub(super) fn front_of(scene: &SemanticScene<'_>, term: Term) -> Option<Vec2> {
     (level.length() >= LEVEL).then(|| level.normalize_or_zero())
 }
 
-/// The direction in which models face: +Z as in glTF 2.0, SUNCG, ProcTHOR and our own catalogue; -Z in Habitat.
+/// The front direction in model space: +Z as in glTF 2.0, SUNCG, ProcTHOR and our own catalogue; -Z in Habitat.
 fn model_front(scene: &SemanticScene<'_>) -> Vec3 {
     if scene.house().source.starts_with("habitat") {
         Vec3::NEG_Z
@@ -39,7 +39,7 @@ fn model_front(scene: &SemanticScene<'_>) -> Vec3 {
     }
 }
 
-/// Returns whether `a` is before the side of `b` that looks along `side` times its front.
+/// Returns whether `a` is before the face of `b` along `side` times its front: 1 for the front, -1 for the back.
 pub(super) fn is_at_side(scene: &SemanticScene<'_>, a: Term, b: Term, side: f32) -> Truth {
     let Some(front) = front_of(scene, b) else {
         return Truth::Undecided(UndecidedReason::NoFront);
@@ -51,7 +51,7 @@ pub(super) fn is_at_side(scene: &SemanticScene<'_>, a: Term, b: Term, side: f32)
     Truth::from(before && p.outline.distance(&q.outline) <= REACH_M)
 }
 
-/// Returns whether the middle of `p` is before the face of `q` that looks along `out`, within its width and 45 degrees more.
+/// Returns whether the middle of `p` is before the face of `q` with outward direction `out`, within its width and 45 degrees more.
 fn is_before(p: &Shape<'_>, q: &Shape<'_>, out: Vec2) -> bool {
     let (_, face) = q.outline.range_along(out);
     let (left, right) = q.outline.range_along(out.perp());

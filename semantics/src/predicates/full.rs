@@ -1,4 +1,4 @@
-//! Full.
+//! The predicate `full`.
 
 use super::{
     OBJECT, Predicate, RelationProperties,

@@ -1,4 +1,4 @@
-//! Hangs on a wall, from a ceiling, or before a window.
+//! The predicate `hangs_on`: on a wall, from a ceiling, or before a window.
 
 use super::{OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, mount::mount_of};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,4 +1,4 @@
-//! Held by.
+//! The predicate `held_by`.
 
 use super::{AGENT, OBJECT, Predicate, RelationProperties, holds::Holds};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

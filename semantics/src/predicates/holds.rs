@@ -1,4 +1,4 @@
-//! Holds.
+//! The predicate `holds`.
 
 use super::{AGENT, OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

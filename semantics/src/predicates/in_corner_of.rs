@@ -1,4 +1,4 @@
-//! In the corner of a room.
+//! The predicate `in_corner_of`.
 
 use super::{
     OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties,

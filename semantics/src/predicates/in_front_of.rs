@@ -1,4 +1,4 @@
-//! In front of, from a viewer.
+//! The predicate `in_front_of`, relative to a viewer.
 
 use super::{Predicate, RelationProperties, THING, view::Sight};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
@@ -6,10 +6,10 @@ use crate::truth::{Truth, UndecidedReason};
 
 /// The least difference of depth, m.
 const LEAST_M: f32 = 0.1;
-/// The share of the narrower one's width in the picture that both have in common.
+/// The least overlap in the picture, as share of the narrower one's width.
 const SHARE: f32 = 1.0 / 3.0;
 
-/// See [`Predicate::definition`]; [`super::at_front_of::AtFrontOf`] is meant from the reference's own front.
+/// See [`Predicate::definition`]; [`super::at_front_of::AtFrontOf`] is relative to the reference's own front.
 pub(super) struct InFrontOf;
 
 impl Predicate for InFrontOf {

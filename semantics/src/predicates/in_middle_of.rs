@@ -1,4 +1,4 @@
-//! In the middle of a room.
+//! The predicate `in_middle_of`.
 
 use super::{
     OBJECT_OR_AGENT, Predicate, ROOM, RelationProperties,

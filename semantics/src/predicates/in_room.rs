@@ -1,10 +1,10 @@
-//! In a room.
+//! The predicate `in_room`.
 
 use super::{Predicate, ROOM, RelationProperties, THING, shape::room_of};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
-/// See [`Predicate::definition`]; a thing in a wall is where its file names it until it moves.
+/// See [`Predicate::definition`]; a thing within a wall is in the room that the house's file names, until it moves.
 pub(super) struct InRoom;
 
 impl Predicate for InRoom {

@@ -1,24 +1,24 @@
-//! In.
+//! The predicate `in`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 use dwell_scene::{Aabb, House, ObjectId};
 
-/// Largest number of things that a thing is in.
+/// Largest number of containers around a thing.
 const MOST_AROUND: usize = 32;
-/// Largest distance of the middle of a content from the container's box, m: more than its brim.
+/// The largest distance beside a container's box of the middle of its contents, m: more than the width of its brim.
 pub(super) const BESIDE_M: f32 = 0.025;
 
 impl SemanticScene<'_> {
-    /// Returns what is around the object, rising; at most 32 things. It is in those of them that are not lain upon.
+    /// Returns the things around the object, ascending; at most 32. It is in those of them that are not lain upon.
     pub(crate) fn containers(&self, object: ObjectId) -> &[ObjectId] {
         let around = &self.cache(object).around;
         around.get_or_init(|| containers(self, object))
     }
 }
 
-/// Returns what is around `thing`, rising.
+/// Returns the things around `thing`, ascending.
 fn containers(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<ObjectId> {
     let inner = scene.extent(thing).bounds;
     if scene.holder(thing).is_some() || inner.is_empty() {
@@ -47,7 +47,8 @@ pub(super) fn is_in(scene: &SemanticScene<'_>, thing: ObjectId, container: Objec
         && !scene.is_lain_upon(container)
 }
 
-/// See [`Predicate::definition`] and [`dwell_scene::House::encloses`]. Where the boxes of more than 32 things are around it, those about its middle count.
+/// See [`Predicate::definition`] and [`dwell_scene::House::encloses`]. Where the boxes of more than 32 things are around it, those
+/// about its middle count.
 pub(super) struct Inside;
 
 impl Predicate for Inside {

@@ -1,4 +1,4 @@
-//! Larger than.
+//! The predicate `larger_than`.
 
 use super::{OBJECT_OR_ROOM, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
@@ -6,7 +6,7 @@ use crate::truth::{Truth, UndecidedReason};
 
 /// The least ratio of lengths.
 pub(super) const LEAST_RATIO: f32 = 1.1;
-/// The same of areas and volumes.
+/// The least ratio of areas, and of volumes.
 const AREA_RATIO: f32 = LEAST_RATIO * LEAST_RATIO;
 const VOLUME_RATIO: f32 = AREA_RATIO * LEAST_RATIO;
 

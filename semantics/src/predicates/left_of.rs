@@ -1,10 +1,10 @@
-//! Left of.
+//! The predicate `left_of`.
 
 use super::{Predicate, RelationProperties, THING, view::picture_x};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
-/// The least difference of direction that counts, as tangent in the picture: 0.035 is 2 degrees at the middle.
+/// The least difference of direction, as tangent in the picture: 0.035 is 2 degrees at the middle.
 pub(crate) const LEAST_TANGENT: f32 = 0.035;
 
 /// See [`Predicate::definition`].

@@ -1,4 +1,4 @@
-//! Predicates: the one engine that is used for saying and for checking.
+//! Predicates: what can be true of things. Language is generated and checked by the same definitions.
 //!
 //! To add one: a file here that implements [`Predicate`], and a line in [`all`].
 
@@ -65,34 +65,34 @@ use crate::semantics::Semantics;
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::{ObjectId, State};
 
-/// The algebra of a relation; checked for every relation by the tests. Of one between three things it is that of the last
-/// two.
+/// The algebraic properties of a relation, which the tests check for every relation. Those of a ternary relation are meant of its
+/// last two arguments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[expect(
     clippy::struct_excessive_bools,
     reason = "the laws are independent of each other"
 )]
 pub struct RelationProperties {
-    /// r(a, b) gives r(b, a).
+    /// r(a, b) implies r(b, a).
     pub symmetric: bool,
     /// r(a, b) excludes r(b, a).
     pub antisymmetric: bool,
-    /// Nothing has it to itself.
+    /// r(a, a) is never true.
     pub irreflexive: bool,
-    /// Everything has it to itself, where it is decided.
+    /// r(a, a) is true wherever it is decided.
     pub reflexive: bool,
-    /// r(a, b) and r(b, c) give r(a, c).
+    /// r(a, b) and r(b, c) imply r(a, c).
     pub transitive: bool,
-    /// r(a, b) and r(a, c) give b = c.
+    /// r(a, b) and r(a, c) imply b = c.
     pub functional: bool,
-    /// The name of the relation s with r(a, b) exactly when s(b, a).
+    /// The name of the converse relation s: r(a, b) exactly when s(b, a).
     pub converse: Option<&'static str>,
-    /// The names of predicates that never hold of the same things in the same order.
+    /// The names of predicates that never hold of the same arguments.
     pub excludes: &'static [&'static str],
 }
 
 impl RelationProperties {
-    /// The names of the laws: "symmetric", "converse of `left_of`".
+    /// The names of the properties: "symmetric", "converse of `left_of`".
     pub fn names(&self) -> Vec<String> {
         let flags = [
             (self.symmetric, "symmetric"),
@@ -115,26 +115,26 @@ pub trait Predicate: Sync {
     /// The name, in letters and underscores.
     fn name(&self) -> &'static str;
 
-    /// The words between subject and object: "the cup is **on** the table". Empty for what sentences do not say so.
+    /// The words between subject and object: "the cup is **on** the table". Empty for predicates that sentences express otherwise.
     fn words(&self) -> &'static str {
         ""
     }
 
-    /// The kinds of things that each place takes, the subject first.
+    /// The kinds of things that each argument takes, the subject first.
     fn places(&self) -> &'static [&'static [TermKind]];
 
-    /// The number of its places, 1 to 3.
+    /// The number of arguments, 1 to 3.
     fn arity(&self) -> usize {
         self.places().len()
     }
 
-    /// When it holds, in one sentence with thresholds and units.
+    /// The definition: when it holds, in one sentence with thresholds and units.
     fn definition(&self) -> &'static str;
 
-    /// The source of the definition and its thresholds.
+    /// The source of definition and thresholds.
     fn source(&self) -> &'static str;
 
-    /// Returns what always holds of it.
+    /// Returns its algebraic properties.
     fn properties(&self) -> RelationProperties {
         RelationProperties::default()
     }
@@ -144,17 +144,17 @@ pub trait Predicate: Sync {
         false
     }
 
-    /// Returns whether tables of relations list it unasked: a thing has it to few others, and [`Self::related`] finds these
-    /// without asking for each pair.
+    /// Returns whether tables of relations list it by default: a thing has it to few others, and [`Self::related`] finds these
+    /// without a test of each pair.
     fn is_listed(&self) -> bool {
         false
     }
 
-    /// Decides of things that exist and are of the kinds that [`Self::places`] takes; with the viewer that it needs.
+    /// Evaluates it for arguments that exist and are of the kinds in [`Self::places`], with a viewer if it needs one.
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth;
 
-    /// Returns whether it holds of `args`, the subject first. Undecided for kinds of things that it says nothing about, and without
-    /// the viewer it needs.
+    /// Returns whether it holds of `args`, the subject first. Undecided for kinds of things that it is not defined for, and without
+    /// a viewer that it needs.
     fn holds(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
         if args.len() != self.arity() {
             return Truth::Undecided(UndecidedReason::WrongCount);
@@ -173,9 +173,9 @@ pub trait Predicate: Sync {
         self.decide(scene, args, viewer)
     }
 
-    /// Everything that `subject` has it to without a viewer, each once: of all objects, pieces of the building, rooms, storeys and
-    /// agents those for which [`Self::holds`] says so. Of a predicate that [`Self::is_listed`] without asking for each. None
-    /// where it does not have two places.
+    /// Returns the objects, structure pieces, rooms, storeys and agents b for which it holds of (`subject`, b), each once. A
+    /// predicate that [`Self::is_listed`] finds them without a test of each pair. Empty for predicates that do not take two
+    /// arguments or need a viewer.
     fn related(&self, scene: &SemanticScene<'_>, subject: Term) -> Vec<Term> {
         if self.arity() != 2 || self.needs_viewer() {
             return Vec::new();
@@ -191,10 +191,10 @@ const AGENT: &[TermKind] = &[TermKind::Agent];
 const OBJECT_OR_AGENT: &[TermKind] = &[TermKind::Object, TermKind::Agent];
 const OBJECT_OR_STRUCTURE: &[TermKind] = &[TermKind::Object, TermKind::Structure];
 const OBJECT_OR_ROOM: &[TermKind] = &[TermKind::Object, TermKind::Room];
-/// Kinds of terms with a middle and an outline.
+/// The kinds of things that have a middle and an outline.
 const THING: &[TermKind] = &[TermKind::Object, TermKind::Structure, TermKind::Agent];
 
-/// Every predicate.
+/// All predicates.
 pub fn all() -> &'static [&'static dyn Predicate] {
     &[
         &in_room::InRoom,
@@ -243,7 +243,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
     ]
 }
 
-/// The objects that `subject` has a relation to, rising.
+/// Returns the objects to which `subject` has a relation, ascending.
 pub(crate) fn related_objects(
     scene: &SemanticScene<'_>,
     predicate: &dyn Predicate,

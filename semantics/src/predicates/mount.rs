@@ -1,4 +1,4 @@
-//! Mounts of things that no surface below them carries: walls, ceilings, windows.
+//! The mounts of hanging things: walls, ceilings, windows.
 
 use crate::scene::{MOST_NEAR, SemanticScene, SurfaceSupport, Term};
 use dwell_scene::{Mobility, ObjectId, StructureId, StructureKind};
@@ -9,18 +9,18 @@ const WALL_GAP_M: f32 = 0.06;
 const CLEARANCE_M: f32 = 0.1;
 /// The largest distance from above between a window and the cloth before it, m.
 const WINDOW_GAP_M: f32 = 0.3;
-/// The share of the lower one's height that a window and the cloth before it must have in common.
+/// The least vertical overlap of a window and the cloth before it, as share of the smaller height.
 const WINDOW_SHARE: f32 = 0.3;
-/// The gap from which a thing is above a surface and does not touch it, m.
+/// The gap from which a thing is above a surface without touching it, m.
 const ABOVE_M: f32 = 0.01;
-/// Thickness below which a thing falls over where nothing holds it, m.
+/// Thickness below which a thing falls over unless something holds it, m.
 const FLAT_M: f32 = 0.08;
 /// Height above which a thing of cloth is held from above, m.
 const UPRIGHT_M: f32 = 0.3;
 
-/// Kinds that the table marks as mounted and that stand as well: on a sink, on the floor.
+/// Kinds that the table marks as mounted but that can also stand: on a sink, on the floor.
 const MAY_STAND: [&str; 3] = ["tap", "heater", "soap_dish"];
-/// Kinds that hang or lean.
+/// Kinds that either hang or lean.
 const MAY_LEAN: [&str; 4] = ["picture_frame", "mirror", "clock", "rifle"];
 
 fn is_cloth(scene: &SemanticScene<'_>, thing: ObjectId) -> bool {
@@ -28,11 +28,11 @@ fn is_cloth(scene: &SemanticScene<'_>, thing: ObjectId) -> bool {
     row.is_some_and(|row| ["curtain", "blinds"].contains(&row.name))
 }
 
-/// Returns whether a thing with surfaces below it hangs all the same, and those only touch it or lie close under it.
+/// Returns whether a thing hangs although there are surfaces below it, which only touch it or lie close under it.
 ///
-/// So it is with upright cloth, and with what the table calls mounted where a wall or a ceiling is near: when it ends a
-/// centimetre or more above them; when it is fixed in its place and of a kind that never stands; or when it is fixed and
-/// too flat to stand.
+/// This holds for upright cloth. It also holds for things that the table marks as mounted, near a wall or a ceiling, if they end
+/// a centimetre or more above the surfaces, or are fixed in place and of a kind that never stands, or are fixed and too flat to
+/// stand.
 pub(super) fn hangs_despite(
     scene: &SemanticScene<'_>,
     thing: ObjectId,
@@ -49,7 +49,7 @@ pub(super) fn hangs_despite(
     if is_cloth(scene, thing) && size.y >= UPRIGHT_M && size.y > size.x.min(size.z) {
         return true;
     }
-    // What stands in a shelf may be near the wall behind it.
+    // A thing that stands in a shelf may be near the wall behind it.
     let (house, inner) = (scene.house(), scene.extent(thing).bounds);
     let stands_in = |support: &SurfaceSupport| {
         let by = support.by.object();
@@ -64,7 +64,7 @@ pub(super) fn hangs_despite(
     above || (fixed && !MAY_STAND.contains(&row.name) && (flat || !MAY_LEAN.contains(&row.name)))
 }
 
-/// The pieces of the building on which a thing may hang, rising.
+/// The structure pieces from which a thing may hang, ascending.
 fn pieces_at(scene: &SemanticScene<'_>, thing: ObjectId) -> impl Iterator<Item = StructureId> {
     let reach = scene.extent(thing).bounds.grown(WALL_GAP_M);
     let pieces = scene.semantics.structure_at(&reach);
@@ -113,7 +113,7 @@ fn is_before(scene: &SemanticScene<'_>, cloth: ObjectId, window: ObjectId) -> bo
         && (room.is_none() || room == scene.room_of(cloth))
 }
 
-/// All at which `thing` may hang: windows, then pieces of the building, each rising.
+/// The candidate mounts of `thing`: windows, then structure pieces, each ascending.
 fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
     if scene.holder(thing).is_some() || !scene.supports(thing).is_empty() {
         return Vec::new();
@@ -130,8 +130,8 @@ fn mounts(scene: &SemanticScene<'_>, thing: ObjectId) -> Vec<Term> {
         .collect()
 }
 
-/// Returns the mount of `thing`: the nearest window for cloth, else the nearest wall, else a ceiling; the first of equals. Doors
-/// and windows are part of their walls and hang on nothing.
+/// Returns the mount of `thing`: the nearest window for cloth, else the nearest wall, else a ceiling; the first where several are
+/// equally near. Doors and windows are part of their walls and have no mount.
 pub(crate) fn mount_of(scene: &SemanticScene<'_>, thing: ObjectId) -> Option<Term> {
     let mount = &scene.cache(thing).mount;
     *mount.get_or_init(|| find_mount(scene, thing))

@@ -1,4 +1,4 @@
-//! Near.
+//! The predicate `near`.
 
 use super::{
     Predicate, RelationProperties, THING,
@@ -10,7 +10,7 @@ use crate::truth::Truth;
 /// The largest gap, m.
 const NEAR_M: f32 = 1.2;
 
-/// Returns whether somebody holds the thing.
+/// Returns whether an agent holds the thing.
 fn is_held(scene: &SemanticScene<'_>, term: Term) -> bool {
     term.object().is_some_and(|id| scene.holder(id).is_some())
 }

@@ -1,4 +1,4 @@
-//! Next to.
+//! The predicate `next_to`.
 
 use super::{OBJECT, Predicate, RelationProperties, on::On, shape::shared_height_m};
 use crate::scene::MOST_NEAR;
@@ -9,26 +9,26 @@ use dwell_scene::{Aabb, ObjectId, interrupt};
 /// The largest gap between neighbours, m.
 const NEIGHBOUR_GAP_M: f32 = 0.5;
 
-/// Returns how much of their heights two boxes share, m, and how much that must be.
+/// Returns the vertical overlap of two boxes and the least that neighbours have, m.
 fn shared_m(p: &Aabb, q: &Aabb) -> (f32, f32) {
     (shared_height_m(p, q), 0.5 * p.size().y.min(q.size().y))
 }
 
 impl SemanticScene<'_> {
-    /// Returns the candidates next to the object, rising; at most [`MOST_NEAR`] things.
+    /// Returns the candidates for neighbours of the object, ascending; at most [`MOST_NEAR`] things.
     pub(crate) fn neighbour_candidates(&self, object: ObjectId) -> &[ObjectId] {
         let near = &self.cache(object).near;
         near.get_or_init(|| neighbour_candidates(self, object))
     }
 
-    /// Returns the neighbours of the object, rising.
+    /// Returns the neighbours of the object, ascending.
     pub(crate) fn neighbours(&self, object: ObjectId) -> &[ObjectId] {
         let beside = &self.cache(object).beside;
         beside.get_or_init(|| neighbours(self, object))
     }
 }
 
-/// Returns the candidates next to `object`, rising.
+/// Returns the candidates for neighbours of `object`, ascending.
 fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     let own = scene.extent(object).bounds;
     scene.within(&own.grown(NEIGHBOUR_GAP_M), MOST_NEAR, |other| {
@@ -37,7 +37,7 @@ fn neighbour_candidates(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<Obje
     })
 }
 
-/// Returns the neighbours of `object`, rising.
+/// Returns the neighbours of `object`, ascending.
 fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
     interrupt::check();
     let near = scene.neighbour_candidates(object).iter().copied();
@@ -45,13 +45,13 @@ fn neighbours(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
         .collect()
 }
 
-/// Returns whether `other` is among the candidates next to `object`, where these are more than count.
+/// Returns whether `other` is among the candidates for neighbours of `object`, or these were not limited in number.
 fn counts(scene: &SemanticScene<'_>, object: ObjectId, other: ObjectId) -> bool {
     let near = scene.neighbour_candidates(object);
     near.len() < MOST_NEAR || near.binary_search(&other).is_ok()
 }
 
-/// Returns whether one of two things carries the other, or is around it.
+/// Returns whether one of two things carries the other or is around it.
 fn stacked(scene: &SemanticScene<'_>, a: ObjectId, b: ObjectId) -> bool {
     [(a, b), (b, a)].into_iter().any(|(p, q)| {
         let terms = [Term::Object(p), Term::Object(q)];

@@ -1,4 +1,4 @@
-//! On.
+//! The predicate `on`.
 
 use super::{
     OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, inside::is_in, support::REST_SHARE,
@@ -7,7 +7,7 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 use dwell_scene::ObjectId;
 
-/// Returns whether `thing` is in what it rests on: what lies in a bowl is in it, not on it.
+/// Returns whether `thing` is in its carrier `by`: an apple in a bowl is in it, not on it.
 fn is_in_it(scene: &SemanticScene<'_>, thing: ObjectId, by: Term) -> bool {
     by.object().is_some_and(|by| is_in(scene, thing, by))
 }

@@ -1,4 +1,4 @@
-//! On a storey.
+//! The predicate `on_storey`.
 
 use super::{Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,4 +1,4 @@
-//! Open.
+//! The predicate `open`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

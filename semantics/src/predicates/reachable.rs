@@ -1,4 +1,4 @@
-//! Reachable.
+//! The predicate `reachable`.
 
 use super::{AGENT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

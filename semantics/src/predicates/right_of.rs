@@ -1,4 +1,4 @@
-//! Right of.
+//! The predicate `right_of`.
 
 use super::{Predicate, RelationProperties, THING, left_of::LeftOf};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,10 +1,10 @@
-//! Of the same colour.
+//! The predicate `same_color`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
-/// The words for a thing's colours, sorted; none where it has none of its own.
+/// The words for a thing's colours, sorted; `None` for a thing without a colour of its own.
 fn words<'a>(scene: &SemanticScene<'a>, term: Term) -> Option<Vec<&'a str>> {
     let colors = scene.facts(term.object()?).spoken_colors().iter();
     let mut words: Vec<&str> = colors.map(|(word, _)| *word).collect();

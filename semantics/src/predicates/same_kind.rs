@@ -1,4 +1,4 @@
-//! Of the same kind.
+//! The predicate `same_kind`.
 
 use super::{OBJECT_OR_ROOM, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,13 +1,13 @@
-//! Of the same material.
+//! The predicate `same_material`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
-/// The share of a surface from which a thing is made of a substance.
+/// The least share of a thing's surface that its main substance has.
 const SHARE: f32 = 0.5;
 
-/// The substance that a thing is made of.
+/// The name of a thing's main substance; `None` without one.
 fn substance<'a>(scene: &SemanticScene<'a>, term: Term) -> Option<&'a str> {
     let (substance, share) = scene.facts(term.object()?).substances.first()?;
     (*share >= SHARE).then_some(substance.name.as_str())

@@ -1,4 +1,4 @@
-//! The place and shape of a term of any kind.
+//! Boxes and outlines of things of any kind.
 
 use crate::geometry::Hull;
 use crate::scene::{SemanticScene, Term};
@@ -7,7 +7,7 @@ use dwell_scene::{Aabb, RoomId};
 use glam::{Vec2, Vec3};
 use std::borrow::Cow;
 
-/// Corners of the polygon that stands for an agent's round outline.
+/// Corners of the polygon that approximates an agent's round outline.
 const CORNERS: usize = 12;
 
 /// A thing's box and its outline from above.
@@ -23,7 +23,7 @@ impl Shape<'_> {
     }
 }
 
-/// Returns where a thing is; `None` for rooms, storeys, parts and unknown agents.
+/// Returns the box and outline of a thing; `None` for rooms, storeys, parts and unknown agents.
 pub(super) fn shape_of<'a>(scene: &'a SemanticScene<'_>, term: Term) -> Option<Shape<'a>> {
     match term {
         Term::Object(id) => {
@@ -55,17 +55,17 @@ pub(super) fn shape_of<'a>(scene: &'a SemanticScene<'_>, term: Term) -> Option<S
     }
 }
 
-/// The box around a thing, m; `None` as of [`shape_of`].
+/// The box around a thing, m; `None` where [`shape_of`] is.
 pub(crate) fn bounds_of(scene: &SemanticScene<'_>, term: Term) -> Option<Aabb> {
     shape_of(scene, term).map(|shape| shape.bounds)
 }
 
-/// Returns how much of their heights two boxes share, m; negative for a gap.
+/// Returns the vertical overlap of two boxes, m; negative for a gap.
 pub(super) fn shared_height_m(p: &Aabb, q: &Aabb) -> f32 {
     p.max.y.min(q.max.y) - p.min.y.max(q.min.y)
 }
 
-/// The gap between two things, each taken for its outline from its lowest to its highest point, m; 0 where they touch.
+/// The gap between two things, each taken as the prism of its outline between its lowest and highest point, m; 0 for contact.
 pub(crate) fn gap_m(scene: &SemanticScene<'_>, a: Term, b: Term) -> Option<f32> {
     let (p, q) = (shape_of(scene, a)?, shape_of(scene, b)?);
     let beside_m = p.outline.distance(&q.outline);
@@ -73,13 +73,13 @@ pub(crate) fn gap_m(scene: &SemanticScene<'_>, a: Term, b: Term) -> Option<f32> 
     Some(Vec2::new(beside_m, above_m).length())
 }
 
-/// The least distance that [`gap_m`] can have, from the boxes alone, m.
+/// A lower bound of [`gap_m`], from the boxes alone, m.
 pub(super) fn least_gap_m(p: &Aabb, q: &Aabb) -> f32 {
     let apart = (p.min - q.max).max(q.min - p.max).max(Vec3::ZERO);
     apart.length()
 }
 
-/// The room of a thing; `None` where it is in none, or is no thing.
+/// The room of a thing; `None` outside of rooms and for storeys.
 pub(super) fn room_of(scene: &SemanticScene<'_>, term: Term) -> Option<RoomId> {
     match term {
         Term::Object(id) => scene.room_of(id),
@@ -91,7 +91,7 @@ pub(super) fn room_of(scene: &SemanticScene<'_>, term: Term) -> Option<RoomId> {
     }
 }
 
-/// Returns whether two things are not known to be in different rooms.
+/// Returns whether two things may be in one room: false only where both rooms are known and differ.
 pub(super) fn share_room(scene: &SemanticScene<'_>, a: Term, b: Term) -> bool {
     match (room_of(scene, a), room_of(scene, b)) {
         (Some(p), Some(q)) => p == q,

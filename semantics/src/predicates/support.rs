@@ -7,25 +7,25 @@ use dwell_scene::interrupt;
 use dwell_scene::{Aabb, ObjectId, StructureKind};
 use glam::Vec3;
 
-/// Largest distance of a surface below or above a point of the sole that it carries, m: models float and sink a little.
+/// Largest distance of a carrying surface below or above a point of the sole, m: models float and sink a little.
 pub(crate) const REST_GAP_M: f32 = 0.03;
-/// Largest height of a carrier's lowest point above that of the thing, m: what begins higher lies in the thing.
+/// Largest height of a carrier's lowest point above that of the thing, m: an object that begins higher lies in the thing.
 const CARRIER_RISE_M: f32 = 0.005;
 /// The layer at a thing's foot whose faces are its underside, m; thinner in thin things.
 const UNDERSIDE_M: f32 = 0.005;
-/// The share of a sole that something must carry to count: a board across two chairs rests on both.
+/// The least share of a sole on a carrier: a board across two chairs rests on both.
 pub(crate) const REST_SHARE: f32 = 1.0 / 3.0;
 
 /// A search for the highest surface within [`REST_GAP_M`] of every point of the sole, and its owner.
 struct SupportSearch {
-    /// Around the sole, grown by [`REST_GAP_M`].
+    /// The box around the sole, grown by [`REST_GAP_M`].
     reach: Aabb,
     sole: Vec<Vec3>,
     best: Vec<Option<(f32, Term)>>,
 }
 
 impl SupportSearch {
-    /// Offers a triangle of `owner`; what lies below `least_m` is the owner's own underside, which carries nothing.
+    /// Adds a triangle of `owner`. Surfaces below `least_m` are the owner's underside, which carries nothing.
     fn offer(&mut self, corners: [Vec3; 3], owner: Term, least_m: f32) {
         let low = corners[0].min(corners[1]).min(corners[2]);
         let high = corners[0].max(corners[1]).max(corners[2]);

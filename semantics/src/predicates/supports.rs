@@ -1,4 +1,4 @@
-//! Supports.
+//! The predicate `supports`.
 
 use super::{OBJECT, OBJECT_OR_STRUCTURE, Predicate, RelationProperties, on::On};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
@@ -7,7 +7,7 @@ use dwell_scene::{ObjectId, interrupt};
 use std::collections::BTreeMap;
 
 impl SemanticScene<'_> {
-    /// Returns what is on a thing or a piece of the building, rising.
+    /// Returns the objects on an object or a structure piece, ascending.
     pub(crate) fn loads_of(&self, carrier: Term) -> &[ObjectId] {
         let loads = self.loads.get_or_init(|| {
             let mut loads: BTreeMap<Term, Vec<ObjectId>> = BTreeMap::new();

@@ -1,4 +1,4 @@
-//! Switched off.
+//! The predicate `switched_off`.
 
 use super::{OBJECT, Predicate, RelationProperties, switched_on::SwitchedOn};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

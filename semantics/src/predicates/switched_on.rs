@@ -1,4 +1,4 @@
-//! Switched on.
+//! The predicate `switched_on`.
 
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

@@ -1,4 +1,4 @@
-//! Touching.
+//! The predicate `touching`.
 
 use super::{OBJECT_OR_STRUCTURE, Predicate, RelationProperties, triangle_distance::are_within};
 use crate::geometry::{object_triangles_near, structure_triangles};
@@ -21,7 +21,7 @@ fn bounds_of(scene: &SemanticScene<'_>, term: Term) -> Aabb {
     }
 }
 
-/// The triangles of a thing whose boxes share a point with `reach`, and those boxes grown by half the gap.
+/// The triangles of a thing near `reach`, each with its box grown by half the gap; the box shares a point with `reach`.
 fn triangles_in(scene: &SemanticScene<'_>, term: Term, reach: &Aabb) -> Vec<(Corners, Aabb)> {
     let mut found = Vec::new();
     let mut keep = |corners: Corners| {

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-/// Returns whether two triangles come within `gap_m` of each other, or cut each other.
+/// Returns whether two triangles come within `gap_m` of each other, or intersect.
 ///
 /// # Source
 /// C. Ericson, *Real-Time Collision Detection*, Morgan Kaufmann 2005, sections 5.1.5, 5.1.9 and 5.1.10.
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
     use dwell_scene::random::RandomKey;
 
-    /// Against the least distance between points sampled in both.
+    /// Compares with the least distance between points sampled in both.
     #[test]
     fn distances_agree_with_sampling() {
         let mut stream = RandomKey::root(3).stream();

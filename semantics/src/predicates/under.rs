@@ -1,4 +1,4 @@
-//! Under.
+//! The predicate `under`.
 
 use super::{OBJECT, Predicate, RelationProperties, inside::Inside, on::On};
 use crate::geometry::{height_under, object_triangles_near};
@@ -6,7 +6,7 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 use dwell_scene::{Aabb, ObjectId};
 
-/// The share of a sole that must be covered.
+/// The least share of a sole that is covered.
 const SHARE: f32 = 0.5;
 
 /// The share of the sole of `thing` over which a surface of `cover` lies, 0 to 1.

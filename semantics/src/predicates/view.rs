@@ -1,17 +1,17 @@
-//! Places of things in a viewer's picture.
+//! The projection of things into a viewer's picture.
 
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::Aabb;
 
 use super::shape::shape_of;
 
-/// The least depth of what is in front of a viewer, m.
+/// The least depth of a thing in front of a viewer, m.
 const LEAST_DEPTH_M: f32 = 0.05;
 /// The largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
 
-/// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
-/// front of the viewer.
+/// Returns the horizontal place of a thing's middle in the viewer's picture: x over depth, positive to the right; `None` when it
+/// is not in front of the viewer.
 pub(crate) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
     let point = viewer.upright_from_world(scene.center(term)?);
     let depth = -point.z;
@@ -24,17 +24,17 @@ pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term
     picture_x(scene, viewer, term).is_some()
 }
 
-/// A thing as a viewer sees it.
+/// The place and width of a thing in a viewer's picture.
 pub(super) struct Sight {
     /// The depth of its middle, m.
     pub(super) depth_m: f32,
-    /// From its left to its right edge in the picture, tangents.
+    /// Its left and right edge in the picture, tangents.
     left: f32,
     right: f32,
 }
 
 impl Sight {
-    /// Returns how a viewer sees a thing; `None` when its middle is not in front of the viewer.
+    /// Projects a thing into a viewer's picture; `None` when its middle is not in front of the viewer.
     pub(super) fn of(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<Self> {
         let middle = picture_x(scene, viewer, term)?;
         let depth_m = -viewer.upright_from_world(scene.center(term)?).z;
@@ -54,7 +54,7 @@ impl Sight {
         })
     }
 
-    /// The share of the narrower one's width that both have in common, 0 to 1.
+    /// The overlap of both in the picture, as share of the narrower one's width, 0 to 1.
     pub(super) fn shared_width(&self, other: &Self) -> f32 {
         let shared = self.right.min(other.right) - self.left.max(other.left);
         let narrower = (self.right - self.left).min(other.right - other.left);

@@ -1,4 +1,4 @@
-//! Visible.
+//! The predicate `visible`.
 
 use super::{OBJECT, Predicate};
 use crate::line_of_sight::is_in_line_of_sight;
@@ -8,7 +8,7 @@ use crate::truth::Truth;
 /// Half the field of view, rad.
 const HALF_ANGLE_RAD: f32 = std::f32::consts::FRAC_PI_4;
 
-/// See [`Predicate::definition`]; [`super::visible_from::VisibleFrom`] is meant whichever way somebody looks.
+/// See [`Predicate::definition`]; [`super::visible_from::VisibleFrom`] does not depend on the direction of view.
 pub(super) struct Visible;
 
 impl Predicate for Visible {

@@ -1,4 +1,4 @@
-//! Visible from where somebody stands.
+//! The predicate `visible_from`, in any direction of view.
 
 use super::{AGENT, OBJECT, Predicate, RelationProperties};
 use crate::line_of_sight::is_in_line_of_sight;

@@ -1,4 +1,4 @@
-//! Wider than.
+//! The predicate `wider_than`.
 
 use super::{OBJECT, Predicate, RelationProperties, larger_than::LEAST_RATIO};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};

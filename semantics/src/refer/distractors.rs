@@ -16,7 +16,7 @@ pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
 /// Things between checks for cancellation.
 const THINGS_PER_CHECK: usize = 64;
 
-/// The common elements of all lists, which are rising, at most `most`; shorter lists are faster.
+/// The common elements of all lists, which are ascending, at most `most`; shorter lists are faster.
 pub(super) fn common(lists: &[&[ObjectId]], most: usize) -> Vec<ObjectId> {
     let Some((shortest, list)) = lists.iter().enumerate().min_by_key(|(_, list)| list.len()) else {
         return Vec::new();
@@ -100,7 +100,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that a description with their noun fits, without regard to its relation; rising.
+    /// Those that a description with their noun fits, without regard to its relation; ascending.
     pub(super) fn matching(
         &self,
         scene: &SemanticScene<'_>,
@@ -150,7 +150,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that have an informative relation to something that its landmark fits; rising.
+    /// Those that have an informative relation to something that its landmark fits; ascending.
     pub(super) fn with_landmark(
         &self,
         scene: &SemanticScene<'_>,

@@ -23,7 +23,7 @@ pub(crate) struct LandmarkQuery {
     pub(crate) colors: Vec<String>,
 }
 
-/// Rising.
+/// Objects, ascending.
 pub(crate) type ObjectList = Rc<[ObjectId]>;
 /// Pairs of things and their relata, by things.
 pub(crate) type RelatedPairs = Vec<(ObjectId, ObjectId)>;
@@ -31,7 +31,7 @@ pub(crate) type RelatedPairs = Vec<(ObjectId, ObjectId)>;
 /// The things that may be called by one noun. Things with a trait are listed once for each trait, so that a description need not look
 /// at all of them.
 pub(crate) struct DistractorSet {
-    /// Things, rising.
+    /// Things, ascending.
     pub(crate) things: ObjectList,
     pub(crate) in_rooms: BTreeMap<RoomId, usize>,
     pub(crate) having: OnceCell<BTreeMap<Attribute, ObjectList>>,

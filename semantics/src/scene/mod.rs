@@ -1,4 +1,4 @@
-//! A house in one state, as predicates read it.
+//! A house in one state, as predicates see it.
 
 mod distractor_set;
 mod object_cache;
@@ -25,11 +25,10 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Largest number of neighbours that a thing is beside, on, or hung before: where more lie in each other, those about its
-/// middle count.
+/// Largest number of things near a thing (beside it, under it, behind it) that are looked at: those about its middle.
 pub(crate) const MOST_NEAR: usize = 128;
 
-/// A house in one state, with what was measured so far. Cheap to make: everything is measured at first use.
+/// A house in one state, with a cache of measurements. Cheap to make: everything is measured at first use.
 pub struct SemanticScene<'a> {
     /// The state-independent facts.
     pub semantics: &'a Semantics,
@@ -39,12 +38,12 @@ pub struct SemanticScene<'a> {
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
     windows: OnceCell<IdVec<RoomId, usize>>,
-    /// The load of each thing, and the contents of each container; found by predicates.
+    /// The loads of each carrier and the contents of each container; filled by predicates.
     pub(crate) loads: OnceCell<BTreeMap<Term, Vec<ObjectId>>>,
     pub(crate) contents: OnceCell<BTreeMap<ObjectId, Vec<ObjectId>>>,
     rays: OnceCell<RayScene>,
     reach: RefCell<BTreeMap<AgentId, Rc<ReachableArea>>>,
-    /// By noun.
+    /// The things that each noun can name, by noun.
     alike: RefCell<BTreeMap<String, Rc<DistractorSet>>>,
 }
 
@@ -93,8 +92,8 @@ impl<'a> SemanticScene<'a> {
         extent.get_or_init(|| self.semantics.moved_extent(self.state, object))
     }
 
-    /// At most `most` things whose boxes share a point with `reach` and for which `counts` is true, rising; of more than that those
-    /// about its middle.
+    /// Returns at most `most` things whose boxes share a point with `reach` and for which `counts` is true, ascending; of more than
+    /// that, those about its middle.
     pub(crate) fn within(
         &self,
         reach: &Aabb,
@@ -212,8 +211,8 @@ impl<'a> SemanticScene<'a> {
         })
     }
 
-    /// Returns where an agent can get to from where it stands; `None` for an unknown agent, or one that stands where nobody can
-    /// walk.
+    /// Returns the area that an agent can reach from its place; `None` for an unknown agent, and for one that does not stand on
+    /// walkable floor.
     pub(crate) fn reachable_area(&self, agent: AgentId) -> Option<Rc<ReachableArea>> {
         if let Some(known) = self.reach.borrow().get(&agent) {
             return Some(known.clone());
@@ -223,7 +222,7 @@ impl<'a> SemanticScene<'a> {
         Some(area)
     }
 
-    /// Returns how many windows a room has.
+    /// Returns the number of windows of a room.
     pub(crate) fn windows_in(&self, room: RoomId) -> usize {
         let rooms = self.windows.get_or_init(|| {
             let mut rooms = IdVec::filled(0, self.house().rooms.len());
@@ -237,7 +236,7 @@ impl<'a> SemanticScene<'a> {
         rooms[room]
     }
 
-    /// The things that may be called by the nouns that were looked up so far.
+    /// The things that each noun can name, of the nouns that were looked up so far.
     pub(crate) fn distractor_cache(&self) -> &RefCell<BTreeMap<String, Rc<DistractorSet>>> {
         &self.alike
     }

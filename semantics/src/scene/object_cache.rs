@@ -6,7 +6,7 @@ use dwell_scene::{ObjectId, RoomId};
 use std::cell::OnceCell;
 use std::sync::Arc;
 
-/// Something that carries a thing.
+/// A carrier of a thing, with its share of the load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceSupport {
     /// The carrier: an object or a structure piece.
@@ -24,14 +24,14 @@ pub(crate) struct ObjectCache {
     pub(super) room: OnceCell<Option<RoomId>>,
     /// Its carriers, the largest share first.
     pub(crate) supports: OnceCell<Vec<SurfaceSupport>>,
-    /// Its containers, rising.
+    /// Its containers, ascending.
     pub(crate) around: OnceCell<Vec<ObjectId>>,
-    /// The mount that it hangs on.
+    /// Its mount: the term on which it hangs.
     pub(crate) mount: OnceCell<Option<Term>>,
-    /// Objects that it stands against, rising.
+    /// The objects against which it stands, ascending.
     pub(crate) against: OnceCell<Vec<ObjectId>>,
-    /// Candidates for being next to it, rising.
+    /// Candidates for its neighbours, ascending.
     pub(crate) near: OnceCell<Vec<ObjectId>>,
-    /// Objects next to it, rising.
+    /// Its neighbours, the objects next to it, ascending.
     pub(crate) beside: OnceCell<Vec<ObjectId>>,
 }

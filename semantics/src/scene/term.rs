@@ -7,7 +7,7 @@ use dwell_scene::{
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Something that a predicate speaks about.
+/// An argument of a predicate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Term {
@@ -102,7 +102,7 @@ impl Term {
     }
 }
 
-/// Somebody who looks: left and right are meant from here.
+/// The viewer from whom left and right are meant.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Viewer {
     /// A camera's pose: it looks along -Z, +X is right.

@@ -1,4 +1,4 @@
-//! Closest to something.
+//! The order `closest_to`.
 
 use super::{LENGTH_MARGIN_M, OWN, Selection, gap_m};
 use crate::scene::{SemanticScene, Term, Viewer};

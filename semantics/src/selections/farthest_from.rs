@@ -1,4 +1,4 @@
-//! Farthest from something.
+//! The order `farthest_from`.
 
 use super::{LENGTH_MARGIN_M, OWN, Selection, gap_m};
 use crate::scene::{SemanticScene, Term, Viewer};

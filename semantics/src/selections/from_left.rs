@@ -1,4 +1,4 @@
-//! From the left.
+//! The order `from_left`.
 
 use super::Selection;
 use crate::predicates::{LEAST_TANGENT, picture_x};

@@ -1,4 +1,4 @@
-//! From the right.
+//! The order `from_right`.
 
 use super::Selection;
 use crate::predicates::{LEAST_TANGENT, picture_x};

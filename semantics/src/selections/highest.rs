@@ -1,4 +1,4 @@
-//! The highest up.
+//! The order `highest`.
 
 use super::{LENGTH_MARGIN_M, OWN, Selection};
 use crate::scene::{SemanticScene, Term, Viewer};

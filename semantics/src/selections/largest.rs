@@ -1,4 +1,4 @@
-//! The largest.
+//! The order `largest`.
 
 use super::{RATIO_MARGIN, Selection, WEBER, logarithm};
 use crate::scene::{SemanticScene, Term, Viewer};

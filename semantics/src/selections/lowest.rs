@@ -1,4 +1,4 @@
-//! The lowest down.
+//! The order `lowest`.
 
 use super::{LENGTH_MARGIN_M, OWN, Selection};
 use crate::scene::{SemanticScene, Term, Viewer};

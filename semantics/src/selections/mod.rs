@@ -1,4 +1,4 @@
-//! Superlatives and ordinals: one thing out of several by its place in an order, "the second chair from the left".
+//! Superlatives and ordinals: the choice of one of several things by its place in an order, "the second chair from the left".
 //!
 //! To add one: a file here that implements [`Selection`], and a line in [`all`].
 
@@ -19,7 +19,7 @@ use crate::predicates;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::truth::UndecidedReason;
 
-/// The least difference of logarithms of sizes: a ratio of 1.1, as of the comparisons.
+/// The least difference of logarithms of sizes: a ratio of 1.1, that of `larger_than`.
 const RATIO_MARGIN: f32 = 0.095_310_18;
 /// The least difference of distances and heights, m.
 const LENGTH_MARGIN_M: f32 = 0.1;
@@ -35,20 +35,20 @@ pub trait Selection: Sync {
     /// The definition of the order, in one sentence with units.
     fn definition(&self) -> &'static str;
 
-    /// The source of the order and its margin.
+    /// The source of the order and of its margin.
     fn source(&self) -> &'static str;
 
-    /// Returns whether it means anything only from somebody's point of view.
+    /// Returns whether it depends on a viewer.
     fn needs_viewer(&self) -> bool {
         false
     }
 
-    /// Returns whether things are compared with another one.
+    /// Returns whether it depends on a reference, such as the bed in "closest to the bed".
     fn needs_reference(&self) -> bool {
         false
     }
 
-    /// The place of a candidate in the order: the smallest comes first. `None` for what has none.
+    /// The sort key of a candidate; the smallest comes first. `None` for a thing that has no place in the order.
     fn key(
         &self,
         scene: &SemanticScene<'_>,
@@ -57,15 +57,15 @@ pub trait Selection: Sync {
         viewer: Option<&Viewer>,
     ) -> Option<f32>;
 
-    /// The least difference of keys by which neighbours in the order must differ so that a person sees it.
+    /// The least difference of the keys of neighbours in the order that a person can see.
     fn margin(&self) -> f32;
 
-    /// The `n`-th of `candidates`, counted from 1; what has no place in the order does not count, nor does the reference.
+    /// Selects the `n`-th of `candidates`, counted from 1. Things without a place in the order and the reference do not count.
     ///
     /// # Errors
-    /// [`UndecidedReason::NoViewer`] and [`UndecidedReason::NoReference`] without what it needs;
-    /// [`UndecidedReason::NotInFront`] where a viewer sees none of them; [`UndecidedReason::TooFew`] where there are not so many;
-    /// [`UndecidedReason::TooClose`] where the one before or after it differs by less than the margin.
+    /// [`UndecidedReason::NoViewer`] and [`UndecidedReason::NoReference`] where one is needed and not given;
+    /// [`UndecidedReason::NotInFront`] where no candidate is in front of the viewer; [`UndecidedReason::TooFew`] for fewer than
+    /// `n`; [`UndecidedReason::TooClose`] where a neighbour in the order differs by less than the margin.
     fn select(
         &self,
         scene: &SemanticScene<'_>,
@@ -107,7 +107,7 @@ pub trait Selection: Sync {
     }
 }
 
-/// Every order.
+/// All orders.
 pub fn all() -> &'static [&'static dyn Selection] {
     &[
         &from_left::FromLeft,
@@ -144,7 +144,7 @@ fn gap_m(scene: &SemanticScene<'_>, a: Term, b: Term) -> Option<f32> {
     predicates::gap_m(scene, a, b)
 }
 
-/// The natural logarithm of a size; `None` of nothing.
+/// The natural logarithm of a size; `None` unless it is positive.
 fn logarithm(size: f32) -> Option<f32> {
     (size > 0.0).then(|| dwell_scene::math::ln(size))
 }

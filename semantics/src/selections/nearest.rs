@@ -1,4 +1,4 @@
-//! Nearest to the viewer.
+//! The order `nearest`.
 
 use super::{LENGTH_MARGIN_M, OWN, Selection};
 use crate::predicates;

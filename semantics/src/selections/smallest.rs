@@ -1,4 +1,4 @@
-//! The smallest.
+//! The order `smallest`.
 
 use super::{RATIO_MARGIN, Selection, WEBER, logarithm};
 use crate::scene::{SemanticScene, Term, Viewer};

@@ -1,4 +1,4 @@
-//! The tallest.
+//! The order `tallest`.
 
 use super::{RATIO_MARGIN, Selection, WEBER, logarithm};
 use crate::scene::{SemanticScene, Term, Viewer};

@@ -1,4 +1,4 @@
-//! The widest.
+//! The order `widest`.
 
 use super::{RATIO_MARGIN, Selection, WEBER, logarithm};
 use crate::scene::{SemanticScene, Term, Viewer};
