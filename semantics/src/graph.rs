@@ -203,8 +203,8 @@ fn in_front(scene: &SemanticScene<'_>, viewer: &Viewer) -> Vec<Term> {
 /// One relation that holds: subject, predicate by its place in [`predicates::all`], object.
 pub type Related = (Term, usize, Term);
 
-/// The relations of objects and agents by the predicates at `codes` of [`predicates::all`], those with two places; by subject, then
-/// by predicate. A relation that needs a viewer is told of the 1,000 things nearest before it, and not at all without one.
+/// Returns the relations of objects and agents by the binary predicates at `codes` of [`predicates::all`]; by subject, then by
+/// predicate. A relation that needs a viewer is evaluated for the 1,000 things nearest before it, and left out without one.
 pub fn relations(
     scene: &SemanticScene<'_>,
     codes: &[usize],

@@ -111,7 +111,7 @@ impl Semantics {
         &self.house
     }
 
-    /// Returns where an agent can get to as things stand; `None` where nobody can walk, and for an unknown agent.
+    /// Returns the area that an agent can reach as things stand; `None` for an unknown agent, and off walkable floor.
     pub(crate) fn reachable_area(&self, state: &State, agent: AgentId) -> Option<ReachableArea> {
         let agent = state.agents.get(agent)?;
         self.walkers.reachable_area(&self.house, state, agent)

@@ -74,11 +74,11 @@ impl UndecidedReason {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Truth {
-    /// It holds.
+    /// True.
     True,
-    /// It does not hold.
+    /// False.
     False,
-    /// It is not decided, for this reason.
+    /// Neither, for this reason.
     Undecided(UndecidedReason),
 }
 

@@ -22,16 +22,16 @@ pub enum AttributeKind {
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
-    /// Is it true? Answered by a truth value.
+    /// A yes-no question: is the clause true? Answered by a truth value.
     Whether(Clause),
-    /// Which things, put in place of [`Phrase::Hole`], make the clause true? Answered by ids.
+    /// A question for things that make the clause true in place of [`Phrase::Hole`]. Answered by ids.
     Which {
         /// A description of the candidates, whose quantifier is ignored; `None` for "what".
         kind: Option<Box<Description>>,
         /// The clause.
         clause: Clause,
     },
-    /// The number of things that fit.
+    /// A count of the things that fit a description. Answered by a number.
     HowMany(Box<Description>),
     /// An attribute of one thing. Answered by words.
     Attribute {

@@ -100,7 +100,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that a description with their noun fits, without regard to its relation; ascending.
+    /// The things that a description with their noun fits, regardless of its relation; ascending.
     pub(super) fn matching(
         &self,
         scene: &SemanticScene<'_>,
@@ -150,7 +150,7 @@ impl DistractorSet {
         })
     }
 
-    /// Those that have an informative relation to something that its landmark fits; ascending.
+    /// The things that have an informative relation to something that its landmark fits; ascending.
     pub(super) fn with_landmark(
         &self,
         scene: &SemanticScene<'_>,

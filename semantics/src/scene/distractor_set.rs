@@ -28,14 +28,14 @@ pub(crate) type ObjectList = Rc<[ObjectId]>;
 /// Pairs of things and their relata, by things.
 pub(crate) type RelatedPairs = Vec<(ObjectId, ObjectId)>;
 
-/// The things that may be called by one noun. Things with a trait are listed once for each trait, so that a description need not look
-/// at all of them.
+/// The things that one noun can name. Things with a trait are listed once for each trait, so that a description need not look at
+/// all of them.
 pub(crate) struct DistractorSet {
     /// Things, ascending.
     pub(crate) things: ObjectList,
     pub(crate) in_rooms: BTreeMap<RoomId, usize>,
     pub(crate) having: OnceCell<BTreeMap<Attribute, ObjectList>>,
-    /// Those that have some traits together.
+    /// Things that have several traits together, by these traits.
     pub(crate) having_all: RefCell<BTreeMap<Vec<Attribute>, ObjectList>>,
     /// Pairs by predicate and the kind of the relatum.
     pub(crate) pairs: OnceCell<BTreeMap<(&'static str, u32), RelatedPairs>>,

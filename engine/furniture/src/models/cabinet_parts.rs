@@ -10,7 +10,7 @@ use std::f32::consts::FRAC_PI_2;
 pub(super) const BOARD_M: f32 = 0.018;
 /// Thickness of back panels, m.
 const BACK_M: f32 = 0.006;
-/// Which of a carcass' boards is its top.
+/// The index of the top among a carcass' boards.
 pub(super) const TOP: usize = 3;
 /// Gap between neighbouring fronts, m.
 pub(super) const GAP_M: f32 = 0.005;

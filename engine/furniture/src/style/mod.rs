@@ -40,7 +40,7 @@ pub enum LegStyle {
 pub struct Style {
     /// `"nordic"`.
     pub name: &'static str,
-    /// Which houses may have it: those to train, to choose or to test with.
+    /// The split of houses that may have it: train, val or test.
     pub split: StyleSplit,
     /// Tables, beds, shelves.
     pub wood: Finish,
