@@ -39,7 +39,7 @@ const PAIRS: [&str; 34] = [
 ];
 /// Nouns that end like a plural and are none.
 const SINGULAR_IN_S: [&str; 5] = ["atlas", "canvas", "christmas", "gas", "lens"];
-/// Nouns that count or gather things: colour and substance are those of what follows "of".
+/// Nouns for groups and amounts of things: adjectives of colour and substance belong to the noun after "of".
 const GATHERING: [&str; 8] = [
     "bunch", "pair", "piece", "roll", "row", "set", "sheet", "stack",
 ];

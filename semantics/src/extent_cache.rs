@@ -1,4 +1,4 @@
-//! Extents of things that do not stand where the house puts them, kept between states: most of what was moved lies still.
+//! A cache of extents across states, for things that are not in their initial pose: most things that were moved lie still.
 
 use crate::geometry::Extent;
 use dwell_scene::{House, Id, ObjectId, Pose, State};

@@ -24,7 +24,7 @@ pub struct ObjectFacts {
     /// Its materials by share of what is seen of it where it stands at the start, from around and a little above (below, for
     /// what hangs), largest first; by share of its whole surface where nothing of it is seen. Screens are left out.
     pub patches: Vec<SurfacePatch>,
-    /// Its colours in plain words with their shares, largest first; none for what is mostly glass or mirror.
+    /// Its colours in plain words with their shares, largest first; empty for things that are mostly glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
     /// Its substances with their shares of the surface, largest first.
     pub substances: Vec<(&'static Substance, f32)>,

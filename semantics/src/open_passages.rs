@@ -22,7 +22,7 @@ const DOORWAY_M: f32 = 0.15;
 /// For each room the rooms that open passages lead to, ascending; the relation is symmetric.
 ///
 /// A passage is where at least 0.6 m of a room's border can be crossed at three heights without meeting a wall or a thing,
-/// and another room lies half a metre beyond. `doors`: the boxes of what closes openings; there are no passages there.
+/// and another room lies half a metre beyond. `doors`: the boxes of things that close openings; there are no passages there.
 pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<RoomId>> {
     let house = rays.house();
     let mut found: IdVec<RoomId, Vec<RoomId>> = IdVec::filled(Vec::new(), house.rooms.len());

@@ -122,7 +122,7 @@ impl Semantics {
         &self.outlines[room]
     }
 
-    /// Returns what is always true of an object.
+    /// Returns the state-independent facts about an object.
     pub fn facts(&self, object: ObjectId) -> &ObjectFacts {
         &self.facts[object]
     }

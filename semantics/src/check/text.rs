@@ -23,7 +23,7 @@ pub struct GroundedPhrase {
     pub start: usize,
     /// The byte after the last.
     pub end: usize,
-    /// The things that it fits, regardless of its quantifier, ascending.
+    /// The thing that it names; for a description all things that it fits, regardless of its quantifier, ascending.
     pub terms: Vec<Term>,
 }
 

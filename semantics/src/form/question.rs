@@ -12,7 +12,7 @@ pub enum AttributeKind {
     Color,
     /// The adjective of its main substance.
     Material,
-    /// The things that it is in or on, else next to.
+    /// The things that it is in, else on, else hangs on, else is next to.
     Place,
     /// The room it is in.
     Room,

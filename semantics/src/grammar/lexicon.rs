@@ -87,7 +87,7 @@ pub(super) struct EntryMatch {
 }
 
 impl Lexicon {
-    /// Adds an entry. If one of its class and name exists, that gains the forms as synonyms.
+    /// Adds an entry. If one of its class and name exists, that gains the forms, as synonyms of those that it has.
     pub fn add(&mut self, entry: LexiconEntry) {
         let key = (entry.class.clone(), entry.id.clone());
         let at = if let Some(at) = self.by_name.get(&key) {

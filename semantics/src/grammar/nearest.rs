@@ -29,7 +29,7 @@ impl Grammar {
     /// The known words nearest to `word`, the nearest first; at most `most`, none that differs in more than a third of its letters.
     pub fn nearest_words(&self, word: &str, most: usize) -> Vec<String> {
         let length = word.chars().count();
-        // Long strings are no words of any language that is read here.
+        // Longer strings are not words.
         if length > 40 {
             return Vec::new();
         }

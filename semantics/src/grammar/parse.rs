@@ -225,7 +225,7 @@ impl Parser<'_> {
             for (before_cost, before) in self.arguments(step.before, step.set, known) {
                 for (cost, tree) in &last {
                     let mut arguments = before.clone();
-                    // An argument that is said twice is the same both times.
+                    // An argument that occurs twice in a wording is the same both times.
                     if let (Symbol::Argument(at, _), Some(tree)) = (symbol, tree)
                         && arguments
                             .insert(*at, tree.clone())
@@ -306,7 +306,7 @@ impl Grammar {
             sets: (0..=words.len()).map(|_| ItemSet::default()).collect(),
         };
         for start in &self.start {
-            // Nothing waits for the start: it is predicted once, here.
+            // No item waits for the start category: it is predicted once, here.
             parser.predict(0, *start);
         }
         for at in 0..=words.len() {

@@ -85,7 +85,7 @@ pub struct InstructionGoal {
     pub in_sight: bool,
 }
 
-/// An instruction in words, bound at reset to the things it means: later changes of the scene do not change what counts.
+/// An instruction in words, grounded at reset: later changes of the scene do not change the things that it denotes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instruction {
     /// The kind of instruction.

@@ -11,7 +11,7 @@ pub(super) fn is_container(scene: &SemanticScene<'_>, object: ObjectId) -> bool 
     row.is_some_and(|row| row.contains) || spaces(scene, object).next().is_some()
 }
 
-/// The volume of an object's receptacles with things inside, m³; of its box where it has none.
+/// The volume of an object's receptacles for things inside it, m³; of its box where it has none.
 pub(super) fn space_m3(scene: &SemanticScene<'_>, object: ObjectId) -> f32 {
     let marked: f32 = spaces(scene, object).sum();
     if marked > 0.0 {
