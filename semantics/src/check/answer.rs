@@ -27,8 +27,8 @@ impl Checker<'_> {
             Question::Whether(clause) => Answer::Truth(self.check(clause)),
             Question::HowMany(what) => {
                 let extension = self.extension(what);
-                let open = extension.open.first().map(|(_, reason)| *reason);
-                match extension.fault.or(open) {
+                let undecided = extension.undecided.first().map(|(_, reason)| *reason);
+                match extension.fault.or(undecided) {
                     Some(reason) => Answer::None(reason),
                     None => Answer::Number(extension.fits.len()),
                 }

@@ -15,7 +15,7 @@ pub(super) struct Extension {
     /// The things that it fits, ascending.
     pub(super) fits: Vec<Term>,
     /// The things of which it is undecided, ascending, with the reasons.
-    pub(super) open: Vec<(Term, UndecidedReason)>,
+    pub(super) undecided: Vec<(Term, UndecidedReason)>,
     /// The reason why it has no extension in this scene.
     pub(super) fault: Option<UndecidedReason>,
 }
@@ -35,11 +35,11 @@ impl Checker<'_> {
 
     fn find(&self, description: &Description) -> Extension {
         let mut found = Extension::default();
-        for term in self.called(&description.noun) {
+        for term in self.things_named(&description.noun) {
             match self.fits(description, term) {
                 Truth::True => found.fits.push(term),
                 Truth::False => {}
-                Truth::Undecided(reason) => found.open.push((term, reason)),
+                Truth::Undecided(reason) => found.undecided.push((term, reason)),
             }
         }
         if let Some(selection) = &description.selection {
@@ -49,7 +49,7 @@ impl Checker<'_> {
     }
 
     /// The things that a noun can name.
-    fn called(&self, noun: &Noun) -> Vec<Term> {
+    fn things_named(&self, noun: &Noun) -> Vec<Term> {
         match noun {
             Noun::Object(noun) => {
                 let kinds = self.scene.distractors(noun);

@@ -29,12 +29,14 @@ impl Checker<'_> {
         match (self.named(first), first) {
             (Some(Ok(term)), _) => with(term),
             (Some(Err(reason)), _) => Judged::undecided(reason),
-            (None, Phrase::Described(description)) => self.of_described(description, &mut with),
+            (None, Phrase::Described(description)) => {
+                self.quantify_description(description, &mut with)
+            }
             (None, _) => Judged::undecided(UndecidedReason::UnknownTerm),
         }
     }
 
-    fn of_described(
+    fn quantify_description(
         &self,
         description: &Description,
         with: &mut dyn FnMut(Term) -> Judged,
@@ -45,37 +47,37 @@ impl Checker<'_> {
         }
         // Of a thing that may or may not fit the clause is undecided, except where the result is the same either way.
         let fitting = extension.fits.iter().map(|term| (*term, None));
-        let open = extension
-            .open
+        let undecided = extension
+            .undecided
             .iter()
             .map(|(term, reason)| (*term, Some(*reason)));
-        let mut fitting = fitting.chain(open);
+        let mut fitting = fitting.chain(undecided);
         match description.quantifier {
-            Quantifier::Some => Judged::any(fitting.map(|(term, open)| {
+            Quantifier::Some => Judged::any(fitting.map(|(term, undecided)| {
                 let mut judged = with(term);
-                if let Some(reason) = open {
+                if let Some(reason) = undecided {
                     judged.truth = judged.truth.and(Truth::Undecided(reason));
                 }
                 judged
             })),
-            Quantifier::Every => Judged::all(fitting.map(|(term, open)| {
+            Quantifier::Every => Judged::all(fitting.map(|(term, undecided)| {
                 let mut judged = with(term);
-                if let Some(reason) = open {
+                if let Some(reason) = undecided {
                     judged.truth = judged.truth.or(Truth::Undecided(reason));
                 }
                 judged
             })),
-            Quantifier::No => Judged::all(fitting.map(|(term, open)| {
+            Quantifier::No => Judged::all(fitting.map(|(term, undecided)| {
                 let mut judged = with(term).negated();
-                if let Some(reason) = open {
+                if let Some(reason) = undecided {
                     judged.truth = judged.truth.or(Truth::Undecided(reason));
                 }
                 judged
             })),
-            Quantifier::The => self.of_the_only(&extension.fits, &extension.open, with),
+            Quantifier::The => self.quantify_definite(&extension.fits, &extension.undecided, with),
             Quantifier::Exactly(number) => {
-                let counted = Counted::of(&mut fitting, with);
-                counted.judged(|low, high| {
+                let bounds = CountBounds::of(&mut fitting, with);
+                bounds.judged(|low, high| {
                     if low > number || high < number {
                         Some(false)
                     } else {
@@ -84,8 +86,8 @@ impl Checker<'_> {
                 })
             }
             Quantifier::AtLeast(number) => {
-                let counted = Counted::of(&mut fitting, with);
-                counted.judged(|low, high| {
+                let bounds = CountBounds::of(&mut fitting, with);
+                bounds.judged(|low, high| {
                     if high < number {
                         Some(false)
                     } else {
@@ -97,14 +99,14 @@ impl Checker<'_> {
     }
 
     /// Evaluates a definite description: false where nothing fits; where several fit, the common truth value, else undecided.
-    fn of_the_only(
+    fn quantify_definite(
         &self,
         fits: &[Term],
-        open: &[(Term, UndecidedReason)],
+        undecided: &[(Term, UndecidedReason)],
         with: &mut dyn FnMut(Term) -> Judged,
     ) -> Judged {
         if fits.is_empty() {
-            return match open.first() {
+            return match undecided.first() {
                 Some((_, reason)) => Judged::undecided(*reason),
                 None => Judged::plain(Truth::False),
             };
@@ -126,38 +128,38 @@ impl Checker<'_> {
 }
 
 /// Bounds on the number of things of which a clause is true.
-struct Counted {
+struct CountBounds {
     low: u32,
     high: u32,
     reason: Option<UndecidedReason>,
     examples: Vec<Judged>,
 }
 
-impl Counted {
+impl CountBounds {
     fn of(
         things: &mut dyn Iterator<Item = (Term, Option<UndecidedReason>)>,
         with: &mut dyn FnMut(Term) -> Judged,
     ) -> Self {
-        let mut counted = Self {
+        let mut bounds = Self {
             low: 0,
             high: 0,
             reason: None,
             examples: Vec::new(),
         };
-        for (term, open) in things {
+        for (term, undecided) in things {
             let mut judged = with(term);
-            if let Some(reason) = open {
+            if let Some(reason) = undecided {
                 judged.truth = judged.truth.and(Truth::Undecided(reason));
             }
             match judged.truth {
                 Truth::False => continue,
-                Truth::True => counted.low += 1,
-                Truth::Undecided(reason) => counted.reason = counted.reason.or(Some(reason)),
+                Truth::True => bounds.low += 1,
+                Truth::Undecided(reason) => bounds.reason = bounds.reason.or(Some(reason)),
             }
-            counted.high += 1;
-            counted.examples.push(judged);
+            bounds.high += 1;
+            bounds.examples.push(judged);
         }
-        counted
+        bounds
     }
 
     /// Evaluates `decide` on the lower and upper bound; `None` is undecided.

@@ -281,7 +281,7 @@ pub(super) fn compile(file: &GrammarFile) -> Result<Productions, GrammarError> {
         }
     }
     let found = compiler.found;
-    no_circles(&found)?;
+    check_no_cycles(&found)?;
     Ok(found)
 }
 
@@ -295,7 +295,7 @@ impl Compiler<'_> {
 }
 
 /// Checks that there is no cycle of unit productions (one argument and nothing else): a text would have infinitely many parses.
-fn no_circles(found: &Productions) -> Result<(), GrammarError> {
+fn check_no_cycles(found: &Productions) -> Result<(), GrammarError> {
     let single = |number: NonTerminal| {
         let own = found.of_result[number].iter().map(|at| &found.all[*at]);
         own.filter_map(|one| match one.symbols[..] {
