@@ -9,7 +9,7 @@ use crate::world_access::WorldAccess;
 use dwell_scene::AgentId;
 use dwell_scene::Id;
 use dwell_scene::random::RandomKey;
-use dwell_semantics::check::{Answer, Checker, Listener, Verdict};
+use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
 use dwell_semantics::form::Form;
 use dwell_semantics::language::Language;
 use dwell_semantics::{Term, Truth};
@@ -45,7 +45,7 @@ impl WorldAccess<'_> {
         terms.iter().map(|term| self.told(*term)).collect()
     }
 
-    fn verdict(&self, verdict: &Verdict) -> Value {
+    fn verdict(&self, verdict: &CheckResult) -> Value {
         let witnesses = verdict.witnesses.iter().map(|witness| {
             json!({
                 "predicate": witness.predicate,
@@ -75,7 +75,7 @@ fn truth(truth: Truth) -> Value {
     truth.value().map_or(Value::Null, Value::Bool)
 }
 
-fn unread(error: dwell_semantics::language::Unread) -> PyFault {
+fn unread(error: dwell_semantics::language::ReadError) -> PyFault {
     PyFault::Config(error.to_string())
 }
 

@@ -40,7 +40,7 @@ const PAIRS: [&str; 34] = [
 /// Nouns that end like a plural and are none.
 const SINGULAR_IN_S: [&str; 5] = ["atlas", "canvas", "christmas", "gas", "lens"];
 /// Nouns for groups and amounts of things: adjectives of colour and substance belong to the noun after "of".
-const GATHERING: [&str; 8] = [
+pub(crate) const GATHERING_WORDS: [&str; 8] = [
     "bunch", "pair", "piece", "roll", "row", "set", "sheet", "stack",
 ];
 
@@ -97,7 +97,7 @@ pub fn qualified(size: &str, look: &str, noun: &str) -> String {
             || head.strip_suffix('s') == Some(**known)
             || head.strip_suffix("es") == Some(**known)
     };
-    match GATHERING.iter().find(one) {
+    match GATHERING_WORDS.iter().find(one) {
         Some(&"pair") => row(&[head, "of", size, look, rest]),
         Some(_) => row(&[size, head, "of", look, rest]),
         None => row(&[size, look, noun]),

@@ -3,7 +3,7 @@
 
 use dwell_houses::open;
 use dwell_scene::{House, ObjectId, State};
-use dwell_semantics::check::{Answer, Checker, Listener, Verdict};
+use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
 use dwell_semantics::form::{Clause, Form, Question};
 use dwell_semantics::language::Language;
 use dwell_semantics::{SemanticScene, Semantics, Term, Truth, UndecidedReason, Viewer};
@@ -33,7 +33,7 @@ fn question(text: &str) -> Question {
     }
 }
 
-fn check(scene: &SemanticScene<'_>, text: &str) -> Verdict {
+fn check(scene: &SemanticScene<'_>, text: &str) -> CheckResult {
     Checker::new(scene, Listener::default()).check(&clause(text))
 }
 

@@ -4,8 +4,8 @@
 use dwell_scene::random::RandomKey;
 use dwell_semantics::SizeClass;
 use dwell_semantics::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, Plan, Quality, Quantifier,
-    Question, Selection, Step,
+    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
+    Quantifier, Question, Request, RequestStep,
 };
 use dwell_semantics::grammar::{Grammar, Lexicon};
 use dwell_semantics::language::Language;
@@ -106,7 +106,7 @@ fn room() -> BoxedStrategy<Phrase> {
                 0 => plain(Quantifier::Some),
                 1 => plain(Quantifier::Every),
                 2 => Description {
-                    selection: Some(Selection {
+                    selection: Some(PlaceInOrder {
                         order: "house".to_owned(),
                         place,
                         reference: None,
@@ -179,7 +179,7 @@ fn selected() -> BoxedStrategy<Phrase> {
         .prop_map(|(description, order, place, reference)| {
             let counted = order.starts_with("from");
             let reference = (order == "closest_to").then(|| Box::new(reference));
-            let selection = Selection {
+            let selection = PlaceInOrder {
                 order,
                 place: if counted { place } else { 1 },
                 reference,
@@ -239,21 +239,21 @@ fn simple() -> BoxedStrategy<Clause> {
     .boxed()
 }
 
-fn step() -> BoxedStrategy<Step> {
+fn step() -> BoxedStrategy<RequestStep> {
     let verb = || word(&["find", "pick_up", "open", "switch_off", "bring_me"]);
     prop_oneof![
-        room().prop_map(Step::GoTo),
-        (verb(), phrase()).prop_map(|(verb, object)| Step::Do { verb, object }),
-        (verb(), phrase()).prop_map(|(verb, object)| Step::DoNot { verb, object }),
-        (phrase(), room()).prop_map(|(object, to)| Step::Bring { object, to }),
-        (phrase(), phrase()).prop_map(|(object, to)| Step::Bring { object, to }),
-        (landmark(), room()).prop_map(|(object, to)| Step::Put {
+        room().prop_map(RequestStep::GoTo),
+        (verb(), phrase()).prop_map(|(verb, object)| RequestStep::Do { verb, object }),
+        (verb(), phrase()).prop_map(|(verb, object)| RequestStep::DoNot { verb, object }),
+        (phrase(), room()).prop_map(|(object, to)| RequestStep::Bring { object, to }),
+        (phrase(), phrase()).prop_map(|(object, to)| RequestStep::Bring { object, to }),
+        (landmark(), room()).prop_map(|(object, to)| RequestStep::Put {
             object,
             predicate: "in_room".to_owned(),
             to,
         }),
         (landmark(), word(&["on", "in"]), phrase()).prop_map(|(object, predicate, to)| {
-            Step::Put {
+            RequestStep::Put {
                 object,
                 predicate,
                 to,
@@ -267,8 +267,8 @@ fn form() -> BoxedStrategy<Form> {
     prop_oneof![
         4 => simple().prop_map(Form::Claim),
         2 => proptest::collection::vec(step(), 1..4)
-            .prop_map(|steps| Form::Request(Plan::Sequence(steps))),
-        1 => (simple(), step()).prop_map(|(clause, step)| Form::Request(Plan::If(clause, step))),
+            .prop_map(|steps| Form::Request(Request::Sequence(steps))),
+        1 => (simple(), step()).prop_map(|(clause, step)| Form::Request(Request::If(clause, step))),
         1 => described().prop_map(|what| {
             let what = what.with_quantifier(Quantifier::Some);
             Form::Question(Question::HowMany(Box::new(what)))
@@ -303,7 +303,7 @@ proptest! {
         prop_assert!(said.is_some(), "no words for {form:?}");
         let said = said.unwrap();
         let reading = english.read(&said.text);
-        prop_assume!(!matches!(reading, Err(dwell_semantics::language::Unread::TooLong { .. })));
+        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ReadError::TooLong { .. })));
         let reading = reading.map_err(|error| TestCaseError::fail(format!("{}: {error}", said.text)))?;
         prop_assert_eq!(&reading.forms[0], &form, "{}", said.text);
         for span in &said.phrases {
@@ -369,7 +369,7 @@ texts = ["{2} {1}"]
     lexicon.add_texts("noun", "bed", &[&["lectus"]]);
     lexicon.add_texts("color", "red", &[&["rubra"]]);
     lexicon.add_texts("relation", "next_to", &[&["iuxta"]]);
-    let latin = Language::of(Grammar::new(grammar, lexicon).unwrap());
+    let latin = Language::from_grammar(Grammar::new(grammar, lexicon).unwrap());
     let english = Language::english();
     let form = english
         .read("The red chair is next to the bed.")

@@ -1,6 +1,6 @@
 //! Answers to questions.
 
-use super::{Checker, Verdict};
+use super::{CheckResult, Checker};
 use crate::form::{AttributeKind, Clause, Noun, Phrase, Question};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
@@ -9,7 +9,7 @@ use crate::truth::{Truth, UndecidedReason};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
     /// The verdict on a question for a truth value.
-    Truth(Verdict),
+    Truth(CheckResult),
     /// The things of which the clause is true, ascending; may be empty.
     Things(Vec<Term>),
     /// The number of things that fit.

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::witness::Judged;
-use crate::form::{Description, Modifier, Noun, Phrase, Quality, Selection};
+use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quality};
 use crate::predicates;
 use crate::scene::Term;
 use crate::selections;
@@ -96,7 +96,7 @@ impl Checker<'_> {
         if modifier.negated { !truth } else { truth }
     }
 
-    fn selected(&self, selection: &Selection, fits: &[Term]) -> Extension {
+    fn selected(&self, selection: &PlaceInOrder, fits: &[Term]) -> Extension {
         let fault = |reason| Extension {
             fault: Some(reason),
             ..Extension::default()

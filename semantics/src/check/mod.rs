@@ -51,7 +51,7 @@ impl Listener {
 
 /// The verdict on a clause: its truth value, and the facts that decided it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Verdict {
+pub struct CheckResult {
     /// The truth value.
     pub truth: Truth,
     /// Facts that suffice for it: those of one example or counterexample where one decides, else of all; at most 16.
@@ -76,9 +76,9 @@ impl<'a> Checker<'a> {
     }
 
     /// Returns the verdict on a clause.
-    pub fn check(&self, clause: &Clause) -> Verdict {
+    pub fn check(&self, clause: &Clause) -> CheckResult {
         let Judged { truth, witnesses } = self.judge(clause);
-        Verdict { truth, witnesses }
+        CheckResult { truth, witnesses }
     }
 
     /// Returns the things that a description fits, regardless of its quantifier, ascending; without those of which it is undecided.

@@ -1,7 +1,7 @@
 //! Evaluation of quantified phrases; the first of a clause has the widest scope.
 
 use super::Checker;
-use super::witness::Judged;
+use super::witness::{Judged, MOST_WITNESSES};
 use crate::form::{Description, Phrase, Quantifier};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
@@ -105,24 +105,26 @@ impl Checker<'_> {
         undecided: &[(Term, UndecidedReason)],
         with: &mut dyn FnMut(Term) -> Judged,
     ) -> Judged {
-        if fits.is_empty() {
-            return match undecided.first() {
-                Some((_, reason)) => Judged::undecided(*reason),
-                None => Judged::plain(Truth::False),
+        // Every way in which what is undecided might turn out: where nothing fits the clause is false, else it is as of what fits.
+        let possible = fits.iter().chain(undecided.iter().map(|(term, _)| term));
+        let all: Vec<Judged> = possible.map(|term| with(*term)).collect();
+        let nothing_may_fit = fits.is_empty().then_some(Truth::False);
+        let mut values = all.iter().map(|judged| judged.truth).chain(nothing_may_fit);
+        let first = values.next().unwrap_or(Truth::False);
+        if values.all(|truth| truth == first) {
+            return match first {
+                Truth::False if all.is_empty() => Judged::plain(first),
+                _ => Judged::all(all.into_iter()),
             };
         }
-        let all: Vec<Judged> = fits.iter().map(|term| with(*term)).collect();
-        let first = all[0].truth;
-        if all.iter().all(|judged| judged.truth == first) {
-            return Judged::all(all.into_iter());
-        }
+        let reason = match undecided.first() {
+            Some((_, reason)) => *reason,
+            None => UndecidedReason::SeveralFit,
+        };
+        let witnesses = all.into_iter().flat_map(|judged| judged.witnesses);
         Judged {
-            truth: Truth::Undecided(UndecidedReason::SeveralFit),
-            witnesses: all
-                .into_iter()
-                .flat_map(|judged| judged.witnesses)
-                .take(8)
-                .collect(),
+            truth: Truth::Undecided(reason),
+            witnesses: witnesses.take(MOST_WITNESSES).collect(),
         }
     }
 }
@@ -173,7 +175,7 @@ impl CountBounds {
             .flat_map(|judged| judged.witnesses);
         Judged {
             truth,
-            witnesses: witnesses.take(16).collect(),
+            witnesses: witnesses.take(MOST_WITNESSES).collect(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Answer, Checker};
 use crate::form::{Form, Phrase};
-use crate::language::{Said, Unread};
+use crate::language::{ReadError, Sentence};
 use crate::scene::Term;
 
 /// A sentence with its readings, checked.
@@ -31,8 +31,8 @@ impl Checker<'_> {
     /// Reads one sentence with the nouns of the house, and checks or answers its preferred reading.
     ///
     /// # Errors
-    /// [`Unread`] says what was not understood.
-    pub fn check_text(&self, text: &str) -> Result<CheckedText, Unread> {
+    /// [`ReadError`] says what was not understood.
+    pub fn check_text(&self, text: &str) -> Result<CheckedText, ReadError> {
         let mut readings = self
             .scene
             .semantics
@@ -40,7 +40,7 @@ impl Checker<'_> {
             .read(text)?
             .forms
             .into_iter();
-        let form = readings.next().ok_or(Unread::Empty)?;
+        let form = readings.next().ok_or(ReadError::Empty)?;
         let answer = match &form {
             Form::Claim(clause) => Some(Answer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),
@@ -54,7 +54,7 @@ impl Checker<'_> {
     }
 
     /// Grounds the noun phrases of a text: finds the things that each denotes in the scene.
-    pub fn ground(&self, said: &Said) -> Vec<GroundedPhrase> {
+    pub fn ground(&self, said: &Sentence) -> Vec<GroundedPhrase> {
         let phrases = said.phrases.iter();
         phrases
             .map(|span| GroundedPhrase {

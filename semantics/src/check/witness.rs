@@ -4,7 +4,7 @@ use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
 /// Largest number of witnesses of one clause.
-const MOST_WITNESSES: usize = 16;
+pub(super) const MOST_WITNESSES: usize = 16;
 
 /// A fact that decided a clause.
 #[derive(Clone, Debug, PartialEq)]

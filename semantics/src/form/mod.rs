@@ -9,9 +9,9 @@ mod question;
 mod request;
 
 pub use clause::{Clause, Quality};
-pub use phrase::{Description, Modifier, Noun, Phrase, Quantifier, Selection};
+pub use phrase::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
 pub use question::{AttributeKind, Question};
-pub use request::{Plan, Step};
+pub use request::{Request, RequestStep};
 
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +22,7 @@ pub enum Form {
     /// A clause that is asserted.
     Claim(Clause),
     /// A plan to carry out.
-    Request(Plan),
+    Request(Request),
     /// A question to answer.
     Question(Question),
 }

@@ -44,7 +44,7 @@ pub struct Modifier {
 
 /// The choice of one of the things that a description fits, by its place in an order.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct Selection {
+pub struct PlaceInOrder {
     /// The order's name: `"from_left"`, `"largest"`, `"closest_to"`.
     pub order: String,
     /// The place in it, counted from 1.
@@ -71,7 +71,7 @@ pub struct Description {
     /// The modifiers, all of which hold.
     pub modifiers: Vec<Modifier>,
     /// The choice by an order; with one the quantifier is [`Quantifier::The`].
-    pub selection: Option<Selection>,
+    pub selection: Option<PlaceInOrder>,
 }
 
 impl Description {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// A step of a plan.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Step {
+pub enum RequestStep {
     /// Go to a room.
     GoTo(Phrase),
     /// Act on a thing, by a verb of the lexicon such as `"pick_up"`.
@@ -45,9 +45,9 @@ pub enum Step {
 /// Steps in order, or a conditional step.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Plan {
+pub enum Request {
     /// One after the other.
-    Sequence(Vec<Step>),
+    Sequence(Vec<RequestStep>),
     /// A step to carry out if a clause is true at the time of the request.
-    If(Clause, Step),
+    If(Clause, RequestStep),
 }

@@ -2,8 +2,8 @@
 
 use super::lexicon::RELATION;
 use crate::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, Plan, Quality, Quantifier,
-    Question, Selection, Step,
+    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
+    Quantifier, Question, Request, RequestStep,
 };
 use crate::grammar::Tree;
 use crate::size::SizeClass;
@@ -138,7 +138,7 @@ fn room(tree: &Tree) -> Option<Phrase> {
         ("room_every", [own]) => kind(own, Quantifier::Every)?,
         ("room_no", [own]) => kind(own, Quantifier::No)?,
         ("room_nth", [place, own]) => Description {
-            selection: Some(Selection {
+            selection: Some(PlaceInOrder {
                 order: "house".to_owned(),
                 place: number(place)?,
                 reference: None,
@@ -170,7 +170,7 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
     };
     let selected =
         |noun: &Tree, order: &Tree, place, reference: Option<Phrase>| -> Option<Phrase> {
-            let selection = Selection {
+            let selection = PlaceInOrder {
                 order: id(order)?,
                 place,
                 reference: reference.map(Box::new),
@@ -297,51 +297,51 @@ fn modifier(tree: &Tree) -> Option<Modifier> {
     })
 }
 
-fn plan(tree: &Tree) -> Option<Plan> {
+fn plan(tree: &Tree) -> Option<Request> {
     match parts(tree)? {
-        ("one_step", [only]) => Some(Plan::Sequence(vec![step(only)?])),
+        ("one_step", [only]) => Some(Request::Sequence(vec![step(only)?])),
         ("then", [first, rest]) => {
-            let Plan::Sequence(rest) = plan(rest)? else {
+            let Request::Sequence(rest) = plan(rest)? else {
                 return None;
             };
             let mut steps = vec![step(first)?];
             steps.extend(rest);
-            Some(Plan::Sequence(steps))
+            Some(Request::Sequence(steps))
         }
-        ("if", [condition, then]) => Some(Plan::If(simple(condition)?, step(then)?)),
+        ("if", [condition, then]) => Some(Request::If(simple(condition)?, step(then)?)),
         _ => None,
     }
 }
 
-fn step(tree: &Tree) -> Option<Step> {
+fn step(tree: &Tree) -> Option<RequestStep> {
     Some(match parts(tree)? {
-        ("go_to", [to]) => Step::GoTo(room(to)?),
-        ("do", [verb, object]) => Step::Do {
+        ("go_to", [to]) => RequestStep::GoTo(room(to)?),
+        ("do", [verb, object]) => RequestStep::Do {
             verb: id(verb)?,
             object: phrase(object)?,
         },
-        ("do_not", [verb, object]) => Step::DoNot {
+        ("do_not", [verb, object]) => RequestStep::DoNot {
             verb: id(verb)?,
             object: phrase(object)?,
         },
-        ("put" | "put_modified", [object, relation, to]) => Step::Put {
+        ("put" | "put_modified", [object, relation, to]) => RequestStep::Put {
             object: phrase(object)?,
             predicate: id(relation)?,
             to: phrase(to)?,
         },
         ("put_in_place" | "put_modified_in_place", [object, place]) => {
             let (predicate, to) = place_of(place)?;
-            Step::Put {
+            RequestStep::Put {
                 object: phrase(object)?,
                 predicate: predicate.to_owned(),
                 to,
             }
         }
-        ("bring", [object, to]) => Step::Bring {
+        ("bring", [object, to]) => RequestStep::Bring {
             object: phrase(object)?,
             to: phrase(to)?,
         },
-        ("bring_to_place", [object, to]) => Step::Bring {
+        ("bring_to_place", [object, to]) => RequestStep::Bring {
             object: phrase(object)?,
             to: room(to)?,
         },

@@ -2,7 +2,7 @@
 
 use crate::category::categories;
 use crate::color::ColorVocabulary;
-use crate::english::plural;
+use crate::english::{GATHERING_WORDS, plural};
 use crate::grammar::{GrammarError, Lexicon};
 use crate::room_kind::room_kinds;
 use dwell_scene::material::library;
@@ -20,18 +20,6 @@ pub(super) const ORDER: &str = "order";
 pub(super) const ORDER_TO: &str = "order_to";
 pub(super) const SUPERLATIVE: &str = "superlative";
 pub(super) const VERB: &str = "verb";
-
-/// Nouns for groups and amounts of things ("pair of shoes"): adjectives of colour and material follow their "of".
-const GATHERING_WORDS: [(&str, &str); 8] = [
-    ("bunch", "bunches"),
-    ("pair", "pairs"),
-    ("piece", "pieces"),
-    ("roll", "rolls"),
-    ("row", "rows"),
-    ("set", "sets"),
-    ("sheet", "sheets"),
-    ("stack", "stacks"),
-];
 
 type Texts = BTreeMap<String, Vec<String>>;
 
@@ -55,7 +43,7 @@ struct LexiconFile {
 /// Adds a noun in singular and plural. Of "pair of shoes" only the noun after the "of" is added.
 pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
     if let Some((head, tail)) = one.split_once(" of ")
-        && GATHERING_WORDS.iter().any(|(word, _)| *word == head)
+        && GATHERING_WORDS.contains(&head)
     {
         lexicon.add_texts(GATHERED, tail, &[&[tail]]);
         return;
@@ -103,8 +91,8 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
     for (id, [one, several]) in &file.verb_relation {
         lexicon.add_texts(VERB_RELATION, id, &[&borrowed(one), &borrowed(several)]);
     }
-    for (one, several) in GATHERING_WORDS {
-        lexicon.add_texts(GATHERING, one, &[&[one], &[several]]);
+    for one in GATHERING_WORDS {
+        lexicon.add_texts(GATHERING, one, &[&[one], &[&plural(one)]]);
     }
     for row in categories().rows() {
         add_noun(&mut lexicon, row.singular, row.plural);

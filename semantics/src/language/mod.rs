@@ -9,8 +9,8 @@ mod read;
 mod say;
 mod to_tree;
 
-pub use read::{MAX_TEXT_BYTES, MAX_WORDS, Reading, UnknownWord, Unread};
-pub use say::{PhraseSpan, Said};
+pub use read::{MAX_TEXT_BYTES, MAX_WORDS, ReadError, Readings, UnknownWord};
+pub use say::{PhraseSpan, Sentence};
 
 use crate::grammar::{Grammar, GrammarError};
 use std::sync::LazyLock;
@@ -36,7 +36,7 @@ impl Language {
 
     /// Builds a language from a grammar with functions of `assets/language/en/grammar.toml`; forms that need a function it lacks
     /// are neither said nor read.
-    pub fn of(grammar: Grammar) -> Self {
+    pub fn from_grammar(grammar: Grammar) -> Self {
         Self { grammar }
     }
 

@@ -23,7 +23,7 @@ pub struct UnknownWord {
 /// The reason why a text has no reading.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
-pub enum Unread {
+pub enum ReadError {
     /// The text has no words.
     #[error("the text has no words")]
     Empty,
@@ -68,7 +68,7 @@ fn list_unknown(words: &[UnknownWord]) -> String {
 
 /// The readings of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Reading {
+pub struct Readings {
     /// Forms, the preferred one first; at least one.
     pub forms: Vec<Form>,
 }
@@ -78,9 +78,9 @@ impl Language {
     /// adjectives do not matter.
     ///
     /// # Errors
-    /// [`Unread`] says which words are unknown, or how far the text was understood. Nothing is guessed.
-    pub fn read(&self, text: &str) -> Result<Reading, Unread> {
-        let too_long = |unit, found, allowed| Unread::TooLong {
+    /// [`ReadError`] says which words are unknown, or how far the text was understood. Nothing is guessed.
+    pub fn read(&self, text: &str) -> Result<Readings, ReadError> {
+        let too_long = |unit, found, allowed| ReadError::TooLong {
             unit,
             found,
             allowed,
@@ -90,7 +90,7 @@ impl Language {
         }
         let words = words(text);
         if words.is_empty() {
-            return Err(Unread::Empty);
+            return Err(ReadError::Empty);
         }
         if words.len() > MAX_WORDS {
             return Err(too_long("words", words.len(), MAX_WORDS));
@@ -103,7 +103,7 @@ impl Language {
             })
             .collect();
         if !unknown.is_empty() {
-            return Err(Unread::UnknownWords(unknown));
+            return Err(ReadError::UnknownWords(unknown));
         }
         let parse = self.grammar.parse(&words);
         let mut forms: Vec<Form> = Vec::new();
@@ -115,13 +115,13 @@ impl Language {
             let found = words.get(parse.understood);
             let mut expected = parse.expected;
             expected.truncate(12);
-            return Err(Unread::NotASentence {
+            return Err(ReadError::NotASentence {
                 understood: words[..parse.understood.min(words.len())].join(" "),
                 found: found.map_or_else(|| "the end".to_owned(), |word| format!("{word:?}")),
                 expected,
             });
         }
-        Ok(Reading { forms })
+        Ok(Readings { forms })
     }
 }
 

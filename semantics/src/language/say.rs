@@ -20,7 +20,7 @@ pub struct PhraseSpan {
 
 /// The text of a form.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct Sentence {
     /// One sentence, with capital letter and final punctuation mark.
     pub text: String,
     /// The places of noun phrases, the outer before the inner, from left to right.
@@ -40,7 +40,7 @@ impl Language {
     ///
     /// # Determinism
     /// Equal forms and keys give equal texts.
-    pub fn say(&self, form: &Form, key: Option<RandomKey>) -> Option<Said> {
+    pub fn say(&self, form: &Form, key: Option<RandomKey>) -> Option<Sentence> {
         let builder = TreeBuilder {
             lexicon: self.grammar.lexicon(),
         };
@@ -61,6 +61,6 @@ impl Language {
         });
         let mut phrases: Vec<PhraseSpan> = phrases.collect();
         phrases.sort_by_key(|span| (span.start, usize::MAX - span.end));
-        Some(Said { text, phrases })
+        Some(Sentence { text, phrases })
     }
 }

@@ -5,8 +5,8 @@ use super::lexicon::{
     VERB_RELATION,
 };
 use crate::form::{
-    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, Plan, Quality, Quantifier,
-    Question, Selection, Step,
+    AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
+    Quantifier, Question, Request, RequestStep,
 };
 use crate::grammar::{Lexicon, Tree};
 use crate::size::SizeClass;
@@ -260,11 +260,16 @@ impl TreeBuilder<'_> {
         })
     }
 
-    fn selected(&self, selection: &Selection, quantifier: Quantifier, noun: Tree) -> Option<Tree> {
+    fn selected(
+        &self,
+        selection: &PlaceInOrder,
+        quantifier: Quantifier,
+        noun: Tree,
+    ) -> Option<Tree> {
         if quantifier != Quantifier::The {
             return None;
         }
-        let Selection {
+        let PlaceInOrder {
             order,
             place,
             reference,
@@ -348,33 +353,33 @@ impl TreeBuilder<'_> {
         Some(tree)
     }
 
-    fn plan(&self, plan: &Plan) -> Option<Tree> {
+    fn plan(&self, plan: &Request) -> Option<Tree> {
         match plan {
-            Plan::Sequence(steps) => match &steps[..] {
+            Request::Sequence(steps) => match &steps[..] {
                 [] => None,
                 [only] => Some(Tree::apply("one_step", [self.step(only)?])),
                 [first, rest @ ..] => {
-                    let rest = self.plan(&Plan::Sequence(rest.to_vec()))?;
+                    let rest = self.plan(&Request::Sequence(rest.to_vec()))?;
                     Some(Tree::apply("then", [self.step(first)?, rest]))
                 }
             },
-            Plan::If(clause, step) => {
+            Request::If(clause, step) => {
                 Some(Tree::apply("if", [self.simple(clause)?, self.step(step)?]))
             }
         }
     }
 
-    fn step(&self, step: &Step) -> Option<Tree> {
+    fn step(&self, step: &RequestStep) -> Option<Tree> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
         Some(match step {
-            Step::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
-            Step::Do { verb, object } => {
+            RequestStep::GoTo(room) => Tree::apply("go_to", [self.room(room)?]),
+            RequestStep::Do { verb, object } => {
                 Tree::apply("do", [self.known(VERB, verb)?, free(object)?])
             }
-            Step::DoNot { verb, object } => {
+            RequestStep::DoNot { verb, object } => {
                 Tree::apply("do_not", [self.known(VERB, verb)?, free(object)?])
             }
-            Step::Put {
+            RequestStep::Put {
                 object,
                 predicate,
                 to,
@@ -387,7 +392,7 @@ impl TreeBuilder<'_> {
                     Tree::apply("put", [object, relation, free(to)?])
                 }
             }
-            Step::Bring { object, to } => match self.room(to) {
+            RequestStep::Bring { object, to } => match self.room(to) {
                 Some(room) => Tree::apply("bring_to_place", [free(object)?, room]),
                 None => Tree::apply("bring", [free(object)?, free(to)?]),
             },
