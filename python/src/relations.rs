@@ -29,7 +29,6 @@ const STOREYS: i32 = -1001;
 #[serde(untagged)]
 enum ViewerArgument {
     Agent(usize),
-    #[serde(rename_all = "snake_case")]
     Pose(PoseArgument),
 }
 

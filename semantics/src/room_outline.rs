@@ -5,7 +5,7 @@ use glam::Vec2;
 use std::collections::BTreeMap;
 
 /// The sharpest and bluntest angle of a corner, as cosine between its borders: 45 and 135 degrees.
-const CORNER_COSINE: f32 = 0.707_11;
+const CORNER_COSINE: f32 = std::f32::consts::FRAC_1_SQRT_2 + 1e-5;
 
 /// A room seen from above.
 #[derive(Clone, Debug, Default)]

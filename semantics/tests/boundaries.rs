@@ -378,7 +378,7 @@ fn the_nth_of_an_order_is_told_apart_or_not_at_all() {
             .iter()
             .all(|s| s.margin() > 0.0 && s.definition().ends_with('.'))
     );
-    let unknown = selections::find("middle").map(|s| s.name()).unwrap_err();
+    let unknown = selections::find("middle").err().unwrap();
     assert!(
         unknown
             .to_string()

@@ -74,7 +74,7 @@ impl Checker<'_> {
                 }
                 judged
             })),
-            Quantifier::The => self.quantify_definite(&extension.fits, &extension.undecided, with),
+            Quantifier::The => quantify_definite(&extension.fits, &extension.undecided, with),
             Quantifier::Exactly(number) => {
                 let bounds = CountBounds::of(&mut fitting, with);
                 bounds.judged(|low, high| {
@@ -97,35 +97,34 @@ impl Checker<'_> {
             }
         }
     }
+}
 
-    /// Evaluates a definite description: false where nothing fits; where several fit, the common truth value, else undecided.
-    fn quantify_definite(
-        &self,
-        fits: &[Term],
-        undecided: &[(Term, UndecidedReason)],
-        with: &mut dyn FnMut(Term) -> Judged,
-    ) -> Judged {
-        // Every way in which what is undecided might turn out: where nothing fits the clause is false, else it is as of what fits.
-        let possible = fits.iter().chain(undecided.iter().map(|(term, _)| term));
-        let all: Vec<Judged> = possible.map(|term| with(*term)).collect();
-        let nothing_may_fit = fits.is_empty().then_some(Truth::False);
-        let mut values = all.iter().map(|judged| judged.truth).chain(nothing_may_fit);
-        let first = values.next().unwrap_or(Truth::False);
-        if values.all(|truth| truth == first) {
-            return match first {
-                Truth::False if all.is_empty() => Judged::plain(first),
-                _ => Judged::all(all.into_iter()),
-            };
-        }
-        let reason = match undecided.first() {
-            Some((_, reason)) => *reason,
-            None => UndecidedReason::SeveralFit,
+/// Evaluates a definite description: false where nothing fits; where several fit, the common truth value, else undecided.
+fn quantify_definite(
+    fits: &[Term],
+    undecided: &[(Term, UndecidedReason)],
+    with: &mut dyn FnMut(Term) -> Judged,
+) -> Judged {
+    // Every way in which what is undecided might turn out: where nothing fits the clause is false, else it is as of what fits.
+    let possible = fits.iter().chain(undecided.iter().map(|(term, _)| term));
+    let all: Vec<Judged> = possible.map(|term| with(*term)).collect();
+    let nothing_may_fit = fits.is_empty().then_some(Truth::False);
+    let mut values = all.iter().map(|judged| judged.truth).chain(nothing_may_fit);
+    let first = values.next().unwrap_or(Truth::False);
+    if values.all(|truth| truth == first) {
+        return match first {
+            Truth::False if all.is_empty() => Judged::plain(first),
+            _ => Judged::all(all.into_iter()),
         };
-        let witnesses = all.into_iter().flat_map(|judged| judged.witnesses);
-        Judged {
-            truth: Truth::Undecided(reason),
-            witnesses: witnesses.take(MOST_WITNESSES).collect(),
-        }
+    }
+    let reason = match undecided.first() {
+        Some((_, reason)) => *reason,
+        None => UndecidedReason::SeveralFit,
+    };
+    let witnesses = all.into_iter().flat_map(|judged| judged.witnesses);
+    Judged {
+        truth: Truth::Undecided(reason),
+        witnesses: witnesses.take(MOST_WITNESSES).collect(),
     }
 }
 

@@ -76,21 +76,6 @@ impl Compiler<'_> {
             .unwrap_or_else(one)
     }
 
-    fn unknown(
-        &self,
-        rule: &RuleFile,
-        kind: &'static str,
-        name: &str,
-        known: Vec<String>,
-    ) -> GrammarError {
-        GrammarError::Unknown {
-            rule: rule.function.clone(),
-            kind,
-            name: name.to_owned(),
-            known,
-        }
-    }
-
     fn number(&mut self, category: &str, variant: usize) -> NonTerminal {
         let next = self.found.numbers.len();
         let key = (category.to_owned(), variant);
@@ -140,7 +125,7 @@ impl Compiler<'_> {
         }
         if choices.is_empty() {
             let known = self.variants(&result.0);
-            return Err(self.unknown(rule, "common variant of", &rule.result, known));
+            return Err(unknown(rule, "common variant of", &rule.result, known));
         }
         Ok(choices)
     }
@@ -157,7 +142,7 @@ impl Compiler<'_> {
         let name = choice.get(&name).unwrap_or(&name);
         let variants = self.variants(category);
         let at = variants.iter().position(|known| known == name);
-        at.ok_or_else(|| self.unknown(rule, "variant", name, variants))
+        at.ok_or_else(|| unknown(rule, "variant", name, variants))
     }
 
     fn symbol(
@@ -171,13 +156,13 @@ impl Compiler<'_> {
             Piece::Inflected(name, variant) => {
                 let Some(forms) = self.file.words.get(name) else {
                     let known = self.file.words.keys().cloned().collect();
-                    return Err(self.unknown(rule, "word", name, known));
+                    return Err(unknown(rule, "word", name, known));
                 };
                 let variant = name_of(variant, k);
                 let variant = choice.get(&variant).unwrap_or(&variant);
                 let word = forms.get(variant).ok_or_else(|| {
                     let known = forms.keys().cloned().collect();
-                    self.unknown(rule, "variant", variant, known)
+                    unknown(rule, "variant", variant, known)
                 })?;
                 Symbol::Word(word.to_lowercase())
             }
@@ -237,6 +222,15 @@ impl Compiler<'_> {
             self.found.of_function.entry(key).or_default().push(at);
         }
         Ok(())
+    }
+}
+
+fn unknown(rule: &RuleFile, kind: &'static str, name: &str, known: Vec<String>) -> GrammarError {
+    GrammarError::Unknown {
+        rule: rule.function.clone(),
+        kind,
+        name: name.to_owned(),
+        known,
     }
 }
 

@@ -70,6 +70,9 @@ pub struct Parse {
     pub expected: Vec<String>,
 }
 
+/// The readings of categories over spans, from the first word to that behind the last.
+type KnownReadings = BTreeMap<(NonTerminal, usize, usize), Vec<(u32, Tree)>>;
+
 struct Parser<'a> {
     grammar: &'a Grammar,
     words: &'a [String],
@@ -174,7 +177,7 @@ impl Parser<'_> {
         category: NonTerminal,
         origin: usize,
         end: usize,
-        known: &mut BTreeMap<(NonTerminal, usize, usize), Vec<(u32, Tree)>>,
+        known: &mut KnownReadings,
     ) -> Vec<(u32, Tree)> {
         if let Some(found) = known.get(&(category, origin, end)) {
             return found.clone();
@@ -212,7 +215,7 @@ impl Parser<'_> {
         &self,
         item: Item,
         set: usize,
-        known: &mut BTreeMap<(NonTerminal, usize, usize), Vec<(u32, Tree)>>,
+        known: &mut KnownReadings,
     ) -> Vec<(u32, BTreeMap<usize, Tree>)> {
         if item.dot == 0 {
             return vec![(0, BTreeMap::new())];
@@ -247,7 +250,7 @@ impl Parser<'_> {
         symbol: &Symbol,
         child: Child,
         end: usize,
-        known: &mut BTreeMap<(NonTerminal, usize, usize), Vec<(u32, Tree)>>,
+        known: &mut KnownReadings,
     ) -> Vec<(u32, Option<Tree>)> {
         match child {
             Child::Word => vec![(0, None)],

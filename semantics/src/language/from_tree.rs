@@ -238,8 +238,7 @@ fn described(tree: &Tree) -> Option<Description> {
             });
             description
         }
-        ("noun", [word]) => plain(id(word)?),
-        ("tail", [word]) => plain(id(word)?),
+        ("noun" | "tail", [word]) => plain(id(word)?),
         ("gathered", [head, tail]) => {
             let mut description = described(tail)?;
             let Noun::Object(tail) = &description.noun else {

@@ -8,7 +8,7 @@ use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::Truth;
 
 /// Cosine of the least angle: 135 degrees.
-const LARGEST_COSINE: f32 = -0.707_106_8;
+const LARGEST_COSINE: f32 = -std::f32::consts::FRAC_1_SQRT_2;
 
 /// See [`Predicate::definition`].
 pub(super) struct Between;

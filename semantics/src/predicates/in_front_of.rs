@@ -1,6 +1,6 @@
 //! The predicate `in_front_of`, relative to a viewer.
 
-use super::{Predicate, RelationProperties, THING, view::Sight};
+use super::{Predicate, RelationProperties, THING, view::Sights};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
 use crate::truth::{Truth, UndecidedReason};
 
@@ -48,10 +48,10 @@ impl Predicate for InFrontOf {
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
-        let sight = |term| Sight::of(scene, viewer?, term);
-        let (Some(p), Some(q)) = (sight(args[0]), sight(args[1])) else {
-            return Truth::Undecided(UndecidedReason::NotInFront);
-        };
-        Truth::from(q.depth_m - p.depth_m >= LEAST_M && p.shared_width(&q) >= SHARE)
+        let sights = viewer.and_then(|viewer| Sights::of(scene, viewer, [args[0], args[1]]));
+        sights.map_or(Truth::Undecided(UndecidedReason::NotInFront), |sights| {
+            let nearer = sights.nearer_m() >= LEAST_M;
+            Truth::from(nearer && sights.shared_width(scene) >= SHARE)
+        })
     }
 }

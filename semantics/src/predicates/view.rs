@@ -1,19 +1,23 @@
-//! The projection of things into a viewer's picture.
+//! Where things fall in a viewer's picture.
 
+use super::shape::bounds_of;
 use crate::scene::{SemanticScene, Term, Viewer};
-use dwell_scene::Aabb;
+use dwell_scene::Pose;
+use glam::Vec3;
 
-use super::shape::shape_of;
-
-/// The least depth of a thing in front of a viewer, m.
+/// The least depth of what is in front of a viewer, m.
 const LEAST_DEPTH_M: f32 = 0.05;
 /// The largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
 
-/// Returns the horizontal place of a thing's middle in the viewer's picture: x over depth, positive to the right; `None` when it
-/// is not in front of the viewer.
+/// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
+/// front of the viewer.
 pub(crate) fn picture_x(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
-    let point = viewer.upright_from_world(scene.center(term)?);
+    tangent(viewer.upright_from_world(scene.center(term)?))
+}
+
+/// The tangent of a direction in the viewer's upright frame; `None` of what is not in front.
+fn tangent(point: Vec3) -> Option<f32> {
     let depth = -point.z;
     let x = point.x / depth;
     (depth >= LEAST_DEPTH_M && x.abs() <= WIDEST_TANGENT).then_some(x)
@@ -24,44 +28,62 @@ pub(crate) fn is_in_front(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term
     picture_x(scene, viewer, term).is_some()
 }
 
-/// The place and width of a thing in a viewer's picture.
-pub(super) struct Sight {
-    /// The depth of its middle, m.
-    pub(super) depth_m: f32,
-    /// Its left and right edge in the picture, tangents.
-    left: f32,
-    right: f32,
+/// Two things as a viewer sees them, both in front of it.
+pub(super) struct Sights {
+    upright_from_world: Pose,
+    terms: [Term; 2],
+    /// Where their middles are in the viewer's upright frame, m.
+    middles: [Vec3; 2],
 }
 
-impl Sight {
-    /// Projects a thing into a viewer's picture; `None` when its middle is not in front of the viewer.
-    pub(super) fn of(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<Self> {
-        let middle = picture_x(scene, viewer, term)?;
-        let depth_m = -viewer.upright_from_world(scene.center(term)?).z;
-        let (mut left, mut right) = (middle, middle);
-        let bounds: Aabb = shape_of(scene, term)?.bounds;
+impl Sights {
+    /// Returns how a viewer sees two things; `None` when the middle of one is not in front of the viewer.
+    pub(super) fn of(scene: &SemanticScene<'_>, viewer: &Viewer, terms: [Term; 2]) -> Option<Self> {
         let upright_from_world = viewer.upright().inverse();
-        for corner in bounds.corners() {
-            let point = upright_from_world.transform_point(corner);
-            let x =
-                (point.x / (-point.z).max(LEAST_DEPTH_M)).clamp(-WIDEST_TANGENT, WIDEST_TANGENT);
-            (left, right) = (left.min(x), right.max(x));
-        }
+        let middle = |term| {
+            let point = upright_from_world.transform_point(scene.center(term)?);
+            tangent(point).map(|_| point)
+        };
+        let middles = [middle(terms[0])?, middle(terms[1])?];
         Some(Self {
-            depth_m,
-            left,
-            right,
+            upright_from_world,
+            terms,
+            middles,
         })
     }
 
-    /// The overlap of both in the picture, as share of the narrower one's width, 0 to 1.
-    pub(super) fn shared_width(&self, other: &Self) -> f32 {
-        let shared = self.right.min(other.right) - self.left.max(other.left);
-        let narrower = (self.right - self.left).min(other.right - other.left);
+    /// Returns how much nearer the first one is along where the viewer looks, m.
+    pub(super) fn nearer_m(&self) -> f32 {
+        self.middles[0].z - self.middles[1].z
+    }
+
+    /// The share of the narrower one's width in the picture that both have in common, 0 to 1.
+    pub(super) fn shared_width(&self, scene: &SemanticScene<'_>) -> f32 {
+        let edges = [0, 1].map(|k| self.edges(scene, k));
+        let [Some((left, right)), Some((other_left, other_right))] = edges else {
+            return 0.0;
+        };
+        let shared = right.min(other_right) - left.max(other_left);
+        let narrower = (right - left).min(other_right - other_left);
         if narrower > 0.0 {
             (shared / narrower).max(0.0)
         } else {
             f32::from(shared >= 0.0)
         }
+    }
+
+    /// The left and the right edge of a thing's box in the picture, tangents.
+    fn edges(&self, scene: &SemanticScene<'_>, k: usize) -> Option<(f32, f32)> {
+        let bounds = bounds_of(scene, self.terms[k])?;
+        let tangents = bounds.corners().into_iter().map(|corner| {
+            let point = self.upright_from_world.transform_point(corner);
+            let x = point.x / (-point.z).max(LEAST_DEPTH_M);
+            x.clamp(-WIDEST_TANGENT, WIDEST_TANGENT)
+        });
+        Some(
+            tangents.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| {
+                (low.min(x), high.max(x))
+            }),
+        )
     }
 }

@@ -115,7 +115,7 @@ impl ObjReader<'_> {
             self.obj.normals.len(),
         ];
         for word in words(rest) {
-            if word.iter().filter(|&&b| b == b'/').count() > 2 {
+            if word.split(|letter| *letter == b'/').count() > 3 {
                 let reason = format!(
                     "corner {:?} has more than three indices, those of a vertex, a texture coordinate and a normal",
                     shorten(word)
