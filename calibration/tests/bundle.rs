@@ -309,7 +309,7 @@ fn feet_and_gaps_are_refused() {
     let told = after(|folder| {
         each(folder, |k, _, t, value| {
             (if k < 12 { t } else { t + 3.0 }, value)
-        })
+        });
     });
     assert!(
         told.contains("less than 0.5 s from sample to sample"),

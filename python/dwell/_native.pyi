@@ -48,11 +48,12 @@ __all__ = [
     "floor_plan",
     "furniture_kinds",
     "json_extent",
+    "language_read",
+    "language_say",
     "laws",
     "map",
     "max_text_length",
     "predicates_json",
-    "response_metrics_json",
     "seed_range",
     "sensors",
     "settings",
@@ -63,8 +64,6 @@ __all__ = [
     "tasks",
     "texture",
     "vocabulary",
-    "language_read",
-    "language_say",
     "world_attributes",
     "world_check_text",
     "world_color_names",
@@ -464,9 +463,7 @@ def language_read(text: str) -> list[dict[str, Any]]:
 def language_say(form: Mapping[str, Any], seed: int | None) -> str | None:
     """A form in English; ``None`` where there are no words for it."""
 
-def world_check_text(
-    world: World, text: str, viewer: object, agent: int | None
-) -> dict[str, Any]:
+def world_check_text(world: World, text: str, viewer: object, agent: int | None) -> dict[str, Any]:
     """A sentence read, checked and grounded."""
 
 def predicates_json() -> str:

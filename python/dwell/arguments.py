@@ -149,9 +149,10 @@ def _ordered(values: object) -> list[Any] | None:
     if isinstance(values, AbstractSet | ValuesView | str | bytes | bytearray | Mapping):
         return None
     try:
-        return list(values)  # type: ignore[call-overload] # what this finds out
+        found: list[Any] = list(values)  # type: ignore[call-overload] # what this finds out
     except TypeError:
         return None
+    return found
 
 
 def _found(values: object) -> str:

@@ -46,7 +46,9 @@ def say(form: Mapping[str, Any], *, seed: int | None = None) -> str:
         ('Go to the kitchen.', True)
     """
     if not isinstance(form, Mapping):
-        raise ConfigError(f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives")
+        raise ConfigError(
+            f"form is {quoted(form)}; allowed are mappings as dwell.language.read gives"
+        )
     drawn = None if seed is None else whole("seed", seed, high=2**64 - 1)
     said = _native.language_say(form, drawn)
     if said is None:

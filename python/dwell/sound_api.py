@@ -10,7 +10,7 @@ import numpy as np
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import choice, finite, flag, path, point, text, whole
-from dwell.object_state_api import StateApi
+from dwell.language_api import LanguageApi
 
 #: What the names of sound files end with.
 _ENDINGS = (".wav", ".flac", ".ogg", ".oga")

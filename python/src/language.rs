@@ -12,7 +12,7 @@ use dwell_scene::random::RandomKey;
 use dwell_semantics::check::{Answer, CheckResult, Checker, Listener};
 use dwell_semantics::form::Form;
 use dwell_semantics::language::Language;
-use dwell_semantics::{Term, Truth};
+use dwell_semantics::{Term, Truth, UndecidedReason};
 use pyo3::prelude::*;
 use serde_json::{Value, json};
 
@@ -55,7 +55,7 @@ impl WorldAccess<'_> {
         });
         json!({
             "truth": truth(verdict.truth),
-            "reason": verdict.truth.reason().map(|reason| reason.sentence()),
+            "reason": verdict.truth.reason().map(UndecidedReason::sentence),
             "witnesses": witnesses.collect::<Vec<Value>>(),
         })
     }

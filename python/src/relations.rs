@@ -12,7 +12,7 @@ use dwell_semantics::color::ColorVocabulary;
 use dwell_semantics::graph::{Related, listed, relations, scene_graph};
 use dwell_semantics::predicates::{Predicate, all, find};
 use dwell_semantics::selections::{self, Selection};
-use dwell_semantics::{SemanticScene, Term, Viewer, object_attributes};
+use dwell_semantics::{SemanticScene, Term, UndecidedReason, Viewer, object_attributes};
 use glam::Vec3;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -47,7 +47,7 @@ impl WorldAccess<'_> {
         self.world.engines().semantics().scene(self.world.state())
     }
 
-    /// A term by its name or the sensors' id: "chair_2", "room:kitchen", "storey:0", "agent:0", "part:door_1/leaf".
+    /// A term by its name or the sensors' id: `chair_2`, `room:kitchen`, `storey:0`, `agent:0`, `part:door_1/leaf`.
     fn term(&self, named: &Value) -> Result<Term, PyFault> {
         let (house, state) = (self.world.house(), self.world.state());
         if let Some(id) = named.as_i64() {
@@ -222,7 +222,7 @@ pub(crate) fn world_holds(
         let (terms, viewer) = (running.terms(things)?, running.viewer(viewer)?);
         let truth = predicate.holds(&running.scene(), &terms, viewer.as_ref());
         let why = truth.reason();
-        Ok((truth.value(), why.map(|why| why.sentence())))
+        Ok((truth.value(), why.map(UndecidedReason::sentence)))
     })
 }
 

@@ -17,7 +17,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import mapping, quoted, refuse_unknown, text, to_json, whole
+from dwell.arguments import mapping, quoted, refuse_unknown, text, whole
 from dwell.camera import Camera, camera_settings
 from dwell.envs.config import (
     KEPT,

@@ -20,7 +20,6 @@ from dwell.arguments import (
     refuse_masked,
     refuse_unknown,
     some,
-    to_json,
     whole,
 )
 from dwell.camera import camera_settings
