@@ -148,7 +148,7 @@ DIRECTIVITIES: dict[str, Any] = {
 }
 
 
-def directivity_json(directivity: str | Directivity) -> Any:  # noqa: ANN401 - a name or a table
+def directivity_json(directivity: object) -> Any:  # noqa: ANN401 - a name or a table
     """The engine's form of a name or a directivity."""
     if isinstance(directivity, Directivity):
         return directivity.to_json()
