@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, _native, arguments
 from dwell.arguments import choice, finite, flag, in_order, pair, path, text, whole
-from dwell.editing import EditList, Rgb, rgb
+from dwell.edit_fields import Rgb, rgb
+from dwell.editing import EditList
 from dwell.files import atomic_write
 from dwell.house import House
 

@@ -7,23 +7,29 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell import ConfigError, UsageError, _native, arguments
-from dwell.arguments import choice, finite, flag, in_order, path, point, text, whole
+from dwell.arguments import choice, finite, flag, path, point, text, whole
+from dwell.edit_fields import (
+    Anchor,
+    Mobility,
+    Point,
+    Rgb,
+    Side,
+    look_field,
+    optional_text,
+    place_field,
+    rgb,
+    traits_field,
+)
 from dwell.house import House
 from dwell.sound_api import emitter_sound
 
 if TYPE_CHECKING:
     from typing_extensions import Self
-
-Point = tuple[float, float, float]
-Rgb = tuple[int, int, int]
-Anchor = Literal["foot", "middle", "top", "origin"]
-Mobility = Literal["fixed", "movable"]
-Side = Literal["floor", "walls", "ceiling"]
 
 
 class EditList:
@@ -90,16 +96,16 @@ class EditList:
         """
         what = {
             "kind": text("kind", kind),
-            "style": _text("style", style),
+            "style": optional_text("style", style),
             "seed": whole("seed", seed),
         }
         return self._note(
             "add",
             {
                 "what": {"catalogue": what},
-                "name": _text("name", name),
-                "place": _place(at, on, yaw_deg, anchor),
-                "look": _look(substance, srgb),
+                "name": optional_text("name", name),
+                "place": place_field(at, on, yaw_deg, anchor),
+                "look": look_field(substance, srgb),
             },
         )
 
@@ -158,10 +164,10 @@ class EditList:
             "add",
             {
                 "what": {"file": what},
-                "name": _text("name", name),
-                "place": _place(at, on, yaw_deg, anchor),
-                "traits": _traits(category, mobility, mass_kg, density_kg_m3, pickable, None),
-                "look": _look(substance, srgb, keep_look=True),
+                "name": optional_text("name", name),
+                "place": place_field(at, on, yaw_deg, anchor),
+                "traits": traits_field(category, mobility, mass_kg, density_kg_m3, pickable, None),
+                "look": look_field(substance, srgb, keep_look=True),
                 "sound": None
                 if signal is None and sound is None
                 else emitter_sound(signal, sound, level_db, loop=loop, start_s=start_s),
@@ -189,10 +195,10 @@ class EditList:
             "add",
             {
                 "what": {"box": {"size_m": point("size_m", size_m)}},
-                "name": _text("name", name),
-                "place": _place(at, on, yaw_deg, anchor),
-                "traits": _traits(category, mobility, mass_kg, density_kg_m3, None, None),
-                "look": _look(substance, srgb),
+                "name": optional_text("name", name),
+                "place": place_field(at, on, yaw_deg, anchor),
+                "traits": traits_field(category, mobility, mass_kg, density_kg_m3, None, None),
+                "look": look_field(substance, srgb),
             },
         )
 
@@ -221,9 +227,9 @@ class EditList:
         what = {"object": text("thing", thing)}
         if house is not None:
             what["house"] = path("house", house)
-        place = _place(at, on, yaw_deg, anchor)
+        place = place_field(at, on, yaw_deg, anchor)
         return self._note(
-            "add", {"what": {"copy": what}, "name": _text("name", name), "place": place}
+            "add", {"what": {"copy": what}, "name": optional_text("name", name), "place": place}
         )
 
     def remove(self, thing: str, *, with_things: bool = False) -> Self:
@@ -262,7 +268,7 @@ class EditList:
             "move",
             {
                 "object": text("thing", thing),
-                "place": _place(at, on, yaw_deg, anchor),
+                "place": place_field(at, on, yaw_deg, anchor),
                 "by": point("by", by),
                 "turn_deg": finite("turn_deg", turn_deg),
                 "with_things": flag("with_things", with_things),
@@ -304,7 +310,7 @@ class EditList:
             wanted = choice("side", side, ("floor", "walls", "ceiling"))
             surfaces["room"] = {"name": text("room", room), "side": wanted}
         if thing is not None:
-            surfaces["object"] = {"name": text("thing", thing), "part": _text("part", part)}
+            surfaces["object"] = {"name": text("thing", thing), "part": optional_text("part", part)}
         if structure is not None:
             surfaces["structure"] = text("structure", structure)
         if material is not None:
@@ -315,7 +321,7 @@ class EditList:
                 f"re_material of {found}; expected one of room, thing, structure and material"
             )
         look = {
-            "substance": _text("substance", substance),
+            "substance": optional_text("substance", substance),
             "srgb": None if srgb is None else rgb("srgb", srgb),
             "opacity": None if opacity is None else finite("opacity", opacity),
             "roughness": None if roughness is None else finite("roughness", roughness),
@@ -353,9 +359,9 @@ class EditList:
             "add_emitter",
             {
                 "sound": emitter_sound(signal, sound, level_db, loop=loop, start_s=start_s),
-                "object": _text("thing", thing),
+                "object": optional_text("thing", thing),
                 "at": None if at is None else point("at", at),
-                "name": _text("name", name),
+                "name": optional_text("name", name),
             },
         )
 
@@ -406,12 +412,12 @@ class EditList:
         return self._note(
             "add_lamp",
             {
-                "object": _text("thing", thing),
+                "object": optional_text("thing", thing),
                 "kind": kind,
-                "style": _text("style", style),
+                "style": optional_text("style", style),
                 "seed": whole("seed", seed),
-                "name": _text("name", name),
-                "place": _place(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
+                "name": optional_text("name", name),
+                "place": place_field(at, on, yaw_deg, anchor or ("top" if hangs else "foot")),
                 "power_w": None if power_w is None else finite("power_w", power_w),
                 "srgb": None if srgb is None else rgb("srgb", srgb),
                 "on": flag("lit", lit),
@@ -460,7 +466,7 @@ class EditList:
             "agent_start",
             {
                 "at": None if at is None else point("at", at),
-                "room": _text("room", room),
+                "room": optional_text("room", room),
                 "yaw_deg": finite("yaw_deg", yaw_deg),
                 "agent": None if agent is None else whole("agent", agent),
             },
@@ -477,7 +483,7 @@ class EditList:
         fields = {
             "object": text("thing", thing),
             "open": finite("opened", opened),
-            "joint": _text("joint", joint),
+            "joint": optional_text("joint", joint),
         }
         return self._note("set_door", fields)
 
@@ -493,7 +499,7 @@ class EditList:
         switch: bool | None = None,
     ) -> Self:
         """Sets attributes of an object: category, mobility, mass, switch."""
-        traits = _traits(category, mobility, mass_kg, density_kg_m3, pickable, switch)
+        traits = traits_field(category, mobility, mass_kg, density_kg_m3, pickable, switch)
         return self._note("describe", {"object": text("thing", thing), "traits": traits or {}})
 
     def rename(
@@ -513,10 +519,10 @@ class EditList:
             kind: and what people call it: ``"living room"``.
         """
         fields = {
-            "object": _text("thing", thing),
-            "room": _text("room", room),
+            "object": optional_text("thing", thing),
+            "room": optional_text("room", room),
             "to": text("to", to),
-            "kind": _text("kind", kind),
+            "kind": optional_text("kind", kind),
         }
         return self._note("rename", fields)
 
@@ -570,54 +576,3 @@ class HouseEdit(EditList):
 
 def _edited(base: House, edits: str) -> House:
     return House(base.native.edited(edits), (_edited, (base, edits)))
-
-
-def _place(at: Point | None, on: str | None, yaw_deg: float | None, anchor: str) -> dict[str, Any]:
-    return {
-        "at": None if at is None else point("at", at),
-        "on": _text("on", on),
-        "yaw_deg": None if yaw_deg is None else finite("yaw_deg", yaw_deg),
-        "anchor": choice("anchor", anchor, ("foot", "middle", "top", "origin")),
-    }
-
-
-def _traits(
-    category: str | None,
-    mobility: str | None,
-    mass_kg: float | None,
-    density_kg_m3: float | None,
-    pickable: bool | None,
-    switch: bool | None,
-) -> dict[str, Any] | None:
-    traits = {
-        "category": _text("category", category),
-        "mobility": _text("mobility", mobility),
-        "mass_kg": None if mass_kg is None else finite("mass_kg", mass_kg),
-        "density_kg_m3": None if density_kg_m3 is None else finite("density_kg_m3", density_kg_m3),
-        "pickable": None if pickable is None else flag("pickable", pickable),
-        "switch": None if switch is None else flag("switch", switch),
-    }
-    told = {key: value for key, value in traits.items() if value is not None}
-    return told or None
-
-
-def _look(
-    substance: str | None, srgb: Rgb | None, *, keep_look: bool = False
-) -> dict[str, Any] | None:
-    if substance is None and srgb is None:
-        return None
-    color = None if srgb is None else rgb("srgb", srgb)
-    return {"substance": _text("substance", substance), "srgb": color, "keep_look": keep_look}
-
-
-def _text(name: str, value: object) -> str | None:
-    return None if value is None else text(name, value)
-
-
-def rgb(name: str, color: Sequence[int]) -> list[int]:
-    """A colour: three whole numbers, 0 to 255."""
-    rows = in_order(name, color, "expected three whole numbers, 0 to 255")
-    parts = [whole(f"{name}[{k}]", value, high=255) for k, value in enumerate(rows)]
-    if len(parts) != 3:
-        raise ConfigError(f"{name} has {len(parts)} numbers; expected 3")
-    return parts

@@ -11,7 +11,7 @@ from PIL import Image, ImageColor, ImageDraw, ImageFont
 from dwell import ConfigError, _native
 from dwell.arguments import finite, in_order, instance, point, quoted, text, whole
 from dwell.camera import Camera, Preset
-from dwell.editing import rgb
+from dwell.edit_fields import rgb
 from dwell.house import House
 from dwell.world import World
 
