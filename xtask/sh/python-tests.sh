@@ -8,5 +8,7 @@ for folder in python/tests tests/python; do
 done
 only='not slow'
 [ -z "${DWELL_TEST_ALL:-}" ] || only=
+# One process a core, at most four: each holds houses of its own.
 # shellcheck disable=SC2086 # a list of folders
-exec .venv/bin/python -m pytest --config-file python/pyproject.toml --rootdir . --quiet -m "$only" "$@" $folders
+exec .venv/bin/python -m pytest --config-file python/pyproject.toml --rootdir . --quiet -m "$only" \
+    --numprocesses auto --maxprocesses 4 --dist worksteal "$@" $folders
