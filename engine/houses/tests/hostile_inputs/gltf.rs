@@ -253,7 +253,7 @@ pub(crate) const CASES: &[Case] = &[
             let file = with(triangle(), "/nodes/0/children", json!([0, 0]));
             put_glb(d, &with(file, "/animations", json!([])))
         },
-        &["a.glb: nodes[1].children[0]", "reached already"],
+        &["a.glb: nodes[0].children[0]", "reached already"],
     ),
     fails(
         "a place of 1e39",

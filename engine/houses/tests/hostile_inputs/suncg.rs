@@ -7,6 +7,9 @@ use crate::kit::{Case, fails, obj_of, png_of, put, warns};
 
 pub(crate) const IDENTITY: &str = "[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
 
+/// A node that adds nothing.
+const NOTHING: &str = r#"{"id": "0_1", "type": "None"}"#;
+
 /// A house of one box, and these nodes.
 pub(crate) fn house(folder: &Path, nodes: &str) -> PathBuf {
     let text = format!(
@@ -370,7 +373,7 @@ pub(crate) const CASES: &[Case] = &[
         "categories in UTF-16",
         |d| {
             put(d, "metadata/ModelCategoryMapping.csv", b"\xff\xfem\0o\0");
-            house(d, "")
+            house(d, NOTHING)
         },
         &[
             "table \"metadata/ModelCategoryMapping.csv\" could not be read",
@@ -383,7 +386,7 @@ pub(crate) const CASES: &[Case] = &[
         |d| {
             let text = "model_id;fine_grained_class\n7;chair\n";
             put(d, "metadata/ModelCategoryMapping.csv", text);
-            house(d, "")
+            house(d, NOTHING)
         },
         &["could not be read", "no column", "parted by commas"],
     ),
@@ -392,7 +395,7 @@ pub(crate) const CASES: &[Case] = &[
         |d| {
             let text = "model_id,fine_grained_class\n7,\"chair\n8,table\n9,lamp\n";
             put(d, "metadata/ModelCategoryMapping.csv", text);
-            house(d, "")
+            house(d, NOTHING)
         },
         &["ModelCategoryMapping.csv", "over 3 more lines", "not read"],
     ),
@@ -400,7 +403,7 @@ pub(crate) const CASES: &[Case] = &[
         "lights that are a list",
         |d| {
             put(d, "metadata/suncgModelLights.json", "[]");
-            house(d, "")
+            house(d, NOTHING)
         },
         &[
             "suncgModelLights.json\" could not be read",
@@ -411,7 +414,7 @@ pub(crate) const CASES: &[Case] = &[
         "sounds that are cut",
         |d| {
             put(d, "metadata/sounds.json", "[{");
-            house(d, "")
+            house(d, NOTHING)
         },
         &["metadata/sounds.json\" could not be read", "sounds"],
     ),
