@@ -23,7 +23,7 @@ pub(crate) fn parse<'a>(text: &'a str, at: &FileLocation) -> Result<Document<'a>
         at: at.line(error.pos().row),
         message: match error {
             roxmltree::Error::DtdDetected => {
-                "a document type (<!DOCTYPE ...>) was found; allowed is XML without one".to_owned()
+                "XML with a DTD (<!DOCTYPE ...>); allowed is XML without one".to_owned()
             }
             error => error.to_string(),
         },
@@ -181,7 +181,7 @@ mod tests {
     fn a_document_type_is_refused() {
         let laughs = "<!DOCTYPE a [<!ENTITY b 'cc'>]><a>&b;</a>";
         assert!(
-            told(laughs).starts_with("a.xml:1: XML with DTD detected"),
+            told(laughs).starts_with("a.xml:1: XML with a DTD (<!DOCTYPE ...>); allowed is"),
             "{}",
             told(laughs)
         );
