@@ -231,7 +231,7 @@ fn sentences_are_checked_and_their_phrases_grounded() {
     let checked = checker.check_text("there's a bed").unwrap_err();
     assert!(checked.to_string().contains("there's"), "{checked}");
     let checked = checker
-        .check_text("There is a bed in the bedroom.")
+        .check_text("There is a sofa in the living room.")
         .unwrap();
     let Some(Answer::Truth(verdict)) = checked.answer else {
         panic!("a truth value");
@@ -247,12 +247,15 @@ fn sentences_are_checked_and_their_phrases_grounded() {
         .iter()
         .map(|span| &said.text[span.start..span.end])
         .collect();
-    assert_eq!(text, ["a bed in the bedroom", "the bedroom"]);
-    let beds = &grounded[0].terms;
-    assert!(!beds.is_empty());
-    for bed in beds {
-        let bed = bed.object().unwrap();
-        assert!(scene.facts(bed).is_called("bed"));
-        assert_eq!(grounded[1].terms, [Term::Room(scene.room_of(bed).unwrap())]);
+    assert_eq!(text, ["a sofa in the living room", "the living room"]);
+    let sofas = &grounded[0].terms;
+    assert!(!sofas.is_empty());
+    for sofa in sofas {
+        let sofa = sofa.object().unwrap();
+        assert!(scene.facts(sofa).is_called("sofa"));
+        assert_eq!(
+            grounded[1].terms,
+            [Term::Room(scene.room_of(sofa).unwrap())]
+        );
     }
 }

@@ -311,6 +311,7 @@ proptest! {
         }
         let other = english.say(&form, Some(RandomKey::root(seed))).unwrap();
         let reading = english.read(&other.text);
+        prop_assume!(!matches!(reading, Err(dwell_semantics::language::ReadError::TooLong { .. })));
         prop_assert!(reading.is_ok_and(|reading| reading.forms.contains(&form)), "{}", other.text);
     }
 

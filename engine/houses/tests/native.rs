@@ -166,14 +166,14 @@ fn a_storey_without_end_is_no_house() {
     let error = House::new(data).unwrap_err().to_string();
     assert_eq!(
         error,
-        "levels[0]: bounds is inf; allowed is coordinates within 32768 m of the origin"
+        "levels[0] \"0\": bounds is inf; allowed is coordinates within 32768 m of the origin"
     );
     // Not all 39 digits of it.
     let mut data: HouseData = shoebox().data().clone();
     data.levels.as_mut_slice()[0].bounds.max.x = f32::MAX;
     let error = House::new(data).unwrap_err().to_string();
     assert!(
-        error.starts_with("levels[0]: bounds is 3.4e38; "),
+        error.starts_with("levels[0] \"0\": bounds is 3.4e38; "),
         "{error}"
     );
 }

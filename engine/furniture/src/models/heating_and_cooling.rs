@@ -24,12 +24,19 @@ pub fn radiator(width_m: f32, height_m: f32) -> Model {
         let a = -x + 0.012 + 0.04 * k as f32;
         block([a, 0.03, 0.09], [a + 0.022, height_m - 0.03, 0.098]).visual_only()
     };
+    // Brackets between 0.1 m from either end, at least 4 cm high.
+    let middle = 0.5 * height_m;
+    let (low, high) = if height_m >= 0.24 {
+        (0.1, height_m - 0.1)
+    } else {
+        (middle - 0.02, middle + 0.02)
+    };
     let body = PartBuilder::new("body")
         .with_filled(&white, block([-x, 0.0, 0.04], [x, height_m, 0.09]), 0.12)
         .with_all(&white, (0..(width_m / 0.04 - 0.5) as usize).map(rib))
         .with_all(
             &white,
-            [-x + 0.1, x - 0.12].map(|a| block([a, 0.1, 0.0], [a + 0.02, height_m - 0.1, 0.04])),
+            [-x + 0.1, x - 0.12].map(|a| block([a, low, 0.0], [a + 0.02, high, 0.04])),
         )
         .with(
             &chrome(),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use dwell_scene::space::flattens;
 use dwell_scene::{
     Aabb, Articulation, Bands, Category, Collider, Daytime, HouseData, JointKind, Level, LevelId,
     Light, LightShape, Material, MaterialId, Mesh, MeshId, Mobility, Object, ObjectId, Part,
@@ -57,12 +58,27 @@ impl<'a> Numbers<'a> {
         (self.bits() >> 8) as f32 / (1 << 24) as f32
     }
 
+    /// A number above 0.
+    fn size(&mut self) -> f32 {
+        self.unit() + 1e-3
+    }
+
     fn vec3(&mut self) -> Vec3 {
         Vec3::new(self.float(), self.float(), self.float())
     }
 
     fn vec2(&mut self) -> Vec2 {
         Vec2::new(self.float(), self.float())
+    }
+
+    /// A triangle with an area.
+    fn triangle(&mut self) -> [Vec2; 3] {
+        let corners = [self.vec2(), self.vec2(), self.vec2()];
+        let [a, b, c] = corners;
+        if (b - a).perp_dot(c - a) == 0.0 {
+            return [Vec2::ZERO, Vec2::X, Vec2::Y];
+        }
+        corners
     }
 
     fn direction(&mut self) -> Vec3 {
@@ -80,8 +96,13 @@ impl<'a> Numbers<'a> {
     /// With columns below 1, so that a mesh of 10 km stays within the 32 km that a house may have.
     fn affine(&mut self) -> Affine3A {
         let columns = [self.vec3(), self.vec3(), self.vec3()].map(|c| Vec3A::from(c) * 5e-5);
+        let drawn = Mat3A::from_cols(columns[0], columns[1], columns[2]);
         Affine3A {
-            matrix3: Mat3A::from_cols(columns[0], columns[1], columns[2]),
+            matrix3: if flattens(&drawn) {
+                Mat3A::IDENTITY
+            } else {
+                drawn
+            },
             translation: self.vec3().into(),
         }
     }
@@ -90,7 +111,8 @@ impl<'a> Numbers<'a> {
         if self.below(5) == 0 {
             Aabb::EMPTY
         } else {
-            Aabb::new(self.vec3(), self.vec3())
+            let (a, b) = (self.vec3(), self.vec3());
+            Aabb::new(a.min(b), a.max(b))
         }
     }
 
@@ -180,16 +202,16 @@ fn collider(n: &mut Numbers<'_>, fixed: bool) -> Collider {
     match n.below(if fixed { 5 } else { 4 }) {
         0 => Collider::Cuboid {
             part_from_box: n.pose(),
-            half_extents: n.vec3(),
+            half_extents: n.vec3().abs() + 1e-3,
         },
         1 => Collider::Ball {
             center: n.vec3(),
-            radius: n.unit(),
+            radius: n.size(),
         },
         2 => Collider::Cylinder {
             part_from_cylinder: n.pose(),
-            half_height: n.unit(),
-            radius: n.unit(),
+            half_height: n.size(),
+            radius: n.size(),
         },
         3 => Collider::Hull {
             points: (0..4 + n.below(4)).map(|_| n.vec3()).collect(),
@@ -224,14 +246,16 @@ pub(crate) fn house(numbers: &[u32]) -> HouseData {
             name: n.name(k),
             level: LevelId(n.below(levels) as u32),
             kinds: (0..n.below(3)).map(|k| n.name(k)).collect(),
-            footprint: (0..n.below(3))
-                .map(|_| [n.vec2(), n.vec2(), n.vec2()])
-                .collect(),
+            footprint: (0..n.below(3)).map(|_| n.triangle()).collect(),
             floor_y: n.float(),
             ceiling_y: n.float(),
             bounds: n.aabb(),
         })
         .collect();
+    for room in data.rooms.as_mut_slice() {
+        let (a, b) = (room.floor_y, room.ceiling_y);
+        (room.floor_y, room.ceiling_y) = (a.min(b), a.max(b));
+    }
     let rooms = data.rooms.len();
     let slot_materials = |n: &mut Numbers<'_>| {
         (0..slots)

@@ -133,6 +133,7 @@ pub(super) fn check(data: &HouseData) -> Result<(), SceneError> {
         )?;
     }
     objects(data)?;
+    check_rooms::boxes(data)?;
     joints(data)?;
     fixtures(data)?;
     data.sky.map_or(Ok(()), |sky| sky.check())

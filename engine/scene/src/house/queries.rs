@@ -208,7 +208,7 @@ mod tests {
             let middle = somewhere(10.0);
             let mut room = room.clone();
             room.name = format!("room_{k}");
-            room.footprint = vec![[(); 3].map(|()| middle + somewhere(4.0)), [middle; 3]];
+            room.footprint = vec![[(); 3].map(|()| middle + somewhere(4.0))];
             data.rooms.push(room);
         }
         let house = House::new(data).unwrap();

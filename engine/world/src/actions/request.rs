@@ -184,7 +184,7 @@ mod tests {
             ),
             (
                 r#"{"kind": "pick", "direction": [1e39, 0, 0]}"#,
-                "direction is [inf, 0.0, 0.0] from None; allowed is finite numbers",
+                "direction is [inf, 0.0, 0.0]; allowed is finite numbers of 32 bits",
             ),
             (
                 r#"{"kind": "pick", "pixel": [1, 1], "camera": {"fov_deg": 500}}"#,
