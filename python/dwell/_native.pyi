@@ -54,6 +54,7 @@ __all__ = [
     "map",
     "max_text_length",
     "predicates_json",
+    "response_metrics",
     "seed_range",
     "sensors",
     "settings",

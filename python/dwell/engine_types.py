@@ -65,27 +65,27 @@ class BodySettings(TypedDict, total=False):
     height_m: float
     #: Height of eyes and ears above the feet, m; at most the height.
     eye_height_m: float
-    #: The highest step it climbs, m; 0 to 1.
+    #: The highest step that it climbs, m; 0 to 1.
     step_height_m: float
-    #: The steepest slope it walks up, rad; 0 to 1.4.
+    #: The steepest slope that it walks up, rad; 0 to 1.4.
     max_slope_rad: float
-    #: The heaviest thing it lifts, kg; 0 to 500. What weighs more falls from its hand with the
+    #: The heaviest object that it lifts, kg; 0 to 500. A heavier one falls from its hand in the
     #: next step.
     lift_kg: float
-    #: How far from its eye its hand reaches, m; 0.1 to 5.
+    #: Reach of its hand from its eye, m; 0.1 to 5.
     reach_m: float
-    #: The force with which it pushes what is in its way and what its hand pushes and pulls, N; 0
-    #: to 10,000.
+    #: The force with which it pushes obstacles and with which its hand pushes and pulls, N; 0 to
+    #: 10,000.
     push_force_n: float
     #: The strongest pull of its hand on a door or drawer, N·m or N; 0 to 10,000.
     hand_effort: float
-    #: The largest edge of what it carries, m; 0.05 to 5.
+    #: The largest edge of an object that it carries, m; 0.05 to 5.
     max_carry_size_m: float
     #: The horizontal field of view of the cameras at its eyes that state none of their own,
-    #: degrees; 1 to 170, default 90. In a world it is what `agent/N/camera/fov_deg` reads until
+    #: degrees; 1 to 170, default 90. In a world it is the value of `agent/N/camera/fov_deg` until
     #: that is set.
     camera_fov_deg: float
-    #: How it gets about; default: it walks.
+    #: Its locomotion; default: it walks.
     locomotion: Locomotion
 
 
@@ -114,39 +114,39 @@ class AcousticSettings(TypedDict, total=False):
     #: Highest order of the image sources; 0 (direct sound only) to 4. Specular paths of higher
     #: orders belong to the tail.
     image_order: int
-    #: How many of the largest planes are combined exhaustively, as long as that makes at most
+    #: Number of the largest planes that are combined exhaustively, as long as that makes at most
     #: 20,000 sequences an order; 0 to 200.
     image_planes: int
     #: Rays from the receiver that discover further sequences of planes; 0 to 100,000.
     discovery_rays: int
-    #: How far the rays' energy may fall below the start before they become fewer, dB; 10 to 120.
-    #: Above it, the faint ones end and the strong ones split, so that there are always as many;
-    #: below, the fewer the fainter they are. Bands count alike.
+    #: Decay of the rays' energy down to which their number is kept, dB; 10 to 120. Above it, faint
+    #: rays end and strong ones split, so that there are always as many; below, their number falls
+    #: with their energy. Bands count alike.
     roulette_db: float
-    #: Radius of the ball in which paths with specular last reflections are counted, m; 0.05 to 2.
-    #: It is this large for paths up to 8 m and grows with their length, up to 0.35 of the cube
+    #: Radius of the detection sphere in which paths with specular last reflections are counted, m;
+    #: 0.05 to 2. It holds for paths up to 8 m and grows with their length, up to 0.35 of the cube
     #: root of the volume in sight.
     receiver_radius_m: float
     #: Relative standard error of the tail's energy, in every band, below which no more rays are
     #: traced; 0 (all rays) to 1.
     max_error: float
-    #: Random arrivals that make up a second of the tail's pressure; 500 to 100,000. Denser ones
-    #: cannot be told apart.
+    #: Random arrivals a second in the tail's pressure; 500 to 100,000. Denser ones cannot be
+    #: distinguished.
     arrivals_per_s: float
-    #: Whether panels below 4 m² mirror only short waves and scatter long ones, but for those that
+    #: Makes panels below 4 m² mirror only short waves and scatter long ones, except panels that
     #: hang at a wall or lean out of one.
     panel_size: bool
-    #: Whether surfaces absorb more of what grazes them and less of what meets them head on; their
-    #: tables' coefficients are for sound from all sides. Without it they hold for every angle.
+    #: Makes surfaces absorb more at grazing and less at normal incidence; their tables'
+    #: coefficients are for a diffuse field. Without it they hold for every angle.
     absorption_by_angle: bool
     #: Temperature, humidity, pressure.
     air: AirSettings
-    #: Whether air absorbs.
+    #: Enables absorption by air.
     air_absorption: bool
-    #: Whether sound passes through walls and doors by their materials' transmission loss.
+    #: Lets sound pass through walls and doors by their materials' transmission loss.
     transmission: bool
-    #: Whether sound bends around edges: ways around what hides the source, and what edges beside
-    #: the straight line take.
+    #: Enables diffraction: paths around what hides the source, and the shadowing by edges beside
+    #: the straight line.
     diffraction: bool
     #: Radius of the spherical head, m; 0.03 to 0.2.
     head_radius_m: float

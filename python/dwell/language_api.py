@@ -41,14 +41,14 @@ class LanguageApi(RelationApi):
         Examples:
             >>> import dwell
             >>> world = dwell.World("builtin:apartment", agents=0)
-            >>> world.check("There is a bed in the bedroom.")["answer"]["truth"]
+            >>> world.check("There is a sofa in the living room.")["answer"]["truth"]
             True
             >>> world.check("How many beds are there?")["answer"]["number"] > 0
             True
-            >>> world.check("Find the sofer.")
+            >>> world.check("Find the sofaa.")  # doctest: +ELLIPSIS
             Traceback (most recent call last):
             ...
-            dwell.ConfigError: unknown word "sofer" (known are sofa, sofas)
+            dwell.ConfigError: unknown word "sofaa" (known are sofa, sofas...
         """
         listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
         sentence = checked_text("sentence", sentence)

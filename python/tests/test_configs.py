@@ -52,8 +52,8 @@ def test_a_task_is_registered_with_what_environments_know() -> None:
         _native.Batch([room.native], '{"nope": 1}')
     # Laws and parameters are the world's there; the others are of Python alone.
     own = {"houses", "reward", "laws", "parameters", "threads", "max_episode_steps", "render_mode"}
-    # Whom an environment is about is not yet an argument.
-    assert _allowed(str(env.value)) - {"agent"} == arguments - own
+    # The engine takes several agents; Python's environments are about one.
+    assert _allowed(str(env.value)) - {"agents"} == arguments - own - {"agent"}
 
 
 class Stand(dwell.Task):

@@ -94,7 +94,7 @@ def test_the_command_prints_a_verdict_for_each_sentence(
     code, out, _ = printed("There is a bed.", "How many beds are there?", "Go to the kitchen.")
     lines = out.splitlines()
     assert code == 0
-    assert lines[0].startswith("There is a bed. true (bed")
+    assert lines[0].startswith("There is a bed. true (double_bed_1")
     assert lines[1].split()[-1].isdigit()
     assert lines[2] == "Go to the kitchen. is a request."
     code, out, err = printed("There is a bed.", "There is a bedd.")

@@ -313,7 +313,10 @@ def test_faults_name_the_file_row_and_column_that_the_user_has(tmp_path: Path) -
     cases: list[tuple[str, str]] = [
         (refused(tmp_path, FLIGHT, put(57, 3, 1e300)), "data.csv row 57: column 'y' is 1"),
         (refused(tmp_path, FLIGHT, put(57, 2, 1e300)), "data.csv row 57: column 'x' is 1"),
-        (refused(tmp_path, FLIGHT, put(57, 1, 1e300)), "data.csv row 57: column 't_s' is 1"),
+        (
+            refused(tmp_path, FLIGHT, put(57, 1, 1e300)),
+            "data.csv row 58: column 't_s' is 5.17 after 1e+300 (row 57)",
+        ),
         (
             refused(tmp_path, FLIGHT, renamed, index=("e1", "a\x1b[31m")),
             "data.csv row 41: column 'episode' is",
