@@ -35,7 +35,7 @@ def traits_field(
     pickable: bool | None,
     switch: bool | None,
 ) -> dict[str, Any] | None:
-    """What is stated of category, mobility, mass and use; ``None`` where nothing is."""
+    """Category, mobility, mass and use as stated; ``None`` where nothing is."""
     traits = {
         "category": optional_text("category", category),
         "mobility": optional_text("mobility", mobility),

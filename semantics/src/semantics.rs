@@ -103,7 +103,7 @@ impl Semantics {
             let nouns = things.map(|facts| (facts.noun.as_str(), facts.plural.as_str()));
             let rooms = self.rooms.iter();
             let rooms = rooms.map(|room| (room.noun.as_str(), preposition(&room.noun)));
-            Language::english().with_nouns(nouns).with_rooms(rooms)
+            Language::english().with_nouns(nouns, rooms)
         })
     }
 

@@ -36,7 +36,7 @@ Two pairs of words are apart in English only by what is meant. `in_front_of` and
 is nearer to it. `at_front_of` and `at_back_of` are meant from the reference's own front, which does not depend on who looks; kinds
 of things with a front are marked in `assets/categories.csv` (seats, beds, desks, cabinets, appliances, screens, pictures), and it is
 the side that is used or looked at. For one pair of things `in` and `on` exclude each other: what lies in a bowl is in it; what lies on its
-rim or lid, and on a seat or a bed, is on it.
+lid, and on a seat or a bed, is on it.
 
 Outlines are convex and seen from above. A gap between things is that between these outlines, each taken from the thing's lowest to
 its highest point. *Listed* relations are those in tables of relations and in scene graphs unasked; a house with n things costs n log n

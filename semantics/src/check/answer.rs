@@ -1,7 +1,8 @@
 //! Answers to questions.
 
 use super::{CheckResult, Checker};
-use crate::form::{AttributeKind, Clause, Noun, Phrase, Question};
+use crate::form::{AttributeKind, Question};
+use crate::predicates;
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
 
@@ -39,44 +40,18 @@ impl Checker<'_> {
                     None => self.scene.house().objects.ids().map(Term::Object).collect(),
                 };
                 let fits = |term: &Term| {
-                    let filled = filled(clause, self.id_of(*term));
-                    self.judge(&filled).truth.is_true()
+                    self.hole.set(Some(*term));
+                    self.judge(clause).truth.is_true()
                 };
-                Answer::Things(candidates.into_iter().filter(fits).collect())
+                let things = candidates.into_iter().filter(fits).collect();
+                self.hole.set(None);
+                Answer::Things(things)
             }
-            Question::Attribute { kind, of } => match self.only_object(of) {
+            Question::Attribute { kind, of } => match self.only(of) {
                 Ok(term) => self.attribute(*kind, term),
                 Err(reason) => Answer::None(reason),
             },
         }
-    }
-
-    fn only_object(&self, of: &Phrase) -> Result<Term, UndecidedReason> {
-        if let Some(named) = self.named(of) {
-            return named;
-        }
-        let Phrase::Described(description) = of else {
-            return Err(UndecidedReason::UnknownTerm);
-        };
-        if matches!(description.noun, Noun::Room(_)) {
-            return Err(UndecidedReason::WrongKind);
-        }
-        let extension = self.extension(description);
-        match (extension.fault, &extension.fits[..]) {
-            (Some(reason), _) => Err(reason),
-            (None, [only]) => Ok(*only),
-            (None, []) => Err(UndecidedReason::UnknownTerm),
-            (None, _) => Err(UndecidedReason::SeveralFit),
-        }
-    }
-
-    fn id_of(&self, term: Term) -> Phrase {
-        let house = self.scene.house();
-        let id = match term {
-            Term::Object(object) => house.entity_of_object(object).0,
-            _ => 0,
-        };
-        Phrase::Id(id as u32)
     }
 
     fn attribute(&self, kind: AttributeKind, term: Term) -> Answer {
@@ -103,38 +78,13 @@ impl Checker<'_> {
             }
             AttributeKind::Place => {
                 let places = ["in", "on", "hangs_on", "next_to"].iter().find_map(|name| {
-                    let predicate = crate::predicates::find(name).ok()?;
+                    let predicate = predicates::find(name).ok()?;
                     let related = predicate.related(self.scene, term);
                     (!related.is_empty()).then_some(related)
                 });
                 Answer::Things(places.unwrap_or_default())
             }
         }
-    }
-}
-
-/// Returns the clause with a phrase in place of its hole.
-fn filled(clause: &Clause, with: Phrase) -> Clause {
-    let fill = |phrase: &Phrase| match phrase {
-        Phrase::Hole => with.clone(),
-        phrase => phrase.clone(),
-    };
-    match clause {
-        Clause::Holds {
-            predicate,
-            arguments,
-        } => Clause::Holds {
-            predicate: predicate.clone(),
-            arguments: arguments.iter().map(fill).collect(),
-        },
-        Clause::Is { subject, quality } => Clause::Is {
-            subject: fill(subject),
-            quality: quality.clone(),
-        },
-        Clause::Exists(what) => Clause::Exists(fill(what)),
-        Clause::Not(inner) => Clause::Not(Box::new(filled(inner, with))),
-        Clause::All(all) => Clause::All(all.iter().map(|one| filled(one, with.clone())).collect()),
-        Clause::Any(all) => Clause::Any(all.iter().map(|one| filled(one, with.clone())).collect()),
     }
 }
 

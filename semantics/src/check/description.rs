@@ -106,8 +106,7 @@ impl Checker<'_> {
             ..Extension::default()
         };
         let place = selection.place as usize;
-        if selection.order == "house" {
-            // The order of the house's own list, as in "second bedroom".
+        if selection.order == PlaceInOrder::OF_HOUSE {
             return place
                 .checked_sub(1)
                 .and_then(|at| fits.get(at))
@@ -132,17 +131,19 @@ impl Checker<'_> {
     }
 
     /// The one thing that a phrase denotes.
-    fn only(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
+    pub(super) fn only(&self, phrase: &Phrase) -> Result<Term, UndecidedReason> {
         if let Some(named) = self.named(phrase) {
             return named;
         }
         let Phrase::Described(description) = phrase else {
             return Err(UndecidedReason::UnknownTerm);
         };
-        match self.extension(description).fits[..] {
-            [only] => Ok(only),
-            [] => Err(UndecidedReason::UnknownTerm),
-            _ => Err(UndecidedReason::SeveralFit),
+        let extension = self.extension(description);
+        match (extension.fault, &extension.fits[..]) {
+            (Some(reason), _) => Err(reason),
+            (None, [only]) => Ok(*only),
+            (None, []) => Err(UndecidedReason::UnknownTerm),
+            (None, _) => Err(UndecidedReason::SeveralFit),
         }
     }
 }

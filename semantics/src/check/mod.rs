@@ -25,7 +25,7 @@ use crate::truth::{Truth, UndecidedReason};
 use description::Extension;
 use dwell_scene::AgentId;
 use dwell_scene::interrupt;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use witness::Judged;
@@ -63,6 +63,8 @@ pub struct Checker<'a> {
     scene: &'a SemanticScene<'a>,
     listener: Listener,
     extensions: RefCell<BTreeMap<Description, Rc<Extension>>>,
+    /// The thing in place of [`Phrase::Hole`], which stands as an argument of a clause, never in a description.
+    hole: Cell<Option<Term>>,
 }
 
 impl<'a> Checker<'a> {
@@ -72,6 +74,7 @@ impl<'a> Checker<'a> {
             scene,
             listener,
             extensions: RefCell::default(),
+            hole: Cell::new(None),
         }
     }
 
@@ -169,7 +172,8 @@ impl<'a> Checker<'a> {
                 .nth(number.saturating_sub(1) as usize)
                 .map(Term::Storey)
                 .ok_or(UndecidedReason::UnknownTerm),
-            Phrase::Described(_) | Phrase::Hole => return None,
+            Phrase::Hole => self.hole.get().ok_or(UndecidedReason::UnknownTerm),
+            Phrase::Described(_) => return None,
         })
     }
 }

@@ -53,6 +53,11 @@ pub struct PlaceInOrder {
     pub reference: Option<Box<Phrase>>,
 }
 
+impl PlaceInOrder {
+    /// The order of rooms in the house's own list, as in "the second bedroom".
+    pub const OF_HOUSE: &'static str = "house";
+}
+
 /// A description: a noun phrase that picks out things by their kind, qualities and relations.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Description {

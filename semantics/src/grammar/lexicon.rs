@@ -1,7 +1,7 @@
 //! The words of a language: entries by class, each with the forms of its variants.
 
 use super::GrammarError;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The forms of one entry in one variant, each as words: the first is said, all are read.
 pub type WordForms = Vec<Vec<String>>;
@@ -61,6 +61,8 @@ pub struct Lexicon {
     by_name: BTreeMap<(String, String), usize>,
     /// Forms by their first word.
     by_first_word: BTreeMap<String, Vec<EntryForm>>,
+    /// Every word of every form, normalized.
+    words: BTreeSet<String>,
     counts: Vec<String>,
     ordinals: Vec<String>,
 }
@@ -110,6 +112,7 @@ impl Lexicon {
                 }
                 let words: Vec<String> = form.iter().map(|word| compared(word)).collect();
                 let starts = self.by_first_word.entry(words[0].clone()).or_default();
+                self.words.extend(words.iter().cloned());
                 starts.push(EntryForm {
                     entry: at,
                     variant,
@@ -168,13 +171,12 @@ impl Lexicon {
         word.bytes().all(|letter| letter.is_ascii_digit())
             || self.count_of(word).is_some()
             || self.ordinal_of(word).is_some()
-            || self.all_words().any(|known| known == word)
+            || self.words.contains(word)
     }
 
     /// The normalized words of all entries.
     pub(super) fn all_words(&self) -> impl Iterator<Item = &str> {
-        let forms = self.by_first_word.values().flatten();
-        forms.flat_map(|form| form.words.iter().map(String::as_str))
+        self.words.iter().map(String::as_str)
     }
 
     /// The entries that match `text` from the word `at` on.

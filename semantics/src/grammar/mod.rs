@@ -29,14 +29,15 @@ pub use tree::Tree;
 use compile::{NonTerminal, Productions, Symbol};
 use file::GrammarFile;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The rules and the lexicon of a language.
 #[derive(Clone, Debug)]
 pub struct Grammar {
-    productions: Productions,
+    productions: Arc<Productions>,
     start: Vec<NonTerminal>,
     /// The words that occur in rules.
-    words: BTreeSet<String>,
+    words: Arc<BTreeSet<String>>,
     lexicon: Lexicon,
 }
 
@@ -70,8 +71,8 @@ impl Grammar {
             Symbol::Argument(..) => None,
         });
         Ok(Self {
-            words: words.collect(),
-            productions,
+            words: Arc::new(words.collect()),
+            productions: Arc::new(productions),
             start,
             lexicon,
         })
@@ -86,8 +87,10 @@ impl Grammar {
     #[must_use]
     pub fn with_lexicon(&self, lexicon: Lexicon) -> Self {
         Self {
+            productions: self.productions.clone(),
+            start: self.start.clone(),
+            words: self.words.clone(),
             lexicon,
-            ..self.clone()
         }
     }
 

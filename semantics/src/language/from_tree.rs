@@ -139,7 +139,7 @@ fn room(tree: &Tree) -> Option<Phrase> {
         ("room_no", [own]) => kind(own, Quantifier::No)?,
         ("room_nth", [place, own]) => Description {
             selection: Some(PlaceInOrder {
-                order: "house".to_owned(),
+                order: PlaceInOrder::OF_HOUSE.to_owned(),
                 place: number(place)?,
                 reference: None,
             }),

@@ -52,22 +52,18 @@ impl Language {
         &ENGLISH
     }
 
-    /// Returns the same language with more nouns, each in singular and plural.
+    /// Returns the same language with more nouns of things, each in singular and plural, and of rooms, each with its preposition,
+    /// "in" or "on".
     #[must_use]
-    pub fn with_nouns<'a>(&self, nouns: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
+    pub fn with_nouns<'a>(
+        &self,
+        things: impl IntoIterator<Item = (&'a str, &'a str)>,
+        rooms: impl IntoIterator<Item = (&'a str, &'a str)>,
+    ) -> Self {
         let mut lexicon = self.grammar.lexicon().clone();
-        for (one, several) in nouns {
+        for (one, several) in things {
             lexicon::add_noun(&mut lexicon, one, several);
         }
-        Self {
-            grammar: self.grammar.with_lexicon(lexicon),
-        }
-    }
-
-    /// Returns the same language with more nouns of rooms, each with its preposition, "in" or "on".
-    #[must_use]
-    pub fn with_rooms<'a>(&self, rooms: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
-        let mut lexicon = self.grammar.lexicon().clone();
         for (noun, preposition) in rooms {
             lexicon::add_room(&mut lexicon, noun, preposition);
         }

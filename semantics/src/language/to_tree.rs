@@ -168,7 +168,7 @@ impl TreeBuilder<'_> {
             &description.modifiers[..],
             description.quantifier,
         ) {
-            (Some(selection), [], Quantifier::The) if selection.order == "house" => {
+            (Some(selection), [], Quantifier::The) if selection.order == PlaceInOrder::OF_HOUSE => {
                 Some(Tree::apply("room_nth", [ordinal(selection.place), kind]))
             }
             (None, [with], Quantifier::The) if with.predicate == "contains" && !with.negated => {
