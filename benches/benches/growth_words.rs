@@ -10,9 +10,8 @@
 use dwell::{Engines, Env, EnvConfig};
 use dwell_houses::authoring::{FileAccess, HousePlan, build, edit, edits_from_json};
 use dwell_scene::interrupt;
-use dwell_scene::{
-    Aabb, AgentStart, House, HouseData, Id, JointId, ObjectId, PartId, Pose, RoomId, State,
-};
+use dwell_scene::{Aabb, AgentStart, House, HouseData, Id, JointId, ObjectId, PartId, Pose, State};
+use dwell_semantics::check::Listener;
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{InstructionKind, candidates};
 use dwell_semantics::{Semantics, Viewer, describe};
@@ -265,13 +264,10 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
     let state = State::new(house);
     rows.row(shape, count, "facts", || Semantics::new(house));
     rows.row(shape, count, "house", || {
-        describe::describe_house(&semantics.scene(&state))
+        describe::describe_house(&semantics.scene(&state), None)
     });
     rows.row(shape, count, "object", || {
-        let scene = semantics.scene(&state);
-        let all = house.objects.ids();
-        all.map(|id| describe::caption(&scene, id).len())
-            .sum::<usize>()
+        describe::captions(&semantics.scene(&state), None)
     });
     rows.row(shape, count, "graph", || {
         scene_graph(&semantics.scene(&state), None)
@@ -283,8 +279,11 @@ fn words(rows: &mut Rows, shape: Shape, house: &Arc<House>) {
         scene_graph(&semantics.scene(&state), Some(&viewer))
     });
     rows.row(shape, count, "view", || {
-        let scene = semantics.scene(&state);
-        describe::describe_view(&scene, &viewer, scene.objects_in(RoomId(0)))
+        let listener = Listener {
+            viewer: Some(viewer),
+            agent: None,
+        };
+        describe::describe_view(&semantics.scene(&state), listener, None)
     });
     rows.row(shape, count, "instructions", || {
         let scene = semantics.scene(&state);

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from dwell.directivity import Directivity
     from dwell.editing import HouseEdit
     from dwell.envs import register_envs, register_task
+    from dwell.grounded_text import Text
     from dwell.heads import Head
     from dwell.house import House
     from dwell.listening import Microphone, Receiver, Source
@@ -68,6 +69,7 @@ _LAZY = {
     "Sensor": "dwell.sensors",
     "Source": "dwell.listening",
     "Task": "dwell.tasks",
+    "Text": "dwell.grounded_text",
     "Verdict": "dwell.tasks",
     "Walker": "dwell.navigation",
     "World": "dwell.world",
@@ -134,6 +136,7 @@ __all__ = [
     "Sensor",
     "Source",
     "Task",
+    "Text",
     "UsageError",
     "Verdict",
     "Walker",

@@ -7,10 +7,11 @@ import json
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from dwell import ConfigError, UsageError, _native, arguments
 from dwell.arguments import file_name, finite, flag, point, text, whole, within
+from dwell.grounded_text import Text, texts
 from dwell.house_list import HouseList
 from dwell.navigation import Navigation, Walker, walker_settings
 
@@ -239,18 +240,28 @@ class House:
             self._rooms = self._native.rooms()
         return copy.deepcopy(self._rooms)
 
-    def describe(self, level: Level = "house", *, seed: int | None = None) -> list[str]:
+    @overload
+    def describe(
+        self, level: Literal["object", "room", "house"] = ..., *, seed: int | None = ...
+    ) -> list[Text]: ...
+    @overload
+    def describe(self, level: Level, *, seed: int | None = ...) -> list[str]: ...
+    def describe(
+        self, level: Level = "house", *, seed: int | None = None
+    ) -> list[Text] | list[str]:
         """Sentences about the house as it starts.
 
         Args:
-            level: ``house`` (one text), ``room`` (a text each), ``object`` (a caption each),
-                ``graph`` (one JSON object), ``instructions`` (a JSON object each: ``kind``,
-                ``text``, and ``goal`` with ``rooms``, counted from 0 as in the graph, ``objects``,
-                the ids of instance images and of the graph, ``radius_m`` and ``in_sight``).
-            seed: Draws the wording of instructions; without it each has its first wording.
+            level: ``house`` (one text), ``room`` (a text each), ``object`` (a caption each); these
+                are of :class:`dwell.Text`, with spans, claims and ids. ``graph`` (one JSON object),
+                ``instructions`` (a JSON object each: ``kind``, ``text``, ``form``, ``spans``, and
+                ``goal`` with ``rooms``, counted from 0 as in the graph, ``objects``, the ids of
+                instance images and of the graph, ``radius_m`` and ``in_sight``).
+            seed: Draws the wordings, with the name of the house; without it each sentence has its
+                first wording.
         """
         seed = None if seed is None else whole("seed", seed)
-        return self._native.describe(text("level", level), seed)
+        return texts(level, self._native.describe(text("level", level), seed))
 
     def semantic_classes(self, table: Classes = "coarse") -> list[str]:
         """The names of the numbers in semantic images; 0 is void.

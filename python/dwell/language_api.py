@@ -2,16 +2,70 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Literal, overload
 
 from dwell import _native
 from dwell.arguments import text as checked_text
 from dwell.arguments import whole
+from dwell.grounded_text import Text, texts
 from dwell.relation_api import RelationApi, Viewer, viewer_argument
 
 
 class LanguageApi(RelationApi):
-    """Claims and questions in English, checked by the predicates of a world."""
+    """Texts about a world, and claims and questions in English, checked by its predicates."""
+
+    @overload
+    def describe(
+        self,
+        level: Literal["object", "room", "house", "view"] = ...,
+        *,
+        seed: int | None = ...,
+        viewer: Viewer | None = ...,
+        agent: int | None = ...,
+    ) -> list[Text]: ...
+    @overload
+    def describe(
+        self,
+        level: str,
+        *,
+        seed: int | None = ...,
+        viewer: Viewer | None = ...,
+        agent: int | None = ...,
+    ) -> list[str]: ...
+    def describe(
+        self,
+        level: str = "house",
+        *,
+        seed: int | None = None,
+        viewer: Viewer | None = None,
+        agent: int | None = None,
+    ) -> list[Text] | list[str]:
+        """As :meth:`House.describe`, of the house as it is now.
+
+        Args:
+            level: Also ``view``: what is seen, side by side, as one text.
+            seed: Draws the wordings.
+            viewer: Whose view: an agent's number or a camera, as for :meth:`holds`. Without it the
+                eyes of ``agent``.
+            agent: Who "you" is.
+
+        Raises:
+            ConfigError: A view without viewer and agent.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> room = world.house.rooms()[0]
+            >>> viewer = {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
+            >>> world.describe("view", viewer=viewer)[0].split(" you see ")[0]
+            'On your left'
+        """
+        seed = None if seed is None else whole("seed", seed)
+        listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
+        looks = viewer_argument(viewer)
+        return texts(
+            level, self._native.describe(checked_text("level", level), looks, listener, seed)
+        )
 
     def check(
         self, sentence: str, *, viewer: Viewer | None = None, agent: int | None = None
@@ -20,7 +74,7 @@ class LanguageApi(RelationApi):
 
         Args:
             sentence: A claim (``"The cup is on the table."``), a question or a request, at most
-                60 words. :func:`dwell.language.read` says what is understood.
+                80 words. :func:`dwell.language.read` says what is understood.
             viewer: From where left, right, in front and behind are meant: an agent's number or a
                 camera, as for :meth:`holds`. Without it the eyes of ``agent``.
             agent: Who "you" is.

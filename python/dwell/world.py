@@ -350,10 +350,6 @@ class World(ActionApi, GuideApi, SoundApi):
         """
         return self._native.listen(whole("agent", agent), whole("samples", samples, low=1))
 
-    def describe(self, level: str = "house") -> list[str]:
-        """As :meth:`House.describe`, of the house as it is now."""
-        return self._native.describe(text("level", level))
-
     def joints(self) -> list[dict[str, Any]]:
         """Every joint: id, name, object, kind, limits, motor, position, velocity, command."""
         return self._native.joints()

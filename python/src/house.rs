@@ -2,6 +2,7 @@
 
 use crate::answers::Answer;
 use crate::authoring;
+use crate::descriptions::describe_level;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::hrtf::PyHead;
@@ -9,11 +10,8 @@ use dwell::Engines;
 use dwell_houses::ExportLoss;
 use dwell_scene::material::library;
 use dwell_scene::parallel::Threads;
-use dwell_scene::random::RandomKey;
 use dwell_scene::{Bands, House, Material, Pose, ShoeboxMaterials, State};
-use dwell_semantics::graph::scene_graph;
-use dwell_semantics::instruct::{InstructionGoal, InstructionKind, candidates, choose};
-use dwell_semantics::{Semantics, describe};
+use dwell_semantics::check::Listener;
 use glam::Vec3;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
@@ -192,14 +190,11 @@ impl PyHouse {
     }
 
     #[pyo3(signature = (level, key=None))]
-    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<Vec<String>> {
+    fn describe(&self, py: Python<'_>, level: &str, key: Option<u64>) -> PyResult<Answer> {
         py.engine(|| {
-            describe_level(
-                self.engines.semantics(),
-                &State::new(self.house()),
-                level,
-                key,
-            )
+            let state = State::new(self.house());
+            let scene = self.engines.semantics().scene(&state);
+            describe_level(&scene, Listener::default(), level, key)
         })
     }
 
@@ -249,66 +244,4 @@ fn writer(form: &str) -> Result<&'static dwell_houses::HouseWriter, PyFault> {
 
 fn sentences(losses: &[ExportLoss]) -> Vec<String> {
     losses.iter().map(ToString::to_string).collect()
-}
-
-/// Sentences or JSON lines about a house as it stands in a state.
-pub(crate) fn describe_level(
-    semantics: &Semantics,
-    state: &State,
-    level: &str,
-    key: Option<u64>,
-) -> Result<Vec<String>, PyFault> {
-    let scene = semantics.scene(state);
-    let house = semantics.house();
-    Ok(match level {
-        "house" => vec![describe::describe_house(&scene)],
-        "room" => house
-            .rooms
-            .ids()
-            .map(|room| describe::describe_room(&scene, room))
-            .collect(),
-        "object" => house
-            .objects
-            .ids()
-            .map(|object| describe::caption(&scene, object))
-            .collect(),
-        "graph" => vec![serde_json::to_string(&scene_graph(&scene, None))?],
-        "instructions" => {
-            let mut lines = Vec::new();
-            for kind in InstructionKind::ALL {
-                for (k, instruction) in candidates(&scene, kind).into_iter().enumerate() {
-                    let worded = key.and_then(|seed| {
-                        choose(
-                            std::slice::from_ref(&instruction),
-                            RandomKey::root(seed).child(k as u64),
-                        )
-                    });
-                    let instruction = worded.unwrap_or(instruction);
-                    let goal = goal(house, &instruction.goal);
-                    lines.push(
-                        json!({"kind": kind.name(), "text": instruction.text, "goal": goal})
-                            .to_string(),
-                    );
-                }
-            }
-            lines
-        }
-        other => {
-            let allowed = "object, room, house, graph, instructions";
-            return Err(PyFault::Config(format!(
-                "level is {other:?}; allowed are {allowed}"
-            )));
-        }
-    })
-}
-
-/// Returns the goal of an instruction, by the ids of sensors and of the scene graph: ids of objects, rooms counted from 0.
-fn goal(house: &House, goal: &InstructionGoal) -> Value {
-    let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
-    json!({
-        "rooms": goal.rooms,
-        "objects": ids.collect::<Vec<_>>(),
-        "radius_m": goal.radius_m,
-        "in_sight": goal.in_sight,
-    })
 }

@@ -1,6 +1,7 @@
 //! Forms and sentences for Python.
 
 use crate::answers;
+use crate::descriptions::letters;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
 use crate::values::Data;
@@ -17,7 +18,7 @@ use pyo3::prelude::*;
 use serde_json::{Value, json};
 
 impl WorldAccess<'_> {
-    fn listener(&self, viewer: Data, agent: Option<usize>) -> Result<Listener, PyFault> {
+    pub(crate) fn listener(&self, viewer: Data, agent: Option<usize>) -> Result<Listener, PyFault> {
         let agent = agent.map(|agent| self.agent(agent)).transpose()?;
         let eyes = |agent: AgentId| dwell_semantics::Viewer::of_agent(self.world.state(), agent);
         let viewer = self.viewer(viewer)?;
@@ -119,11 +120,9 @@ pub(crate) fn world_check_text(
         let phrases = said.iter().flat_map(|said| {
             let grounded = checker.ground(said);
             let phrases = grounded.into_iter().map(|phrase| {
-                // Python counts letters.
-                let letters = |byte: usize| said.text[..byte].chars().count();
                 json!({
-                    "start": letters(phrase.start),
-                    "end": letters(phrase.end),
+                    "start": letters(&said.text, phrase.start),
+                    "end": letters(&said.text, phrase.end),
                     "things": running.terms_told(&phrase.terms),
                 })
             });

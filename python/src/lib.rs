@@ -13,6 +13,7 @@ mod batch;
 mod bench;
 mod build_info;
 mod calibrate;
+mod descriptions;
 mod engine_call;
 mod errors;
 mod fork_safety;

@@ -3,9 +3,10 @@
 use crate::answers::Answer;
 use crate::arrays;
 use crate::batch::PyBatch;
+use crate::descriptions::describe_level;
 use crate::engine_call::EngineCall;
 use crate::errors::PyFault;
-use crate::house::{PyHouse, describe_level};
+use crate::house::PyHouse;
 use crate::json_rows::{AgentRow, BodyRow, SoundPlaceRow, SoundRow};
 use crate::navigation::PyNavigation;
 use crate::picture;
@@ -523,14 +524,18 @@ impl PyWorld {
         })
     }
 
-    fn describe(&self, py: Python<'_>, level: &str) -> PyResult<Vec<String>> {
+    #[pyo3(signature = (level, viewer, agent=None, key=None))]
+    fn describe(
+        &self,
+        py: Python<'_>,
+        level: &str,
+        viewer: Data,
+        agent: Option<usize>,
+        key: Option<u64>,
+    ) -> PyResult<Answer> {
         self.look(py, |running| {
-            describe_level(
-                running.world.engines().semantics(),
-                running.world.state(),
-                level,
-                None,
-            )
+            let listener = running.listener(viewer, agent)?;
+            describe_level(&running.scene(), listener, level, key)
         })
     }
 

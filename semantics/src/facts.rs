@@ -2,7 +2,8 @@
 
 use crate::category::{SemanticCategory, categories};
 use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
-use crate::english::counted_noun;
+use crate::english::{counted_noun, plural};
+use crate::form::{Description, Noun};
 use crate::geometry::mapped_area_m2;
 use crate::size::SizeClass;
 use dwell_scene::material::{Substance, library};
@@ -45,7 +46,14 @@ impl ObjectFacts {
         let category = categories().of(&object.category);
         let (noun, plural) = category.map_or_else(
             || unknown_noun(&object.category),
-            |row| (row.singular.to_owned(), row.plural.to_owned()),
+            |row| match row.name {
+                // An object, as opposed to a piece of the building.
+                "wall" | "floor" | "ceiling" => {
+                    let piece = format!("{} piece", row.singular);
+                    (piece.clone(), plural(&piece))
+                }
+                _ => (row.singular.to_owned(), row.plural.to_owned()),
+            },
         );
         let areas = areas_m2(house, id);
         let shown: &[(MaterialId, f32)] = if seen.is_empty() { &areas } else { seen };
@@ -103,20 +111,6 @@ impl ObjectFacts {
         }
     }
 
-    /// [`Self::spoken_colors`] as words: "orange and gray".
-    pub fn color_phrase(&self) -> Option<String> {
-        match self.spoken_colors() {
-            [] => None,
-            words => Some(
-                words
-                    .iter()
-                    .map(|(word, _)| *word)
-                    .collect::<Vec<_>>()
-                    .join(" and "),
-            ),
-        }
-    }
-
     /// The adjective of its main substance; `None` when none prevails, or when the kind of thing implies it
     /// already.
     pub fn material_word(&self) -> Option<&'static str> {
@@ -160,6 +154,19 @@ impl ObjectFacts {
         large.map(|(substance, _)| substance.adjective.as_str())
     }
 
+    /// Returns whether noun, size, colours and material of a description fit it; its state and modifiers are left aside.
+    pub(crate) fn fits(&self, description: &Description) -> bool {
+        let Noun::Object(noun) = &description.noun else {
+            return false;
+        };
+        let shows = |color: &String| self.colors.iter().any(|(word, _)| word == color);
+        let made_of = |word: &String| self.adjectives().any(|adjective| adjective == *word);
+        self.is_called(noun)
+            && description.colors.iter().all(shows)
+            && description.material.as_ref().is_none_or(made_of)
+            && description.size.is_none_or(|size| self.size == size)
+    }
+
     /// Returns whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
     pub fn is_opening(&self) -> bool {
         let classes = ["door", "window", "curtain", "blinds"];
@@ -173,9 +180,12 @@ impl ObjectFacts {
         self.category.is_some_and(|row| names.contains(&row.name))
     }
 
-    /// Returns whether it may be called `noun`: its spoken noun, a synonym, or a more general last word ("table" for a
-    /// coffee table).
+    /// Returns whether it may be called `noun`: its spoken noun, a synonym, a more general last word ("table" for a
+    /// coffee table), or "thing".
     pub fn is_called(&self, noun: &str) -> bool {
+        if noun == Noun::ANY_OBJECT {
+            return true;
+        }
         let matches = |name: &str| {
             name == noun
                 || name

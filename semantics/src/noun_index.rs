@@ -19,8 +19,6 @@ pub(crate) struct NounIndex {
     all: Vec<NounClass>,
     /// Shape (object,).
     of: IdVec<ObjectId, u32>,
-    /// Rising.
-    windows: Vec<ObjectId>,
 }
 
 impl NounIndex {
@@ -37,9 +35,6 @@ impl NounIndex {
             }
             kinds.all[kind as usize].things.push(id);
             kinds.of.push(kind);
-            if row == Some("window") {
-                kinds.windows.push(id);
-            }
         }
         kinds
     }
@@ -63,10 +58,5 @@ impl NounIndex {
             kinds.flat_map(|kind| kind.things.iter().copied()).collect();
         things.sort_unstable();
         things
-    }
-
-    /// All windows, ascending.
-    pub(crate) fn windows(&self) -> &[ObjectId] {
-        &self.windows
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::color::{ColorVocabulary, MaterialColors, SurfacePatch, color_words};
 use crate::english;
+use crate::form::Noun;
 use crate::open_passages::passages;
 use crate::room_kind::{RoomCategory, preposition, room_kinds};
 use dwell_scene::bvh::{Ray, RayMask};
@@ -61,17 +62,23 @@ impl RoomProperties {
         for (room, open) in rooms.iter_mut().zip(passages.iter()) {
             room.passages.clone_from(open);
         }
-        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
-        let mut total: BTreeMap<String, usize> = BTreeMap::new();
-        for room in &rooms {
-            *total.entry(room.noun.clone()).or_default() += 1;
-        }
-        for room in &mut rooms {
-            let number = seen.entry(room.noun.clone()).or_default();
-            *number += 1;
-            if total[&room.noun] > 1 {
-                room.label = format!("{} {}", english::ordinal(*number), room.noun);
-            }
+        // As a description with an order counts them: among all rooms that may be called so.
+        let labels: Vec<String> = rooms
+            .iter()
+            .enumerate()
+            .map(|(k, room)| {
+                let called = rooms.iter().map(|other| other.is_called(&room.noun));
+                let called: Vec<bool> = called.collect();
+                let before = called[..k].iter().filter(|own| **own).count();
+                if called.iter().filter(|own| **own).count() > 1 {
+                    format!("{} {}", english::ordinal(before + 1), room.noun)
+                } else {
+                    room.noun.clone()
+                }
+            })
+            .collect();
+        for (room, label) in rooms.iter_mut().zip(labels) {
+            room.label = label;
         }
         rooms
     }
@@ -114,9 +121,9 @@ impl RoomProperties {
         format!("{} the {}", preposition(&self.noun), self.label)
     }
 
-    /// Returns whether it may be called `name`.
+    /// Returns whether it may be called `name`; every room is a "room".
     pub fn is_called(&self, name: &str) -> bool {
-        self.names.iter().any(|known| known == name) || self.label == name
+        name == Noun::ANY_ROOM || self.names.iter().any(|known| known == name) || self.label == name
     }
 }
 

@@ -102,7 +102,10 @@ impl Semantics {
             let things = self.facts.iter();
             let nouns = things.map(|facts| (facts.noun.as_str(), facts.plural.as_str()));
             let rooms = self.rooms.iter();
-            let rooms = rooms.map(|room| (room.noun.as_str(), preposition(&room.noun)));
+            let rooms = rooms.map(|room| {
+                let (one, several) = (room.noun.as_str(), room.plural.as_str());
+                (one, several, preposition(one))
+            });
             Language::english().with_nouns(nouns, rooms)
         })
     }

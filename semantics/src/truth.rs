@@ -40,6 +40,8 @@ pub enum UndecidedReason {
     TooFew,
     /// Neighbours in the order differ by less than its margin.
     TooClose,
+    /// "It" stands for nothing that was named before.
+    NoAntecedent,
 }
 
 impl UndecidedReason {
@@ -63,6 +65,7 @@ impl UndecidedReason {
             Self::NotOnFloor => "The agent stands where nobody can walk.",
             Self::TooFew => "There are not so many of them.",
             Self::TooClose => "Two of them are too close in the order to be told apart.",
+            Self::NoAntecedent => "Nothing was named before that \"it\" could stand for.",
         }
     }
 }

@@ -11,9 +11,12 @@ pub const LENGTH: usize = 32;
 /// The token of padding.
 pub const PAD: i32 = 0;
 
-/// Splits a text into words and marks: lower case, `.` and `,` apart.
+/// Splits a text into words and marks: lower case, `.`, `,`, `?` and `!` apart.
 pub fn words(text: &str) -> Vec<String> {
-    let spaced = text.to_lowercase().replace('.', " . ").replace(',', " , ");
+    let mut spaced = text.to_lowercase();
+    for (mark, apart) in [(".", " . "), (",", " , "), ("?", " ? "), ("!", " ! ")] {
+        spaced = spaced.replace(mark, apart);
+    }
     spaced.split_whitespace().map(str::to_owned).collect()
 }
 

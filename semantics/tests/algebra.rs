@@ -38,10 +38,12 @@ fn shaken(house: &House, seed: u64) -> State {
     state
 }
 
-/// Opens every second joint, and puts two agents over the floors; the first holds something small.
+/// Opens every second joint, one in two of these by a third only, and puts two agents over the floors; the first holds something
+/// small.
 fn populate(house: &House, state: &mut State) {
-    for (id, joint) in house.joints.iter_ids().step_by(2) {
-        state.joint_position[id] = joint.open;
+    for (k, (id, joint)) in house.joints.iter_ids().step_by(2).enumerate() {
+        let share = if k % 2 == 0 { 1.0 } else { 0.3 };
+        state.joint_position[id] = joint.closed + share * (joint.open - joint.closed);
     }
     let points = house.points_in_room(dwell_scene::RoomId(0), 9);
     for (k, yaw_rad) in [(2, 0.4), (6, -2.0)] {
@@ -64,10 +66,18 @@ fn some_terms(scene: &SemanticScene<'_>, most: usize) -> Vec<Term> {
     let parts = scene.house().parts.ids().map(Term::Part);
     terms.extend(parts);
     let step = terms.len().div_ceil(most).max(1);
-    let rooms = scene.house().rooms.ids().take(3).map(Term::Room);
+    let rooms = scene.house().rooms.ids().take(8).map(Term::Room);
+    let doors = scene.house().objects.ids();
+    let doors = doors.filter(|id| {
+        scene
+            .facts(*id)
+            .category
+            .is_some_and(|row| row.name == "door")
+    });
+    let doors = doors.take(4).map(Term::Object);
     let agents = scene.state.agents.ids().map(Term::Agent);
     let storeys = scene.house().levels.ids().map(Term::Storey);
-    let always: Vec<Term> = rooms.chain(agents).chain(storeys).collect();
+    let always: Vec<Term> = rooms.chain(agents).chain(storeys).chain(doors).collect();
     let mut some: Vec<Term> = terms.into_iter().step_by(step).chain(always).collect();
     some.sort_unstable();
     some.dedup();

@@ -105,7 +105,10 @@ fn things_are_in_the_rooms_that_the_file_lists_them_in() {
             if here == file {
                 same += 1;
             } else {
-                other.push((caption(&scene, id), house.rooms[file].name.clone()));
+                other.push((
+                    caption(&scene, id, None).text,
+                    house.rooms[file].name.clone(),
+                ));
             }
         }
     }
@@ -242,16 +245,19 @@ fn the_house_is_described_and_its_things_can_be_asked_for() {
     let semantics = Semantics::new(&house);
     let state = State::new(&house);
     let scene = semantics.scene(&state);
-    let text = describe_house(&scene);
+    let text = describe_house(&scene, None).text;
     println!("{text}");
     assert!(
-        text.starts_with("This house has four rooms: a bedroom, two rooms and a storage room.")
+        text.starts_with(
+            "There are four rooms and 43 things. There is a bedroom and a storage room.\n"
+        ),
+        "{text}"
     );
     // Its walls are the sample's: crimson paint in the first two, white paper in the others.
     assert_eq!(text.matches("red walls").count(), 2);
     assert_eq!(text.matches("white walls").count(), 2);
     for object in house.objects.ids() {
-        let words = caption(&scene, object);
+        let words = caption(&scene, object, None).text;
         assert!(
             words.starts_with("a ") || words.starts_with("an "),
             "{words}"

@@ -6,14 +6,28 @@ use common::{Builder, small_house};
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentBody, AgentId, AgentState, Pose, State};
+use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
+use dwell_semantics::form::{Description, Form, Noun, Phrase, Quantifier};
 use dwell_semantics::graph::{SceneGraph, scene_graph};
 use dwell_semantics::instruct::{
     CHARSET, InstructionKind, InstructionProgress, MAX_TEXT_LEN, candidates, choose, instruction,
 };
 use dwell_semantics::refer::{refer, refer_to_room};
-use dwell_semantics::{Semantics, Term, Viewer, predicates, vocabulary};
+use dwell_semantics::{SemanticScene, Semantics, Term, Viewer, predicates, vocabulary};
 use glam::Vec3;
+
+/// The words of a description.
+fn said(semantics: &Semantics, description: &Description) -> String {
+    let form = Form::NounPhrase(description.clone().into());
+    let said = semantics.language().say(&form, None);
+    said.expect("the language has words for it").text
+}
+
+/// What a description fits, without a viewer.
+fn fitting(scene: &SemanticScene<'_>, description: &Description) -> Vec<Term> {
+    Checker::new(scene, Listener::default()).fitting(description)
+}
 
 #[test]
 fn captions_read_aloud() {
@@ -22,27 +36,27 @@ fn captions_read_aloud() {
     let mut state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup),
+        caption(&scene, s.cup, None).text,
         "a white porcelain cup on the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.red_chair),
+        caption(&scene, s.red_chair, None).text,
         "a red plastic chair next to the table in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.apple),
+        caption(&scene, s.apple, None).text,
         "a red plastic portion of food in the bowl in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.stool),
+        caption(&scene, s.stool, None).text,
         "a brown wooden stool on the rug in the hallway"
     );
     assert_eq!(
-        caption(&scene, s.picture),
+        caption(&scene, s.picture, None).text,
         "a yellow picture on the wall in the kitchen"
     );
     assert_eq!(
-        caption(&scene, s.bed_b),
+        caption(&scene, s.bed_b, None).text,
         "a green double bed in the second bedroom"
     );
     state.agents.push(AgentState::new(
@@ -53,7 +67,7 @@ fn captions_read_aloud() {
     state.held_by[s.cup] = Some(AgentId(0));
     let scene = semantics.scene(&state);
     assert_eq!(
-        caption(&scene, s.cup),
+        caption(&scene, s.cup, None).text,
         "a white porcelain cup in somebody's hand in the hallway"
     );
 }
@@ -92,7 +106,7 @@ fn words_know_what_is_open_and_what_is_on() {
     let house = b.build();
     let semantics = Semantics::new(&house);
     let mut state = State::new(&house);
-    let says = |state: &State, object| caption(&semantics.scene(state), object);
+    let says = |state: &State, object| caption(&semantics.scene(state), object, None).text;
     assert_eq!(
         says(&state, door),
         "a closed brown wooden door in the kitchen"
@@ -116,7 +130,7 @@ fn words_know_what_is_open_and_what_is_on() {
     );
     assert_eq!(
         says(&state, radio),
-        "a black radio in the kitchen, switched on"
+        "a switched-on black radio in the kitchen"
     );
     let graph = scene_graph(&semantics.scene(&state), None);
     let node = graph.object(house.entity_of_object(radio).0).unwrap();
@@ -130,26 +144,37 @@ fn descriptions_read_aloud() {
     let state = State::new(&s.house);
     let scene = semantics.scene(&state);
     assert_eq!(
-        describe_room(&scene, s.kitchen),
-        "The kitchen is about 15 square metres, with a brown parquet floor and white walls. There is a brown wooden table, \
-         a white refrigerator and two plastic chairs. On the table are a white porcelain bowl and a white porcelain \
-         cup. In the bowl is a red plastic portion of food. On the wall hangs a yellow picture."
+        describe_room(&scene, s.kitchen, None).text,
+        "The kitchen is about 15 square metres. It has a brown parquet floor and white walls. In the kitchen there is a brown \
+         wooden table, a white refrigerator and two plastic chairs. On the table there is a white porcelain bowl and a white \
+         porcelain cup. There is a red plastic portion of food in the bowl. There is a yellow picture on the wall in the \
+         kitchen."
     );
-    let text = describe_house(&scene);
+    let text = describe_house(&scene, None).text;
     println!("{text}");
-    assert!(text.starts_with("This house has four rooms: two bedrooms, a hallway and a kitchen. There are 13 things in it.\n"));
+    assert!(text.starts_with(
+        "There are four rooms and 13 things. There are two bedrooms, a hallway and a kitchen.\n"
+    ));
     assert!(text.contains("The second bedroom"));
     // What is said is counted against what is there.
     assert_eq!(text.matches("double bed").count(), 2);
-    let viewer = Viewer {
-        world_from_camera: Pose::from_position_yaw(Vec3::new(1.7, 1.3, 3.5), 0.0),
+    // Somebody in the kitchen's south, who looks north.
+    let mut state = State::new(&s.house);
+    let feet = Vec3::new(1.7, 0.0, 3.5);
+    let body = AgentBody {
+        eye_height_m: 1.3,
+        ..AgentBody::default()
     };
-    let view = describe_view(&scene, &viewer, &[s.table, s.red_chair, s.blue_chair]);
+    state.agents.push(AgentState::new(body, feet, 0.0));
+    let scene = semantics.scene(&state);
+    let view = describe_view(&scene, Listener::agent(&scene, AgentId(0)), None);
     assert_eq!(
-        view,
-        "You are in the kitchen. To the left you see a red plastic chair. Ahead you see a brown wooden table. To the \
-         right you see a blue plastic chair."
+        view.text,
+        "You are in the kitchen. On your left you see a red plastic chair. Straight ahead you see a brown wooden table, a white \
+         porcelain bowl, a yellow picture and a white porcelain cup. On your right you see a blue plastic chair."
     );
+    // Without eyes nothing is seen.
+    assert_eq!(describe_view(&scene, Listener::default(), None).text, "");
 }
 
 /// The colour is that of the surfaces that the room sees, not of those behind a front or before a wall.
@@ -182,7 +207,7 @@ fn the_colour_is_that_of_what_is_seen() {
     assert_eq!(colors[0].0, "orange", "{colors:?}");
     assert!(colors[0].1 > 0.5, "{colors:?}");
     let state = State::new(&house);
-    let text = describe_house(&semantics.scene(&state));
+    let text = describe_house(&semantics.scene(&state), None).text;
     assert!(text.contains("an orange and gray wardrobe"), "{text}");
 }
 
@@ -194,7 +219,7 @@ fn texts_are_the_same_every_time() {
         let state = State::new(&s.house);
         let scene = semantics.scene(&state);
         let graph = serde_json::to_string(&scene_graph(&scene, None)).unwrap();
-        (describe_house(&scene), graph)
+        (describe_house(&scene, None).text, graph)
     };
     assert_eq!(text(), text());
 }
@@ -273,13 +298,13 @@ fn crowded(seed: u64) -> std::sync::Arc<dwell_scene::House> {
     b.build()
 }
 
-/// The reading of an expression by other code: words are looked up in the graph, not in the engine.
-fn read_by_graph(
-    graph: &SceneGraph,
-    house: &dwell_scene::House,
-    e: &dwell_semantics::refer::ReferringExpression,
-) -> Vec<i32> {
-    let called = |id: i32, noun: &str| {
+/// The reading of a description by other code: words are looked up in the graph, not in the engine.
+fn read_by_graph(graph: &SceneGraph, house: &dwell_scene::House, e: &Description) -> Vec<i32> {
+    let Noun::Object(noun) = &e.noun else {
+        panic!("a thing: {e:?}");
+    };
+    assert!(e.state.is_none() && e.selection.is_none(), "{e:?}");
+    let called = |id: i32| {
         let said = &graph.object(id).expect("a node").noun;
         let object = match house.entity(dwell_scene::EntityId(id)) {
             Some(dwell_scene::Entity::Object(object)) => &house.objects[object],
@@ -295,7 +320,7 @@ fn read_by_graph(
             .chain([said.clone()]);
         names
             .into_iter()
-            .any(|name| name == noun || name.ends_with(&format!(" {noun}")))
+            .any(|name| name == *noun || name.ends_with(&format!(" {noun}")))
     };
     let matching = graph.objects.iter().filter(|node| {
         let colors = e.colors.iter().all(|color| node.colors.contains(color));
@@ -306,21 +331,47 @@ fn read_by_graph(
                 .any(|name| library.get(name).expect("a substance").adjective == *word)
         });
         let size = e.size.is_none_or(|size| node.size == size);
-        let room = e.room.as_ref().is_none_or(|noun| {
-            node.room.is_some_and(|room| {
-                let name = &graph.rooms[room as usize].name;
-                name == noun || name.ends_with(&format!(" {noun}"))
-            })
-        });
-        let relation = e.relation.as_ref().is_none_or(|relation| {
-            let landmarks = read_by_graph(graph, house, &relation.landmark);
+        let modified = e.modifiers.iter().all(|modifier| {
+            let [Phrase::Described(other)] = &modifier.arguments[..] else {
+                panic!("one other thing: {modifier:?}");
+            };
+            assert!(!modifier.negated, "{modifier:?}");
+            if let Noun::Room(noun) = &other.noun {
+                let called = |name: &String| name == noun || name.ends_with(&format!(" {noun}"));
+                // "The bedroom" only where there is one.
+                let rooms = graph.rooms.iter().filter(|room| called(&room.name)).count();
+                let article = if rooms == 1 {
+                    Quantifier::The
+                } else {
+                    Quantifier::Some
+                };
+                assert_eq!(
+                    **other,
+                    Description::new(article, other.noun.clone()),
+                    "{e:?}"
+                );
+                assert_eq!(modifier.predicate, "in_room");
+                return node
+                    .room
+                    .is_some_and(|room| called(&graph.rooms[room as usize].name));
+            }
+            let landmarks = read_by_graph(graph, house, other);
+            // "The table" only where there is one.
+            let definite = other.quantifier == Quantifier::The;
+            assert!(definite == (landmarks.len() == 1), "{e:?}: {landmarks:?}");
             graph.of(node.id).any(|edge| {
-                edge.predicate == relation.predicate && landmarks.contains(&edge.object)
+                edge.predicate == modifier.predicate && landmarks.contains(&edge.object)
             })
         });
-        called(node.id, &e.noun) && colors && material && size && room && relation
+        called(node.id) && colors && material && size && modified
     });
     matching.map(|node| node.id).collect()
+}
+
+/// Returns whether a description says on, in or next to what its thing is.
+fn has_landmark(description: &Description) -> bool {
+    let mut modifiers = description.modifiers.iter();
+    modifiers.any(|modifier| modifier.predicate != "in_room")
 }
 
 #[test]
@@ -336,15 +387,17 @@ fn referring_expressions_mean_exactly_one_thing() {
             total += 1;
             if let Some(expression) = refer(&scene, object) {
                 found += 1;
-                with_landmark += usize::from(expression.relation.is_some());
-                assert_eq!(expression.matches(&scene), [object]);
+                with_landmark += usize::from(has_landmark(&expression));
+                assert_eq!(fitting(&scene, &expression), [Term::Object(object)]);
                 assert_eq!(
                     read_by_graph(&graph, &house, &expression),
                     [house.entity_of_object(object).0],
                     "{expression:?}"
                 );
-                assert!(expression.definite().starts_with("the "));
-                assert_eq!(expression.text(&scene), expression.definite());
+                let text = said(&semantics, &expression);
+                assert!(text.starts_with("the "), "{text}");
+                let read = semantics.language().read(&text).expect("it is read");
+                assert_eq!(read.forms[0], Form::NounPhrase(expression.into()), "{text}");
             }
         }
     }
@@ -365,9 +418,12 @@ fn a_shorter_word_that_also_fits_another_thing_is_not_used() {
     let state = State::new(&house);
     let scene = semantics.scene(&state);
     // "The table" could be the coffee table.
-    assert_eq!(refer(&scene, plain).unwrap().definite(), "the red table");
     assert_eq!(
-        refer(&scene, coffee).unwrap().definite(),
+        said(&semantics, &refer(&scene, plain).unwrap()),
+        "the red table"
+    );
+    assert_eq!(
+        said(&semantics, &refer(&scene, coffee).unwrap()),
         "the coffee table"
     );
 }
@@ -378,7 +434,7 @@ fn rooms_are_told_apart_by_what_they_hold() {
     let semantics = Semantics::new(&s.house);
     let state = State::new(&s.house);
     let scene = semantics.scene(&state);
-    let says = |room| refer_to_room(&scene, room).map(|e| e.definite());
+    let says = |room| refer_to_room(&scene, room).map(|e| said(&semantics, &e));
     assert_eq!(says(s.kitchen).as_deref(), Some("the kitchen"));
     assert_eq!(
         says(s.bedroom_b).as_deref(),
@@ -388,7 +444,7 @@ fn rooms_are_told_apart_by_what_they_hold() {
     assert_eq!(says(s.bedroom_a), None);
     for room in s.house.rooms.ids() {
         if let Some(expression) = refer_to_room(&scene, room) {
-            assert_eq!(expression.matches(&scene), [room]);
+            assert_eq!(fitting(&scene, &expression), [Term::Room(room)]);
         }
     }
 }
@@ -404,7 +460,7 @@ fn every_instruction_tokenises_and_keeps_to_its_charset() {
         for kind in InstructionKind::ALL {
             let all = candidates(&scene, kind);
             for draw in 0..30 {
-                let Some(chosen) = choose(&all, RandomKey::root(draw)) else {
+                let Some(chosen) = choose(&semantics, &all, RandomKey::root(draw)) else {
                     continue;
                 };
                 texts += 1;
@@ -418,7 +474,10 @@ fn every_instruction_tokenises_and_keeps_to_its_charset() {
                     .replace(" .", ".")
                     .replace(" ,", ",");
                 assert_eq!(again, chosen.text.to_lowercase());
-                assert_eq!(Some(&chosen), choose(&all, RandomKey::root(draw)).as_ref());
+                assert_eq!(
+                    Some(&chosen),
+                    choose(&semantics, &all, RandomKey::root(draw)).as_ref()
+                );
             }
         }
     }

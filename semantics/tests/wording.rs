@@ -4,11 +4,14 @@ mod common;
 
 use common::{Builder, Corners};
 use dwell_scene::{
-    Material, MaterialId, Mesh, Mobility, ObjectId, RoomId, State, StructureKind, Texture,
+    AgentBody, AgentId, AgentState, Material, MaterialId, Mesh, Mobility, ObjectId, RoomId, State,
+    StructureKind, Texture,
 };
+use dwell_semantics::check::{Checker, Listener};
 use dwell_semantics::describe::{caption, describe_house, describe_room, describe_view};
+use dwell_semantics::form::Form;
 use dwell_semantics::refer::refer;
-use dwell_semantics::{Semantics, Term, Viewer, predicates};
+use dwell_semantics::{Semantics, Term, predicates};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -28,11 +31,11 @@ impl Told {
     }
 
     fn caption(&self, object: ObjectId) -> String {
-        caption(&self.semantics.scene(&self.state), object)
+        caption(&self.semantics.scene(&self.state), object, None).text
     }
 
     fn room(&self, room: RoomId) -> String {
-        describe_room(&self.semantics.scene(&self.state), room)
+        describe_room(&self.semantics.scene(&self.state), room, None).text
     }
 
     fn holds(&self, name: &str, thing: ObjectId, other: Term) -> bool {
@@ -47,8 +50,11 @@ impl Told {
     fn refers(&self, object: ObjectId) -> String {
         let scene = self.semantics.scene(&self.state);
         let expression = refer(&scene, object).expect("it can be told apart");
-        assert_eq!(expression.matches(&scene), [object]);
-        expression.definite()
+        let checker = Checker::new(&scene, Listener::default());
+        assert_eq!(checker.fitting(&expression), [Term::Object(object)]);
+        let form = Form::NounPhrase(expression.into());
+        let said = self.semantics.language().say(&form, None);
+        said.expect("the language has words for it").text
     }
 }
 
@@ -119,7 +125,7 @@ fn hung(things: impl Fn(&mut Builder) -> Vec<ObjectId>) -> Hung {
     }
 }
 
-/// With a second window the curtain hangs at one of the two.
+/// With a second window the curtain hangs at one of the two; "at the window" is said of any, as "on the wall" is.
 #[test]
 fn a_curtain_hangs_at_a_window_among_others() {
     let s = hung(|b| {
@@ -133,11 +139,17 @@ fn a_curtain_hangs_at_a_window_among_others() {
     });
     assert_eq!(
         s.told.caption(s.things[0]),
-        "a white curtain at a window in the bedroom"
+        "a white curtain at the window in the bedroom"
+    );
+    let other = Term::Object(s.things[1]);
+    assert!(
+        s.told
+            .holds("hangs_on", s.things[0], Term::Object(s.window))
+            && !s.told.holds("hangs_on", s.things[0], other)
     );
     let text = s.told.room(s.room);
     assert!(
-        text.contains("At a window hangs a white curtain."),
+        text.contains("There is a white curtain at the window in the bedroom."),
         "{text}"
     );
 }
@@ -189,9 +201,9 @@ fn curtains_hang_at_windows_and_pictures_on_walls() {
     }
     let text = told.room(s.room);
     for clause in [
-        "On the wall hangs a yellow picture.",
-        "From the ceiling hangs a white steel fan.",
-        "At the window hangs a white curtain.",
+        " There is a yellow picture on the wall in the bedroom.",
+        " There is a white steel fan on the ceiling in the bedroom.",
+        " There is a white curtain at the window in the bedroom.",
     ] {
         assert!(text.contains(clause), "{text}");
     }
@@ -229,12 +241,23 @@ fn what_lies_or_leans_does_not_hang() {
     assert!(s.told.holds("on", tap, Term::Object(s.table)));
     assert!(!s.told.caption(mirror).contains("on the wall"));
     let text = s.told.room(s.room);
-    assert!(text.contains("On the sofa is a yellow picture."), "{text}");
-    assert!(!text.contains("hang"), "{text}");
+    assert!(
+        text.contains(" There is a yellow picture on the sofa."),
+        "{text}"
+    );
+    for wrong in [
+        "hang",
+        "on the wall",
+        "On the wall",
+        "at the window",
+        "ceiling",
+    ] {
+        assert!(!text.contains(wrong), "{text}");
+    }
 }
 
 #[test]
-fn several_walls_are_walls() {
+fn things_on_several_walls_are_on_the_wall() {
     let s = hung(|b| {
         let paper = b.material("paper", [235, 215, 60]);
         let one = b.thing(
@@ -253,7 +276,7 @@ fn several_walls_are_walls() {
     });
     let text = s.told.room(s.room);
     assert!(
-        text.contains("On the walls hang two yellow pictures."),
+        text.contains("There are two yellow pictures on the wall in the bedroom."),
         "{text}"
     );
 }
@@ -280,7 +303,7 @@ fn one_is_on_a_balcony_and_in_a_kitchen() {
     let expected = [
         "on the balcony",
         "in the kitchen",
-        "on the roof",
+        "on the roof terrace",
         "in the observatory",
     ];
     for (plant, place) in plants.into_iter().zip(expected) {
@@ -288,11 +311,12 @@ fn one_is_on_a_balcony_and_in_a_kitchen() {
         assert_eq!(told.refers(plant), format!("the plant {place}"));
     }
     let view = |x: f32| {
-        let camera = dwell_scene::Pose::from_position_yaw(Vec3::new(x, 1.5, 3.0), 0.0);
-        let viewer = Viewer {
-            world_from_camera: camera,
-        };
-        describe_view(&told.semantics.scene(&told.state), &viewer, &[])
+        let mut state = told.state.clone();
+        let feet = Vec3::new(x, 0.0, 3.0);
+        let agent = AgentState::new(AgentBody::default(), feet, 0.0);
+        state.agents.push(agent);
+        let scene = told.semantics.scene(&state);
+        describe_view(&scene, Listener::agent(&scene, AgentId(0)), None).text
     };
     assert!(view(2.0).starts_with("You are on the balcony."));
     assert!(view(6.0).starts_with("You are in the kitchen."));
@@ -323,7 +347,7 @@ fn pairs_are_counted_as_pairs() {
     );
     assert!(
         told.room(hall)
-            .ends_with("There are two pairs of black leather shoes.")
+            .ends_with(". There are two pairs of black leather shoes in the hallway.")
     );
     assert_eq!(
         told.caption(scissors),
@@ -451,23 +475,30 @@ fn doors_are_named_by_where_they_lead() {
         wall,
     );
     let told = Told::of(b);
-    let has = |room| {
+    let doors = |room| {
         let text = told.room(room);
         let sentence = text
             .split(". ")
-            .find(|sentence| sentence.starts_with("It has"));
+            .find(|sentence| sentence.starts_with("From "));
         sentence.map(str::to_owned).expect("it has doors")
     };
     assert_eq!(
-        has(kitchen).trim_end_matches(". It is empty."),
-        "It has a door to the hallway, a door to the outside and another door"
+        doors(kitchen),
+        "From the kitchen there is a door to the hallway, a door to the outside and a door"
     );
     assert_eq!(
-        has(hall),
-        "It has a door to the kitchen and two doors to the bedroom"
+        doors(hall),
+        "From the hallway there is a door to the kitchen and two doors to the bedroom"
     );
-    assert_eq!(has(bedroom), "It has two doors to the hallway");
-    assert!(!describe_house(&told.semantics.scene(&told.state)).contains("further"));
+    assert_eq!(
+        doors(bedroom),
+        "From the bedroom there are two doors to the hallway"
+    );
+    assert!(
+        !describe_house(&told.semantics.scene(&told.state), None)
+            .text
+            .contains("further")
+    );
     assert_eq!(
         told.caption(inner),
         "a brown wooden door from the kitchen to the hallway"
@@ -508,7 +539,7 @@ fn surfaces_are_told_where_one_prevails() {
     let told = Told::of(b);
     let text = told.room(plain);
     let opening =
-        "The kitchen is about 15 square metres, with a brown parquet floor and white walls.";
+        "The kitchen is about 15 square metres. It has a brown parquet floor and white walls.";
     assert!(text.starts_with(opening), "{text}");
     // Once a room.
     assert_eq!(
@@ -517,7 +548,7 @@ fn surfaces_are_told_where_one_prevails() {
         "{text}"
     );
     let text = told.room(motley_room);
-    let opening = "The bedroom is about 15 square metres, with a parquet floor. It is empty.";
+    let opening = "The bedroom is about 15 square metres. It has a parquet floor. There is nothing in the bedroom.";
     assert_eq!(text, opening);
     assert_eq!(told.caption(table), "a glass table in the kitchen");
     assert_eq!(
@@ -556,8 +587,8 @@ fn things_of_one_sort_are_told_together() {
     let text = told.room(kitchen);
     assert!(
         text.ends_with(
-            "There are two brown wooden tables and three plastic chairs. On a table is a white porcelain cup. On another \
-             table is a white porcelain cup."
+            "In the kitchen there are two brown wooden tables and three plastic chairs. On a table in the kitchen there \
+             is a white porcelain cup. On a table in the kitchen there is a white porcelain cup."
         ),
         "{text}"
     );
@@ -566,7 +597,8 @@ fn things_of_one_sort_are_told_together() {
     let text = told.room(bedroom);
     assert!(
         text.ends_with(
-            "There is a brown wooden table and a brown wooden stool. On the table is a white porcelain cup."
+            "In the bedroom there is a brown wooden table and a brown wooden stool. On the table in the bedroom there is \
+             a white porcelain cup."
         ),
         "{text}"
     );

@@ -94,9 +94,9 @@ def _describe(name: str, level: Any, seed: int | None) -> list[dict[str, Any]] |
         where = "" if said.startswith(name) else f"{name}: "
         print(f"dwell describe: {where}{said}", file=sys.stderr)
         return None
-    structured = level in ("graph", "instructions")
-    values = [json.loads(text) if structured else text for text in texts]
-    return [{"house": name, "level": level, "text": value} for value in values]
+    if level in ("graph", "instructions"):
+        return [{"house": name, "level": level, "text": json.loads(text)} for text in texts]
+    return [{"house": name, "level": level, **text.as_dict()} for text in texts]
 
 
 def _say(row: dict[str, Any]) -> None:

@@ -32,6 +32,7 @@ from dwell.envs.native_batch import GOAL_KEYS, INFO_KEYS, NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
 from dwell.envs.snapshots import check_and_strip, with_checksum
 from dwell.envs.spaces import action_space
+from dwell.grounded_text import Text, texts
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
 from dwell.world_settings import Laws, with_head
@@ -298,10 +299,10 @@ class DwellEnv(gymnasium.Env[dict[str, Any], np.int64], EzPickle):
         """The agents' states, as :meth:`dwell.World.agents` tells them."""
         return agent_states(self._runner.batch.agent_states(0))
 
-    def describe(self, level: str = "house") -> list[str]:
+    def describe(self, level: str = "house") -> list[Text] | list[str]:
         """Sentences about the house as it starts; see :meth:`dwell.House.describe`."""
         self._refuse_closed()
-        return self._shelf[self._house].native.describe(text("level", level))
+        return texts(level, self._shelf[self._house].native.describe(text("level", level)))
 
     def actions(self) -> list[str]:
         """The names of the actions, in the order of their numbers."""

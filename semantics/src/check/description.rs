@@ -7,6 +7,7 @@ use crate::predicates;
 use crate::scene::Term;
 use crate::selections;
 use crate::truth::{Truth, UndecidedReason};
+use dwell_scene::StructureKind;
 use std::rc::Rc;
 
 /// The extension of a description: the things that it fits.
@@ -18,6 +19,16 @@ pub(super) struct Extension {
     pub(super) undecided: Vec<(Term, UndecidedReason)>,
     /// The reason why it has no extension in this scene.
     pub(super) fault: Option<UndecidedReason>,
+}
+
+/// The noun of a piece of the building, where it has one.
+fn structure_noun(kind: StructureKind) -> Option<&'static str> {
+    match kind {
+        StructureKind::Wall => Some("wall"),
+        StructureKind::Floor => Some("floor"),
+        StructureKind::Ceiling => Some("ceiling"),
+        StructureKind::Ground | StructureKind::Other => None,
+    }
 }
 
 impl Checker<'_> {
@@ -55,6 +66,12 @@ impl Checker<'_> {
                 let kinds = self.scene.distractors(noun);
                 kinds.things.iter().map(|id| Term::Object(*id)).collect()
             }
+            Noun::Structure(noun) => {
+                let pieces = self.scene.house().structure.iter_ids();
+                let own = pieces.filter(|(_, piece)| structure_noun(piece.kind) == Some(noun));
+                own.map(|(id, _)| Term::Structure(id)).collect()
+            }
+            Noun::Storey => self.scene.house().levels.ids().map(Term::Storey).collect(),
             Noun::Room(noun) => {
                 let rooms = self.scene.house().rooms.ids();
                 let rooms = rooms.filter(|id| self.scene.semantics.room(*id).is_called(noun));
@@ -71,7 +88,11 @@ impl Checker<'_> {
         let size = description.size.map(Quality::Size);
         let state = description.state.iter().cloned().map(Quality::State);
         for own in color.chain(material).chain(size).chain(state) {
-            truth = truth.and(quality(own));
+            // Nobody calls glass or a mirror by a colour: "the brown table" is not the one of glass.
+            truth = truth.and(match quality(own) {
+                Truth::Undecided(UndecidedReason::NoColor) => Truth::False,
+                decided => decided,
+            });
         }
         for modifier in &description.modifiers {
             if truth.is_false() {

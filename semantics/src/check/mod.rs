@@ -11,14 +11,16 @@
 mod answer;
 mod description;
 mod quantify;
+mod room;
 mod text;
 mod witness;
 
 pub use answer::Answer;
+pub(crate) use room::spoken_area_m2;
 pub use text::{CheckedText, GroundedPhrase};
 pub use witness::Witness;
 
-use crate::form::{Clause, Description, Phrase, Quality};
+use crate::form::{Clause, Description, Form, Phrase, Quality};
 use crate::predicates;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::truth::{Truth, UndecidedReason};
@@ -78,10 +80,25 @@ impl<'a> Checker<'a> {
         }
     }
 
+    /// The scene.
+    pub fn scene(&self) -> &'a SemanticScene<'a> {
+        self.scene
+    }
+
     /// Returns the verdict on a clause.
     pub fn check(&self, clause: &Clause) -> CheckResult {
         let Judged { truth, witnesses } = self.judge(clause);
         CheckResult { truth, witnesses }
+    }
+
+    /// Returns the verdict on a form that says something: a claim, or a noun phrase, which is true where what it describes exists.
+    /// `None` for requests and questions.
+    pub fn check_form(&self, form: &Form) -> Option<CheckResult> {
+        match form {
+            Form::Claim(clause) => Some(self.check(clause)),
+            Form::NounPhrase(phrase) => Some(self.check(&Clause::Exists(phrase.clone()))),
+            Form::Request(_) | Form::Question(_) => None,
+        }
     }
 
     /// Returns the things that a description fits, regardless of its quantifier, ascending; without those of which it is undecided.
@@ -113,6 +130,17 @@ impl<'a> Checker<'a> {
             Clause::Exists(what) => {
                 let body = |terms: &[Term]| Judged::fact("exists", terms, Truth::True);
                 self.quantify(std::slice::from_ref(what), &mut Vec::new(), &body)
+            }
+            Clause::Area {
+                room,
+                square_metres,
+            } => {
+                let body = |terms: &[Term]| self.has_area(terms[0], *square_metres);
+                self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
+            }
+            Clause::HasSurfaces { room, surfaces } => {
+                let body = |terms: &[Term]| self.has_surfaces(terms[0], surfaces);
+                self.quantify(std::slice::from_ref(room), &mut Vec::new(), &body)
             }
             Clause::Not(inner) => self.judge(inner).negated(),
             Clause::All(clauses) => Judged::all(clauses.iter().map(|clause| self.judge(clause))),
@@ -173,7 +201,8 @@ impl<'a> Checker<'a> {
                 .map(Term::Storey)
                 .ok_or(UndecidedReason::UnknownTerm),
             Phrase::Hole => self.hole.get().ok_or(UndecidedReason::UnknownTerm),
-            Phrase::Described(_) => return None,
+            Phrase::Pronoun => Err(UndecidedReason::NoAntecedent),
+            Phrase::Described(_) | Phrase::List(_) => return None,
         })
     }
 }

@@ -20,6 +20,14 @@ impl Checker<'_> {
         let Some((first, rest)) = arguments.split_first() else {
             return body(chosen);
         };
+        if let Phrase::List(items) = first {
+            // A list is decided item by item: each takes its place in turn.
+            return Judged::all(items.iter().map(|item| {
+                let mut arguments = vec![item.clone()];
+                arguments.extend_from_slice(rest);
+                self.quantify(&arguments, &mut chosen.clone(), body)
+            }));
+        }
         let mut with = |term: Term| {
             chosen.push(term);
             let judged = self.quantify(rest, chosen, body);

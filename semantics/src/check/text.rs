@@ -1,9 +1,11 @@
 //! Checking and grounding of sentences in a scene.
 
 use super::{Answer, Checker};
-use crate::form::{Form, Phrase};
-use crate::language::{ReadError, Sentence};
+use crate::form::{Form, Modifier, Phrase};
+use crate::language::{PhraseSpan, ReadError, Sentence};
+use crate::predicates;
 use crate::scene::Term;
+use crate::truth::Truth;
 
 /// A sentence with its readings, checked.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +46,7 @@ impl Checker<'_> {
         let answer = match &form {
             Form::Claim(clause) => Some(Answer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),
+            Form::NounPhrase(phrase) => Some(Answer::Things(self.denoted(phrase))),
             Form::Request(_) => None,
         };
         Ok(CheckedText {
@@ -53,22 +56,81 @@ impl Checker<'_> {
         })
     }
 
-    /// Grounds the noun phrases of a text: finds the things that each denotes in the scene.
+    /// Grounds the noun phrases of a text: finds the things that each denotes in the scene. Of a landmark ("a lamp on a table")
+    /// those things count that what it is a landmark of has the relation to.
     pub fn ground(&self, said: &Sentence) -> Vec<GroundedPhrase> {
-        let phrases = said.phrases.iter();
-        phrases
-            .map(|span| GroundedPhrase {
+        self.ground_of(said, None)
+    }
+
+    /// As [`Self::ground`], of a text whose first phrase is about `subject` alone: a caption.
+    pub(crate) fn ground_of(&self, said: &Sentence, subject: Option<Term>) -> Vec<GroundedPhrase> {
+        let mut found: Vec<GroundedPhrase> = Vec::with_capacity(said.phrases.len());
+        for (k, span) in said.phrases.iter().enumerate() {
+            let mut terms = match subject {
+                Some(subject) if k == 0 => vec![subject],
+                _ => self.denoted(&span.phrase),
+            };
+            let mut outer = said.phrases[..k].iter().zip(&found).rev();
+            let outer = outer.find(|(other, _)| other.start <= span.start && span.end <= other.end);
+            if let Some((PhraseSpan { phrase, .. }, grounded)) = outer {
+                self.keep_related(phrase, &grounded.terms, &span.phrase, &mut terms);
+            }
+            found.push(GroundedPhrase {
                 start: span.start,
                 end: span.end,
-                terms: match &span.phrase {
-                    Phrase::Described(description) => self.fitting(description),
-                    phrase => self
-                        .named(phrase)
-                        .and_then(Result::ok)
-                        .into_iter()
-                        .collect(),
-                },
-            })
-            .collect()
+                terms,
+            });
+        }
+        found
+    }
+
+    /// The things that a phrase denotes, regardless of its quantifier, ascending.
+    pub fn denoted(&self, phrase: &Phrase) -> Vec<Term> {
+        match phrase {
+            Phrase::Described(description) => self.fitting(description),
+            Phrase::List(items) => {
+                let mut all: Vec<Term> = items.iter().flat_map(|item| self.denoted(item)).collect();
+                all.sort_unstable();
+                all.dedup();
+                all
+            }
+            phrase => {
+                let named = self.named(phrase).and_then(Result::ok);
+                named.into_iter().collect()
+            }
+        }
+    }
+
+    /// Keeps of `terms`, which `landmark` denotes, those that one of `subjects` has the relation to.
+    fn keep_related(
+        &self,
+        outer: &Phrase,
+        subjects: &[Term],
+        landmark: &Phrase,
+        terms: &mut Vec<Term>,
+    ) {
+        let Phrase::Described(outer) = outer else {
+            return;
+        };
+        let with = |modifier: &&Modifier| {
+            !modifier.negated && modifier.arguments[..] == [landmark.clone()]
+        };
+        let Some(modifier) = outer.modifiers.iter().find(with) else {
+            return;
+        };
+        let Ok(predicate) = predicates::find(&modifier.predicate) else {
+            return;
+        };
+        let viewer = self.listener.viewer.as_ref();
+        let related = |term: &Term| {
+            let mut holds = subjects
+                .iter()
+                .map(|subject| predicate.holds(self.scene, &[*subject, *term], viewer));
+            holds.any(Truth::is_true)
+        };
+        // Where the phrase is of no things at all its landmark stands for all that it fits.
+        if !subjects.is_empty() {
+            terms.retain(related);
+        }
     }
 }

@@ -1,73 +1,87 @@
 //! The description of a house.
 
-use super::room::describe_room;
-use crate::english::{be, count, counted, list};
+use super::room::say_room;
+use super::text::{GroundedText, TextWriter};
+use crate::check::{Checker, Listener};
+use crate::form::{Description, Modifier, Noun, Phrase, Quantifier};
 use crate::scene::SemanticScene;
-use dwell_scene::{LevelId, RoomId};
+use dwell_scene::random::RandomKey;
+use dwell_scene::{Id, LevelId, RoomId};
+use std::collections::BTreeMap;
 
-fn rooms_by_noun(scene: &SemanticScene<'_>) -> Vec<String> {
-    let mut groups: Vec<(&str, &str, usize)> = Vec::new();
-    for room in scene.house().rooms.ids() {
-        let facts = scene.semantics.room(room);
-        match groups.iter_mut().find(|(noun, _, _)| *noun == facts.noun) {
-            Some((_, _, number)) => *number += 1,
-            None => groups.push((&facts.noun, &facts.plural, 1)),
-        }
+fn exactly(number: usize, noun: Noun) -> Description {
+    let quantifier = match number {
+        0 => Quantifier::No,
+        1 => Quantifier::Some,
+        number => Quantifier::Exactly(number as u32),
+    };
+    Description::new(quantifier, noun)
+}
+
+/// Rooms of one storey as items: "two bedrooms", "a kitchen".
+fn room_items(scene: &SemanticScene<'_>, rooms: &[RoomId]) -> Vec<Description> {
+    let mut nouns: BTreeMap<&str, usize> = BTreeMap::new();
+    for room in rooms {
+        nouns.insert(&scene.semantics.room(*room).noun, 0);
     }
-    groups.sort_by(|p, q| p.0.cmp(q.0));
-    groups
-        .into_iter()
-        .map(|(one, many, number)| counted(number, one, many))
+    for (noun, number) in &mut nouns {
+        let called = rooms
+            .iter()
+            .filter(|room| scene.semantics.room(**room).is_called(noun));
+        *number = called.count();
+    }
+    // "Seven rooms" are told already.
+    nouns.remove(Noun::ANY_ROOM);
+    let nouns = nouns.into_iter();
+    nouns
+        .map(|(noun, number)| exactly(number, Noun::Room(noun.to_owned())))
         .collect()
 }
 
-/// The description of a house: its rooms, then each of them, storey by storey.
-pub fn describe_house(scene: &SemanticScene<'_>) -> String {
+/// The description of a house: the numbers of storeys, rooms and things, its rooms, then each of them, storey by storey.
+/// `wording` draws the wordings.
+pub fn describe_house(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> GroundedText {
+    let checker = Checker::new(scene, Listener::default());
+    let mut writer = TextWriter::new(&checker, wording);
     let house = scene.house();
-    let (rooms, objects) = (house.rooms.len(), house.objects.len());
-    let mut paragraphs = Vec::new();
-    let storeys = house.levels.len().max(1);
-    let storeys = if storeys == 1 {
-        String::new()
-    } else {
-        format!(" on {} storeys", count(storeys))
-    };
-    let opening = match rooms {
-        0 => "This house has no rooms.".to_owned(),
-        1 => format!(
-            "This house has one room{storeys}: {}.",
-            list(&rooms_by_noun(scene))
-        ),
-        _ => format!(
-            "This house has {} rooms{storeys}: {}.",
-            count(rooms),
-            list(&rooms_by_noun(scene))
-        ),
-    };
-    let things = if objects == 1 { "thing" } else { "things" };
-    paragraphs.push(format!(
-        "{opening} There {} {} {things} in it.",
-        be(objects),
-        count(objects)
+    let storeys = house.levels.len();
+    let mut numbers = Vec::new();
+    if storeys > 1 {
+        numbers.push(exactly(storeys, Noun::Storey));
+    }
+    numbers.push(exactly(
+        house.rooms.len(),
+        Noun::Room(Noun::ANY_ROOM.to_owned()),
     ));
+    numbers.push(exactly(
+        house.objects.len(),
+        Noun::Object(Noun::ANY_OBJECT.to_owned()),
+    ));
+    if numbers.iter().any(|item| item.quantifier == Quantifier::No) {
+        // "There are two rooms and nothing" is no English.
+        for item in numbers {
+            writer.there_are(&[item], &[]);
+        }
+    } else {
+        writer.there_are(&numbers, &[]);
+    }
     let mut order: Vec<RoomId> = house.rooms.ids().collect();
     order.sort_by_key(|room| (house.rooms[*room].level, *room));
-    let mut last: Option<LevelId> = None;
+    let on =
+        |level: LevelId| Modifier::new("on_storey", [Phrase::Storey(level.index() as u32 + 1)]);
+    for storey in order.chunk_by(|p, q| house.rooms[*p].level == house.rooms[*q].level) {
+        let items = room_items(scene, storey);
+        let level = house.rooms[storey[0]].level;
+        let place = if storeys > 1 {
+            vec![on(level)]
+        } else {
+            Vec::new()
+        };
+        writer.there_are(&items, &place);
+    }
     for room in order {
-        let level = house.rooms[room].level;
-        let mut text = describe_room(scene, room);
-        if house.levels.len() > 1 && last != Some(level) {
-            text = format!("{}: {text}", storey(level));
-            last = Some(level);
-        }
-        paragraphs.push(text);
+        writer.end_paragraph();
+        say_room(&mut writer, scene, room);
     }
-    paragraphs.join("\n")
-}
-
-fn storey(level: LevelId) -> String {
-    match level.0 {
-        0 => "On the ground floor".to_owned(),
-        k => format!("On the {} floor", crate::english::ordinal(k as usize)),
-    }
+    writer.finish()
 }

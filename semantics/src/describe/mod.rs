@@ -1,14 +1,16 @@
-//! Speech about objects, rooms, houses and views.
+//! Texts about objects, rooms, houses and views. Each is made of forms, so that it can be checked.
 
-mod contents;
 mod hanging;
 mod house;
+mod item;
 mod object;
 mod openings;
 mod room;
+mod text;
 mod view;
 
 pub use house::describe_house;
-pub use object::caption;
-pub use room::describe_room;
+pub use object::{caption, captions};
+pub use room::{describe_room, describe_rooms};
+pub use text::{GroundedText, TextClaim};
 pub use view::describe_view;

@@ -1,77 +1,26 @@
-//! A caption of one object.
+//! Captions of objects.
 
 use super::hanging::MountedObject;
-use crate::english::{qualified, with_article};
+use super::item::appearance;
+use super::text::{GroundedText, TextWriter};
+use crate::check::{Checker, Listener};
+use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
-use crate::scene::SemanticScene;
-use dwell_scene::interrupt;
+use crate::refer::room_phrase;
+use crate::scene::{SemanticScene, Term};
+use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 
-/// Openness above which a thing is called open, and below which closed.
-const OPEN: f32 = 0.5;
-const CLOSED: f32 = 0.02;
-
-/// The adjectives of a thing: size, openness, colour, substance.
-pub(super) type Adjectives = [Option<String>; 4];
-
-pub(super) fn adjectives(scene: &SemanticScene<'_>, object: ObjectId) -> Adjectives {
-    let facts = scene.facts(object);
-    let size = facts.size.word().map(str::to_owned);
-    let openness =
-        scene
-            .state
-            .openness(scene.house(), object)
-            .and_then(|openness| match openness {
-                o if o > OPEN => Some("open"),
-                o if o > CLOSED => Some("half-open"),
-                // A cupboard is closed as a rule; a door's state is always of interest.
-                _ => facts.is_opening().then_some("closed"),
-            });
-    let material = facts.material_word();
-    let color = facts.color_phrase();
-    [
-        size,
-        openness.map(str::to_owned),
-        color,
-        material.map(str::to_owned),
-    ]
-}
-
-/// A noun with its adjectives, of which there may be none.
-pub(super) fn described(adjectives: &Adjectives, noun: &str) -> String {
-    let row = |words: &[Option<String>]| -> String {
-        let words: Vec<&str> = words.iter().flatten().map(String::as_str).collect();
-        words.join(" ")
-    };
-    qualified(&row(&adjectives[..2]), &row(&adjectives[2..]), noun)
-}
-
-/// Adjectives and noun.
-pub(super) fn phrase(scene: &SemanticScene<'_>, object: ObjectId) -> String {
-    described(&adjectives(scene, object), &scene.facts(object).noun)
-}
-
-/// Returns the number of things in a room that may be called as `object` is; as if there were several outside of all rooms.
-pub(super) fn alike(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> usize {
+/// A landmark by its noun: "the table" where the house has one only, else "a table".
+pub(super) fn landmark(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
     let noun = &scene.facts(object).noun;
-    room.map_or(2, |room| {
-        let alike = scene.distractors(noun);
-        alike.in_rooms().get(&room).copied().unwrap_or_default()
-    })
-}
-
-/// A landmark in a room: "the table" when it is the only one there, else "a table".
-pub(super) fn landmark(
-    scene: &SemanticScene<'_>,
-    object: ObjectId,
-    room: Option<RoomId>,
-) -> String {
-    let noun = &scene.facts(object).noun;
-    if alike(scene, object, room) == 1 {
-        format!("the {noun}")
+    let is_only = scene.distractors(noun).things.len() == 1;
+    let quantifier = if is_only {
+        Quantifier::The
     } else {
-        with_article(noun)
-    }
+        Quantifier::Some
+    };
+    Description::new(quantifier, Noun::Object(noun.clone()))
 }
 
 fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Option<ObjectId> {
@@ -88,54 +37,93 @@ fn first_related(scene: &SemanticScene<'_>, object: ObjectId, name: &str) -> Opt
     (name != "next_to" || volume(largest) > 0.3 * volume(object)).then_some(largest)
 }
 
-/// The rooms that a door connects: " from the kitchen to the outside"; `None` when that is not known, and for other things.
-fn between(scene: &SemanticScene<'_>, door: ObjectId, room: Option<RoomId>) -> Option<String> {
+/// The sides of a door: from a room to another or to the outside; `None` when that is not known, and for other things.
+fn passage(
+    scene: &SemanticScene<'_>,
+    door: ObjectId,
+    room: Option<RoomId>,
+) -> Option<[Modifier; 2]> {
     let doorway = scene.semantics.doorway(door)?;
-    let the = |room: RoomId| format!("the {}", scene.semantics.room(room).label);
+    let leads = |predicate: &str, room| Modifier::new(predicate, [room_phrase(scene, room)]);
     match doorway.rooms[..] {
-        [one] if doorway.outside => Some(format!(" from {} to the outside", the(one))),
-        [one, other] if room == Some(other) => {
-            Some(format!(" from {} to {}", the(other), the(one)))
+        [one] if doorway.outside => {
+            Some([leads("leads_from", one), Modifier::new("leads_outside", [])])
         }
-        [one, other] => Some(format!(" from {} to {}", the(one), the(other))),
+        [one, other] if room == Some(other) => {
+            Some([leads("leads_from", other), leads("leads_to", one)])
+        }
+        [one, other] => Some([leads("leads_from", one), leads("leads_to", other)]),
         _ => None,
     }
 }
 
-/// Returns its place beside something else: " on the table"; empty when nothing is near.
-fn place(scene: &SemanticScene<'_>, object: ObjectId, room: Option<RoomId>) -> String {
-    for (name, words) in [("in", "in"), ("on", "on")] {
-        if let Some(other) = first_related(scene, object, name) {
-            return format!(" {words} {}", landmark(scene, other, room));
-        }
+/// Its place beside something else: "on the table"; `None` when nothing is near.
+fn place(scene: &SemanticScene<'_>, object: ObjectId) -> Option<Modifier> {
+    let related = |name: &str| {
+        let other = first_related(scene, object, name)?;
+        Some(Modifier::new(name, [landmark(scene, other).into()]))
+    };
+    if let Some(place) = related("in").or_else(|| related("on")) {
+        return Some(place);
     }
-    if let Some(hanging) = MountedObject::of(scene, object) {
-        return hanging.place(scene);
+    match MountedObject::of(scene, object) {
+        Some(hanging) if hanging.is_in_noun(scene) => None,
+        Some(hanging) => Some(hanging.mount.modifier()),
+        None => related("next_to"),
     }
-    first_related(scene, object, "next_to").map_or_else(String::new, |other| {
-        format!(" next to {}", landmark(scene, other, room))
-    })
 }
 
-/// A caption: "a brown wooden chair next to the table in the kitchen".
-pub fn caption(scene: &SemanticScene<'_>, object: ObjectId) -> String {
-    interrupt::check();
+/// A description of an object by its looks, place and room.
+fn description(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
     let room = scene.room_of(object);
-    let mut text = with_article(&phrase(scene, object));
-    let between = between(scene, object, room);
-    if let Some(between) = &between {
-        text.push_str(between);
-    } else if scene.holder(object).is_some() {
-        text.push_str(" in somebody's hand");
+    let mut description = appearance(scene, object);
+    let is_on = scene.house().objects[object].switch.is_some() && scene.state.switched_on[object];
+    if is_on && description.state.is_none() {
+        description.state = Some("switched_on".to_owned());
+    }
+    if let Some(passage) = passage(scene, object, room) {
+        description.modifiers.extend(passage);
+        return description;
+    }
+    if scene.holder(object).is_some() {
+        description.modifiers.push(Modifier::new("held", []));
     } else {
-        text.push_str(&place(scene, object, room));
+        description.modifiers.extend(place(scene, object));
     }
-    if let Some(room) = room.filter(|_| between.is_none()) {
-        text.push(' ');
-        text.push_str(&scene.semantics.room(room).place());
-    }
-    if scene.house().objects[object].switch.is_some() && scene.state.switched_on[object] {
-        text.push_str(", switched on");
-    }
-    text
+    let in_room = room.map(|room| Modifier::new("in_room", [room_phrase(scene, room)]));
+    description.modifiers.extend(in_room);
+    description
+}
+
+/// A caption: "a brown wooden chair next to the table in the kitchen". `wording` draws the wordings.
+pub fn caption(
+    scene: &SemanticScene<'_>,
+    object: ObjectId,
+    wording: Option<RandomKey>,
+) -> GroundedText {
+    let checker = Checker::new(scene, Listener::default());
+    caption_with(&checker, object, wording)
+}
+
+/// The captions of all objects, in order.
+pub fn captions(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> Vec<GroundedText> {
+    let checker = Checker::new(scene, Listener::default());
+    let objects = scene.house().objects.ids().enumerate();
+    objects
+        .map(|(k, object)| {
+            let wording = wording.map(|key| key.child(k as u64));
+            caption_with(&checker, object, wording)
+        })
+        .collect()
+}
+
+fn caption_with(
+    checker: &Checker<'_>,
+    object: ObjectId,
+    wording: Option<RandomKey>,
+) -> GroundedText {
+    let mut writer = TextWriter::new(checker, wording);
+    let description = description(checker.scene(), object);
+    writer.say_of(description.into(), Term::Object(object));
+    writer.finish()
 }

@@ -1,151 +1,268 @@
 //! The description of a room.
 
-use super::contents::grouped;
-use super::hanging::{MountedObject, clauses};
-use super::object::landmark;
-use super::openings::openings;
-use crate::english::{be, capitalized, list, with_article};
+use super::hanging::{MountKind, MountedObject};
+use super::item::{grouped, items};
+use super::openings::{say_doors, say_passages};
+use super::text::{GroundedText, TextWriter};
+use crate::check::{Checker, Listener, spoken_area_m2};
+use crate::form::{
+    Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurface, RoomSurfaceKind,
+};
 use crate::predicates;
+use crate::refer::{refer, room_phrase};
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
+use dwell_scene::random::RandomKey;
 use dwell_scene::{ObjectId, RoomId};
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(super) fn is_a(scene: &SemanticScene<'_>, object: ObjectId, names: &[&str]) -> bool {
-    scene
-        .facts(object)
-        .category
-        .is_some_and(|row| names.contains(&row.name))
+fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
+    let row = scene.facts(object).category;
+    row.is_some_and(|row| row.name == "rug")
 }
 
-fn shell(scene: &SemanticScene<'_>, room: RoomId) -> String {
+/// Says the room's area and the look of its floor and walls.
+fn say_shell(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
     let facts = scene.semantics.room(room);
-    let area = facts.area_m2.round().max(1.0);
-    let mut with = Vec::new();
-    let floor = [facts.floor_color, facts.floor_word];
-    let floor: Vec<&str> = floor.into_iter().flatten().collect();
-    if !floor.is_empty() {
-        with.push(with_article(&format!("{} floor", floor.join(" "))));
+    writer.say(Form::Claim(Clause::Area {
+        room: room_phrase(scene, room),
+        square_metres: spoken_area_m2(facts.area_m2),
+    }));
+    let mut surfaces = Vec::new();
+    if facts.floor_color.is_some() || facts.floor_word.is_some() {
+        surfaces.push(RoomSurface {
+            kind: RoomSurfaceKind::Floor,
+            color: facts.floor_color.map(str::to_owned),
+            material: facts.floor_word.map(str::to_owned),
+        });
     }
-    with.extend(facts.wall_color.map(|word| format!("{word} walls")));
-    let with = if with.is_empty() {
-        String::new()
-    } else {
-        format!(", with {}", list(&with))
-    };
-    let unit = if area <= 1.0 { "metre" } else { "metres" };
-    format!("The {} is about {area} square {unit}{with}.", facts.label)
+    surfaces.extend(facts.wall_color.map(|word| RoomSurface {
+        kind: RoomSurfaceKind::Walls,
+        color: Some(word.to_owned()),
+        material: None,
+    }));
+    if !surfaces.is_empty() {
+        let room = room_phrase(scene, room);
+        writer.say(Form::Claim(Clause::HasSurfaces { room, surfaces }));
+    }
 }
 
-/// The contents of a room off the floor: things by what carries them and how, and what hangs.
+/// The contents of a room by their places.
 #[derive(Default)]
 struct RoomContents {
+    /// Things in and on others, by the relation and the description of their carrier.
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
     hanging: Vec<MountedObject>,
+    standing: Vec<ObjectId>,
 }
 
-fn placed(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> RoomContents {
-    let mut placed = RoomContents::default();
+fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> RoomContents {
+    let mut contents = RoomContents::default();
     for object in objects {
         interrupt::check();
-        let related = ["in", "on"].into_iter().find_map(|name| {
+        let carrier = ["in", "on"].into_iter().find_map(|name| {
             let predicate = predicates::find(name).ok()?;
             let others = predicates::related_objects(scene, predicate, *object);
             let carrier = others.into_iter().find(|other| {
                 scene.room_of(*other) == Some(room) && !(name == "in" && scene.is_lain_upon(*other))
             })?;
-            Some((name, carrier))
+            Some((carrier, name))
         });
-        // Furniture on a rug stands in the room; it is the rug's mention that matters.
-        if let Some((name, carrier)) =
-            related.filter(|(_, carrier)| !is_a(scene, *carrier, &["rug"]))
-        {
-            placed
-                .carried
-                .entry((carrier, name))
-                .or_default()
-                .push(*object);
+        // Furniture on a rug stands in the room.
+        if let Some(key) = carrier.filter(|(carrier, _)| !is_rug(scene, *carrier)) {
+            contents.carried.entry(key).or_default().push(*object);
             continue;
         }
-        let hanging = MountedObject::of(scene, *object);
-        placed
-            .hanging
-            .extend(hanging.filter(|hanging| !hanging.is_in_noun(scene)));
+        match MountedObject::of(scene, *object).filter(|hanging| !hanging.is_in_noun(scene)) {
+            Some(hanging) => contents.hanging.push(hanging),
+            None => contents.standing.push(*object),
+        }
     }
-    placed
+    contents
+}
+
+/// Largest number of carriers of one noun that no description tells apart of which each has its own sentence.
+const MOST_UNTOLD_APART: usize = 8;
+
+/// Things on or in a carrier, or on or in carriers that no description tells apart.
+struct CarrierGroup {
+    predicate: &'static str,
+    carrier: Description,
+    objects: Vec<ObjectId>,
+    /// All things on or in the carriers that the description fits; `None` where others than these carry things, too.
+    candidates: Option<Vec<ObjectId>>,
+}
+
+impl CarrierGroup {
+    fn items(&self, scene: &SemanticScene<'_>) -> Vec<Description> {
+        if let Some(candidates) = &self.candidates {
+            return items(scene, &self.objects, candidates);
+        }
+        let mut items = items(scene, &self.objects, &self.objects);
+        // "On a table there are two cups" of this table, whatever is on the others that are tables, too.
+        for item in &mut items {
+            if let Quantifier::Exactly(number) = item.quantifier {
+                item.quantifier = Quantifier::AtLeast(number);
+            }
+        }
+        items
+    }
 }
 
 /// The carriers of things, the largest kinds first, as lists have them: a table before the bowl on it.
-fn in_order(
+fn carrier_groups(
     scene: &SemanticScene<'_>,
+    room: RoomId,
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
-) -> Vec<(ObjectId, &'static str, Vec<ObjectId>)> {
+) -> Vec<CarrierGroup> {
     let mut carriers: Vec<ObjectId> = carried.keys().map(|(carrier, _)| *carrier).collect();
     carriers.dedup();
-    let groups = grouped(scene, &carriers);
-    let mut ordered: Vec<(ObjectId, &'static str, Vec<ObjectId>)> = Vec::new();
-    let mut places: BTreeMap<ObjectId, usize> = BTreeMap::new();
-    for (place, group) in groups.iter().enumerate() {
-        places.extend(group.objects.iter().map(|object| (*object, place)));
+    let mut ranks: BTreeMap<ObjectId, usize> = BTreeMap::new();
+    for (rank, group) in grouped(scene, &carriers).iter().enumerate() {
+        ranks.extend(group.objects.iter().map(|object| (*object, rank)));
     }
-    for ((carrier, words), things) in carried {
-        ordered.push((carrier, words, things));
-    }
+    let mut ordered: Vec<((ObjectId, &'static str), Vec<ObjectId>)> = carried.into_iter().collect();
     // Stable: within a kind as the house has them.
-    ordered.sort_by_key(|(carrier, ..)| places.get(carrier).copied());
-    ordered
+    ordered.sort_by_key(|((carrier, _), _)| ranks.get(carrier).copied());
+    let mut groups: Vec<CarrierGroup> = Vec::new();
+    // The groups of carriers that no description tells apart, by noun and relation.
+    let mut alike: BTreeMap<(&str, &str), Vec<usize>> = BTreeMap::new();
+    for ((carrier, predicate), objects) in ordered {
+        let told_apart = refer(scene, carrier);
+        if told_apart.is_none() {
+            let noun = scene.facts(carrier).noun.as_str();
+            alike
+                .entry((noun, predicate))
+                .or_default()
+                .push(groups.len());
+        }
+        let candidates = told_apart
+            .is_some()
+            .then(|| carried_by(scene, predicate, &[carrier]));
+        groups.push(CarrierGroup {
+            predicate,
+            carrier: told_apart.unwrap_or_else(|| in_room(scene, carrier, room)),
+            objects,
+            candidates,
+        });
+    }
+    for ((noun, predicate), own) in alike {
+        let distractors = scene.distractors(noun);
+        let here = distractors.things.iter().copied();
+        let here: Vec<ObjectId> = here
+            .filter(|other| scene.room_of(*other) == Some(room))
+            .collect();
+        let all = carried_by(scene, predicate, &here);
+        if own.len() > MOST_UNTOLD_APART {
+            let rest: Vec<ObjectId> = own[1..]
+                .iter()
+                .flat_map(|k| std::mem::take(&mut groups[*k].objects))
+                .collect();
+            groups[own[0]].objects.extend(rest);
+        }
+        let told = own
+            .iter()
+            .filter(|k| !groups[**k].objects.is_empty())
+            .count();
+        if told == 1 {
+            groups[own[0]].candidates = Some(all);
+        }
+    }
+    groups.retain(|group| !group.objects.is_empty());
+    groups
 }
 
-/// The description of a room: its size and surfaces, its openings, what stands in it, and what lies on what.
-pub fn describe_room(scene: &SemanticScene<'_>, room: RoomId) -> String {
-    let mut sentences = vec![shell(scene, room)];
-    sentences.extend(openings(scene, room));
-    let objects: Vec<ObjectId> = scene
-        .objects_in(room)
+/// "A table in the kitchen."
+fn in_room(scene: &SemanticScene<'_>, object: ObjectId, room: RoomId) -> Description {
+    let noun = Noun::Object(scene.facts(object).noun.clone());
+    let in_room = Modifier::new("in_room", [room_phrase(scene, room)]);
+    Description::new(Quantifier::Some, noun).with_modifier(in_room)
+}
+
+/// The things in or on some carriers, ascending.
+fn carried_by(scene: &SemanticScene<'_>, predicate: &str, carriers: &[ObjectId]) -> Vec<ObjectId> {
+    let converse = if predicate == "in" {
+        "contains"
+    } else {
+        "supports"
+    };
+    let Ok(converse) = predicates::find(converse) else {
+        return Vec::new();
+    };
+    let carried = carriers
+        .iter()
+        .flat_map(|carrier| predicates::related_objects(scene, converse, *carrier));
+    let carried: BTreeSet<ObjectId> = carried.collect();
+    carried.into_iter().collect()
+}
+
+/// Says a room: its size and surfaces, its openings, what it has in it, what lies on what, and what hangs.
+pub(super) fn say_room(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
+    say_shell(writer, scene, room);
+    say_passages(writer, scene, room);
+    say_doors(writer, scene, room);
+    let in_room = Modifier::new("in_room", [room_phrase(scene, room)]);
+    let all = scene.objects_in(room);
+    if all.is_empty() {
+        let nothing = Noun::Object(Noun::ANY_OBJECT.to_owned());
+        writer.there_are(&[Description::new(Quantifier::No, nothing)], &[in_room]);
+        return;
+    }
+    let told: Vec<ObjectId> = all
         .iter()
         .copied()
-        .filter(|object| !scene.facts(*object).is_door() && !is_a(scene, *object, &["window"]))
-        .filter(|object| scene.holder(*object).is_none())
+        .filter(|object| !scene.facts(*object).is_door() && scene.holder(*object).is_none())
         .collect();
-    let RoomContents { carried, hanging } = placed(scene, room, &objects);
-    let hung = hanging.iter().map(|hanging| hanging.thing);
-    let elsewhere: BTreeSet<ObjectId> = carried.values().flatten().copied().chain(hung).collect();
-    let standing = objects.iter().filter(|object| !elsewhere.contains(object));
-    let standing: Vec<ObjectId> = standing.copied().collect();
-    let texts = |objects: &[ObjectId]| -> Vec<String> {
-        grouped(scene, objects)
-            .iter()
-            .map(|group| group.text(scene))
-            .collect()
-    };
-    if objects.is_empty() {
-        sentences.push("It is empty.".to_owned());
+    let RoomContents {
+        carried,
+        hanging,
+        standing,
+    } = contents(scene, room, &told);
+    let place = std::slice::from_ref(&in_room);
+    writer.there_are(&items(scene, &standing, all), place);
+    for group in carrier_groups(scene, room, carried) {
+        let items = group.items(scene);
+        let carrier = Phrase::from(group.carrier);
+        writer.there_are(&items, &[Modifier::new(group.predicate, [carrier])]);
     }
-    if !standing.is_empty() {
-        // "There is a bed, ..." agrees with the first thing of the list, as people speak.
-        let first = grouped(scene, &standing)[0].objects.len();
-        sentences.push(format!("There {} {}.", be(first), list(&texts(&standing))));
-    }
-    let mut last: Option<ObjectId> = None;
-    let mut told: BTreeSet<&str> = BTreeSet::new();
-    for (carrier, words, things) in in_order(scene, carried) {
-        let noun = &scene.facts(carrier).noun;
-        let place = match last {
-            Some(last) if last == carrier => "it".to_owned(),
-            _ if told.contains(noun.as_str()) => format!("another {noun}"),
-            _ => landmark(scene, carrier, Some(room)),
+    for mount in MountKind::ALL {
+        let here = |one: &&MountedObject| one.mount == mount;
+        let objects = hanging.iter().filter(here).map(|one| one.object);
+        let objects: Vec<ObjectId> = objects.collect();
+        let hung = all.iter().filter(|object| {
+            MountedObject::of(scene, **object).is_some_and(|one| one.mount == mount)
+        });
+        let candidates: Vec<ObjectId> = if objects.is_empty() {
+            Vec::new()
+        } else {
+            hung.copied().collect()
         };
-        last = Some(carrier);
-        told.insert(noun);
-        sentences.push(format!(
-            "{} {place} {} {}.",
-            capitalized(words),
-            be(things.len()),
-            list(&texts(&things))
-        ));
+        let items = items(scene, &objects, &candidates);
+        writer.there_are(&items, &[mount.modifier(), in_room.clone()]);
     }
-    for clause in clauses(scene, &hanging) {
-        sentences.push(format!("{}.", capitalized(&clause)));
-    }
-    sentences.join(" ")
+}
+
+/// The description of a room. `wording` draws the wordings.
+pub fn describe_room(
+    scene: &SemanticScene<'_>,
+    room: RoomId,
+    wording: Option<RandomKey>,
+) -> GroundedText {
+    let checker = Checker::new(scene, Listener::default());
+    describe_with(&checker, room, wording)
+}
+
+/// The descriptions of all rooms, in order.
+pub fn describe_rooms(scene: &SemanticScene<'_>, wording: Option<RandomKey>) -> Vec<GroundedText> {
+    let checker = Checker::new(scene, Listener::default());
+    let rooms = scene.house().rooms.ids().enumerate();
+    rooms
+        .map(|(k, room)| describe_with(&checker, room, wording.map(|key| key.child(k as u64))))
+        .collect()
+}
+
+fn describe_with(checker: &Checker<'_>, room: RoomId, wording: Option<RandomKey>) -> GroundedText {
+    let mut writer = TextWriter::new(checker, wording);
+    say_room(&mut writer, checker.scene(), room);
+    writer.finish()
 }

@@ -18,6 +18,27 @@ pub enum Quality {
     State(String),
 }
 
+/// A surface of a room with its look: "a brown wooden floor".
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub struct RoomSurface {
+    /// The surface.
+    pub kind: RoomSurfaceKind,
+    /// The plain colour word of most of it.
+    pub color: Option<String>,
+    /// The adjective of the substance of most of it; floors alone have one.
+    pub material: Option<String>,
+}
+
+/// A kind of surface of a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RoomSurfaceKind {
+    /// The floor.
+    Floor,
+    /// The walls.
+    Walls,
+}
+
 /// A clause: true, false or undecided of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -38,6 +59,20 @@ pub enum Clause {
     },
     /// The existence of things: "there are two chairs in the kitchen".
     Exists(Phrase),
+    /// A room's floor area, rounded to whole square metres and at least 1: "the kitchen is about 12 square metres".
+    Area {
+        /// The room.
+        room: Phrase,
+        /// Its area, m².
+        square_metres: u32,
+    },
+    /// The look of a room's surfaces: "the kitchen has a brown wooden floor and white walls".
+    HasSurfaces {
+        /// The room.
+        room: Phrase,
+        /// Its surfaces, the floor before the walls.
+        surfaces: Vec<RoomSurface>,
+    },
     /// The negation of a clause.
     Not(Box<Clause>),
     /// The conjunction of clauses.

@@ -1,21 +1,22 @@
-//! The logical form: the meaning of a claim, a request or a question, apart from its words.
+//! The logical form: the meaning of a claim, a request, a question or a noun phrase, apart from its words.
 //!
 //! Captions, instructions, questions, goals and the claims of other authors' texts are forms. [`crate::language`] turns forms into
 //! text and text into forms; `docs/words.md` defines the meaning of each.
 
+mod antecedent;
 mod clause;
 mod phrase;
 mod question;
 mod request;
 
-pub use clause::{Clause, Quality};
+pub use clause::{Clause, Quality, RoomSurface, RoomSurfaceKind};
 pub use phrase::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
 pub use question::{AttributeKind, Question};
 pub use request::{Request, RequestStep};
 
 use serde::{Deserialize, Serialize};
 
-/// The logical form of a sentence: a claim, a request or a question.
+/// The logical form of a sentence, or of a noun phrase on its own.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -25,4 +26,6 @@ pub enum Form {
     Request(Request),
     /// A question to answer.
     Question(Question),
+    /// A noun phrase on its own: a caption or a referring expression. True of a scene that has what it describes.
+    NounPhrase(Phrase),
 }

@@ -29,6 +29,17 @@ pub enum Noun {
     Object(String),
     /// A room: "kitchen".
     Room(String),
+    /// A piece of the building, by its kind: "wall", "floor", "ceiling".
+    Structure(String),
+    /// A storey.
+    Storey,
+}
+
+impl Noun {
+    /// The noun that names every object.
+    pub const ANY_OBJECT: &'static str = "thing";
+    /// The noun that names every room.
+    pub const ANY_ROOM: &'static str = "room";
 }
 
 /// A modifier of a description: a relation, a place or the negation of one.
@@ -40,6 +51,17 @@ pub struct Modifier {
     pub predicate: String,
     /// Its other arguments.
     pub arguments: Vec<Phrase>,
+}
+
+impl Modifier {
+    /// Returns a modifier that is not negated.
+    pub fn new(predicate: &str, arguments: impl Into<Vec<Phrase>>) -> Self {
+        Self {
+            negated: false,
+            predicate: predicate.to_owned(),
+            arguments: arguments.into(),
+        }
+    }
 }
 
 /// The choice of one of the things that a description fits, by its place in an order.
@@ -94,6 +116,13 @@ impl Description {
         }
     }
 
+    /// Returns the same description with another modifier at the end.
+    #[must_use]
+    pub fn with_modifier(mut self, modifier: Modifier) -> Self {
+        self.modifiers.push(modifier);
+        self
+    }
+
     /// Returns the same description with another quantifier.
     #[must_use]
     pub fn with_quantifier(self, quantifier: Quantifier) -> Self {
@@ -113,6 +142,10 @@ pub enum Phrase {
     Listener,
     /// A storey, counted upwards from 1: "on the second floor".
     Storey(u32),
+    /// A list of which a clause holds one by one: "a table and two chairs".
+    List(Vec<Phrase>),
+    /// "It": the subject of the sentence before. [`crate::form::Form::with_antecedent`] puts that in its place.
+    Pronoun,
     /// The open argument of a question.
     Hole,
 }

@@ -13,6 +13,15 @@ pub(super) struct GrammarFile {
     /// The variants of categories and of lexicon classes; those not named have one.
     #[serde(default)]
     pub(super) variants: BTreeMap<String, Vec<String>>,
+    /// Lexicon classes of whose entries any form may be said; of others the first is.
+    #[serde(default)]
+    pub(super) drawn: Vec<String>,
+    /// Phrases with others that mean the same, for texts that are not understood as they stand; the other may be empty.
+    #[serde(default)]
+    pub(super) paraphrases: Vec<[String; 2]>,
+    /// Endings of words that are words of their own, with these: "n't" is "not".
+    #[serde(default)]
+    pub(super) endings: Vec<[String; 2]>,
     /// Words that agree with an argument, by name: their forms by variant.
     #[serde(default)]
     pub(super) words: BTreeMap<String, BTreeMap<String, String>>,

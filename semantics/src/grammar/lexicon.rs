@@ -166,6 +166,12 @@ impl Lexicon {
         &self.entries[at]
     }
 
+    /// The words of all entries, of counts and of ordinals, in lower case.
+    pub(super) fn words(&self) -> impl Iterator<Item = &str> {
+        let numbers = self.counts.iter().chain(&self.ordinals);
+        self.words.iter().chain(numbers).map(String::as_str)
+    }
+
     /// Returns whether the word occurs in an entry, or is a number or an ordinal.
     pub(super) fn has_word(&self, word: &str) -> bool {
         word.bytes().all(|letter| letter.is_ascii_digit())

@@ -76,7 +76,13 @@ impl Grammar {
             (ArgumentKind::Entry(class, variant), Tree::Entry { class: own, id })
                 if class == own =>
             {
-                let form = self.lexicon.find(class, id)?.forms.get(*variant)?.first()?;
+                let forms = self.lexicon.find(class, id)?.forms.get(*variant)?;
+                let chosen = if self.drawn.contains(class) && forms.len() > 1 {
+                    choose(forms.len())
+                } else {
+                    0
+                };
+                let form = forms.get(chosen).or(forms.first())?;
                 Some(form.iter().cloned().map(Phrase::Word).collect())
             }
             (ArgumentKind::Count, Tree::Number { class, value })

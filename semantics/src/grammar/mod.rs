@@ -14,6 +14,7 @@ mod file;
 mod lexicon;
 mod linearize;
 mod nearest;
+mod paraphrase;
 mod parse;
 mod template;
 mod text;
@@ -28,6 +29,7 @@ pub use tree::Tree;
 
 use compile::{NonTerminal, Productions, Symbol};
 use file::GrammarFile;
+use paraphrase::Paraphrases;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -38,6 +40,9 @@ pub struct Grammar {
     start: Vec<NonTerminal>,
     /// The words that occur in rules.
     words: Arc<BTreeSet<String>>,
+    /// The lexicon classes of whose entries any form may be said.
+    drawn: Arc<BTreeSet<String>>,
+    paraphrases: Arc<Paraphrases>,
     lexicon: Lexicon,
 }
 
@@ -72,6 +77,8 @@ impl Grammar {
         });
         Ok(Self {
             words: Arc::new(words.collect()),
+            drawn: Arc::new(file.drawn.into_iter().collect()),
+            paraphrases: Arc::new(Paraphrases::new(&file.paraphrases, file.endings)),
             productions: Arc::new(productions),
             start,
             lexicon,
@@ -90,6 +97,8 @@ impl Grammar {
             productions: self.productions.clone(),
             start: self.start.clone(),
             words: self.words.clone(),
+            drawn: self.drawn.clone(),
+            paraphrases: self.paraphrases.clone(),
             lexicon,
         }
     }
@@ -103,6 +112,17 @@ impl Grammar {
     /// Returns whether the word, in lower case, occurs in the rules or the lexicon.
     pub fn has_word(&self, word: &str) -> bool {
         self.words.contains(word) || self.lexicon.has_word(word)
+    }
+
+    /// Returns normalized words with endings set apart and phrases replaced by others that mean the same.
+    pub fn paraphrase(&self, words: &[String]) -> Vec<String> {
+        self.paraphrases.apply(words, |word| self.has_word(word))
+    }
+
+    /// The words of the rules and of the lexicon, in lower case; a word in both comes twice.
+    pub fn words(&self) -> impl Iterator<Item = &str> {
+        let own = self.words.iter().map(String::as_str);
+        own.chain(self.lexicon.words())
     }
 
     /// The names of all functions, each once.

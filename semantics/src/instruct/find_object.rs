@@ -1,6 +1,7 @@
 //! "Find the red chair in the bedroom."
 
 use super::task::{FOUND_M, Instruction, InstructionGoal, InstructionKind};
+use crate::form::RequestStep;
 use crate::refer::refer;
 use crate::scene::SemanticScene;
 use dwell_scene::interrupt;
@@ -31,18 +32,19 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
         .filter_map(|object| {
             // Some milliseconds each.
             interrupt::check();
-            let expression = refer(scene, object)?;
+            let description = refer(scene, object)?;
             let goal = InstructionGoal {
                 rooms: Vec::new(),
                 objects: vec![object],
                 radius_m: FOUND_M,
                 in_sight: true,
             };
-            Some(Instruction::new(
-                InstructionKind::FindObject,
-                expression.definite(),
-                goal,
-            ))
+            let step = RequestStep::Do {
+                verb: "find".to_owned(),
+                object: description.into(),
+            };
+            let language = scene.semantics.language();
+            Instruction::new(language, InstructionKind::FindObject, step, goal)
         })
         .collect()
 }

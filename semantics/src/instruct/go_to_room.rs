@@ -1,6 +1,7 @@
 //! "Go to the kitchen."
 
 use super::task::{Instruction, InstructionGoal, InstructionKind};
+use crate::form::RequestStep;
 use crate::refer::refer_to_room;
 use crate::scene::SemanticScene;
 
@@ -8,18 +9,16 @@ pub(super) fn candidates(scene: &SemanticScene<'_>) -> Vec<Instruction> {
     let rooms = scene.house().rooms.ids();
     rooms
         .filter_map(|room| {
-            let expression = refer_to_room(scene, room)?;
+            let description = refer_to_room(scene, room)?;
             let goal = InstructionGoal {
                 rooms: vec![room],
                 objects: Vec::new(),
                 radius_m: 0.0,
                 in_sight: false,
             };
-            Some(Instruction::new(
-                InstructionKind::GoToRoom,
-                expression.definite(),
-                goal,
-            ))
+            let step = RequestStep::GoTo(description.into());
+            let language = scene.semantics.language();
+            Instruction::new(language, InstructionKind::GoToRoom, step, goal)
         })
         .collect()
 }

@@ -12,6 +12,7 @@ pub use task::{Instruction, InstructionGoal, InstructionKind, InstructionProgres
 
 use crate::error::SemanticsError;
 use crate::scene::SemanticScene;
+use crate::semantics::Semantics;
 use dwell_scene::random::RandomKey;
 
 /// Largest length of a text, in characters.
@@ -21,28 +22,26 @@ pub const CHARSET: &str = " ',-.ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuv
 
 /// Every instruction of a kind that the scene offers, with one fixed wording each, in order. Each means exactly one thing.
 pub fn candidates(scene: &SemanticScene<'_>, kind: InstructionKind) -> Vec<Instruction> {
-    let found = match kind {
+    match kind {
         InstructionKind::GoToRoom => go_to_room::candidates(scene),
         InstructionKind::FindObject => find_object::candidates(scene),
-    };
-    found
-        .into_iter()
-        .filter(|instruction| {
-            let fits = instruction.text.len() <= MAX_TEXT_LEN;
-            fits && instruction.text.chars().all(|c| CHARSET.contains(c))
-                && instruction.tokens().is_ok()
-        })
-        .collect()
+    }
 }
 
-/// One of `candidates`, with a wording of its own, both drawn from `key`; `None` when there is none.
+/// One of `candidates`, in a wording of its own; `None` when there is none. Both are drawn from `key`, the wording from the house's
+/// name, too: one key does not choose the same wording in every house.
 ///
 /// # Determinism
-/// Equal candidates and keys give equal instructions.
-pub fn choose(candidates: &[Instruction], key: RandomKey) -> Option<Instruction> {
-    let mut stream = key.child("instruction").stream();
-    let chosen = stream.choose(candidates)?;
-    Some(chosen.reworded(stream.bits()))
+/// Equal houses, candidates and keys give equal instructions.
+pub fn choose(
+    semantics: &Semantics,
+    candidates: &[Instruction],
+    key: RandomKey,
+) -> Option<Instruction> {
+    let key = key.child("instruction");
+    let chosen = key.stream().choose(candidates)?;
+    let wording = key.child("wording").child(semantics.house().name.as_str());
+    Some(chosen.reworded(semantics.language(), wording))
 }
 
 /// An instruction of a kind.
@@ -54,14 +53,16 @@ pub fn instruction(
     kind: InstructionKind,
     key: RandomKey,
 ) -> Result<Instruction, SemanticsError> {
-    choose(&candidates(scene, kind), key).ok_or_else(|| SemanticsError::NoInstruction {
-        house: scene.house().name.clone(),
-        kind: kind.name(),
-        why: match kind {
-            InstructionKind::GoToRoom => {
-                "no room can be told from all others by its kind and contents"
-            }
-            InstructionKind::FindObject => "no object can be told from all others by words",
-        },
+    choose(scene.semantics, &candidates(scene, kind), key).ok_or_else(|| {
+        SemanticsError::NoInstruction {
+            house: scene.house().name.clone(),
+            kind: kind.name(),
+            why: match kind {
+                InstructionKind::GoToRoom => {
+                    "no room can be told from all others by its kind and contents"
+                }
+                InstructionKind::FindObject => "no object can be told from all others by words",
+            },
+        }
     })
 }

@@ -1,37 +1,16 @@
-//! The words that instructions are made of.
+//! The words that texts are made of.
 
-use super::InstructionKind;
-use crate::category::categories;
-use crate::color::ColorVocabulary;
-use crate::predicates;
-use crate::room_kind::room_kinds;
-use crate::vocabulary::words;
-use dwell_scene::material::library;
+use crate::language::Language;
 use std::collections::BTreeSet;
 
-/// Every word that an instruction can have, sorted.
+/// Every word of English as the engine says and reads it, and the marks, sorted.
 ///
 /// `assets/vocabulary.txt` holds these words in an order that never changes; a test compares the two.
 pub fn needed_words() -> BTreeSet<String> {
-    let mut texts: Vec<&str> = vec!["the a an and with in . , explore"];
-    texts.extend(InstructionKind::ALL.iter().flat_map(|kind| kind.wordings()));
-    texts.extend(predicates::all().iter().map(|predicate| predicate.words()));
-    texts.extend(ColorVocabulary::Plain.words());
-    texts.extend(["tiny", "small", "large", "huge"]);
-    texts.extend(
-        library()
-            .iter()
-            .map(|substance| substance.adjective.as_str()),
-    );
-    for row in categories().rows() {
-        texts.push(row.singular);
-        texts.push(row.plural);
-    }
-    texts.extend(room_kinds().rows().iter().map(|kind| kind.singular));
-    texts
-        .iter()
-        .flat_map(|text| words(text))
-        .filter(|word| !word.contains('{'))
+    let words = Language::english().grammar().words();
+    words
+        .map(str::to_owned)
+        .chain(["explore".to_owned()])
         .collect()
 }
 

@@ -1,9 +1,14 @@
 //! An instruction with its goal.
 
+use super::{CHARSET, MAX_TEXT_LEN};
+use crate::check::{Checker, GroundedPhrase, Listener};
 use crate::error::SemanticsError;
+use crate::form::{Form, Request, RequestStep};
+use crate::language::{Language, PhraseSpan, Sentence};
 use crate::line_of_sight::is_in_line_of_sight;
 use crate::scene::{SemanticScene, Viewer};
 use crate::vocabulary;
+use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{AgentId, ObjectId, RoomId};
 use glam::Vec2;
@@ -38,26 +43,6 @@ impl InstructionKind {
             Self::FindObject => "find_object",
         }
     }
-
-    /// Wordings; `{}` stands for the target's description, with its article.
-    pub(crate) fn wordings(self) -> &'static [&'static str] {
-        match self {
-            Self::GoToRoom => &[
-                "Go to {}.",
-                "Walk to {}.",
-                "Please go to {}.",
-                "Enter {}.",
-                "Move to {}.",
-            ],
-            Self::FindObject => &[
-                "Find {}.",
-                "Look for {}.",
-                "Please find {}.",
-                "Go to {}.",
-                "Show me {}.",
-            ],
-        }
-    }
 }
 
 /// The progress of an instruction.
@@ -85,38 +70,68 @@ pub struct InstructionGoal {
     pub in_sight: bool,
 }
 
+/// The text of a form, where it keeps to the limits of instructions.
+fn say(language: &Language, form: &Form, wording: Option<RandomKey>) -> Option<Sentence> {
+    language.say(form, wording).filter(|Sentence { text, .. }| {
+        text.len() <= MAX_TEXT_LEN
+            && text.chars().all(|c| CHARSET.contains(c))
+            && vocabulary::tokenize(text).is_ok()
+    })
+}
+
 /// An instruction in words, grounded at reset: later changes of the scene do not change the things that it denotes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Instruction {
     /// The kind of instruction.
     pub kind: InstructionKind,
-    /// The words, of [`CHARSET`](super::CHARSET), at most [`MAX_TEXT_LEN`](super::MAX_TEXT_LEN) of them.
+    /// Its logical form.
+    pub form: Form,
+    /// The words, of [`CHARSET`](super::CHARSET), at most [`MAX_TEXT_LEN`](super::MAX_TEXT_LEN) letters.
     pub text: String,
-    /// The target's description, with its article: "the red chair in the kitchen".
-    pub target: String,
+    /// The places of its noun phrases, bytes of the text.
+    pub phrases: Vec<PhraseSpan>,
     /// Its goal.
     pub goal: InstructionGoal,
 }
 
 impl Instruction {
-    pub(super) fn new(kind: InstructionKind, target: String, goal: InstructionGoal) -> Self {
-        let text = kind.wordings()[0].replace("{}", &target);
-        Self {
+    /// Returns the instruction to carry out `step`; `None` where the language has no words for it, or too many.
+    pub(super) fn new(
+        language: &Language,
+        kind: InstructionKind,
+        step: RequestStep,
+        goal: InstructionGoal,
+    ) -> Option<Self> {
+        let form = Form::Request(Request::Sequence(vec![step]));
+        let Sentence { text, phrases } = say(language, &form, None)?;
+        Some(Self {
             kind,
+            form,
             text,
-            target,
+            phrases,
             goal,
+        })
+    }
+
+    /// The same instruction in a wording drawn from `key`; in its own where that would be too long.
+    pub(super) fn reworded(&self, language: &Language, key: RandomKey) -> Self {
+        match say(language, &self.form, Some(key)) {
+            Some(Sentence { text, phrases }) => Self {
+                text,
+                phrases,
+                ..self.clone()
+            },
+            None => self.clone(),
         }
     }
 
-    /// The same instruction in the wording of index `choice`.
-    pub(super) fn reworded(&self, choice: u64) -> Self {
-        let wordings = self.kind.wordings();
-        let wording = wordings[(choice % wordings.len() as u64) as usize];
-        Self {
-            text: wording.replace("{}", &self.target),
-            ..self.clone()
-        }
+    /// Its noun phrases with the things that they denote in this scene.
+    pub fn ground(&self, scene: &SemanticScene<'_>) -> Vec<GroundedPhrase> {
+        let sentence = Sentence {
+            text: self.text.clone(),
+            phrases: self.phrases.clone(),
+        };
+        Checker::new(scene, Listener::default()).ground(&sentence)
     }
 
     /// The words as numbers; shape ([`vocabulary::LENGTH`],), padded with 0.

@@ -1,15 +1,20 @@
 //! Trees to forms: the meanings of the grammar's functions.
 
 use super::lexicon::RELATION;
+use super::{existence, places, questions, rooms, several};
 use crate::form::{
     AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
     Quantifier, Question, Request, RequestStep,
 };
 use crate::grammar::Tree;
 use crate::size::SizeClass;
+use std::collections::BTreeMap;
+
+/// The function of a tree with its arguments.
+pub(super) type Parts<'a> = (&'a str, &'a [Tree]);
 
 /// The function of a tree with its arguments; `None` for words and numbers.
-fn parts(tree: &Tree) -> Option<(&str, &[Tree])> {
+pub(super) fn parts(tree: &Tree) -> Option<Parts<'_>> {
     match tree {
         Tree::Apply {
             function,
@@ -19,14 +24,14 @@ fn parts(tree: &Tree) -> Option<(&str, &[Tree])> {
     }
 }
 
-fn id(tree: &Tree) -> Option<String> {
+pub(super) fn id(tree: &Tree) -> Option<String> {
     match tree {
         Tree::Entry { id, .. } => Some(id.clone()),
         Tree::Apply { .. } | Tree::Number { .. } => None,
     }
 }
 
-fn number(tree: &Tree) -> Option<u32> {
+pub(super) fn number(tree: &Tree) -> Option<u32> {
     match tree {
         Tree::Number { value, .. } => Some(*value),
         Tree::Apply { .. } | Tree::Entry { .. } => None,
@@ -39,6 +44,9 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
         ("claim", [inner]) => Form::Claim(clause(inner)?),
         ("request", [inner]) => Form::Request(plan(inner)?),
         ("ask", [inner]) => Form::Question(question(inner)?),
+        ("ask_clause", [inner]) => Form::Question(Question::Whether(simple(inner)?)),
+        ("phrase", [inner]) => Form::NounPhrase(phrase(inner)?),
+        ("phrase_room", [inner]) => Form::NounPhrase(room(inner)?),
         _ => return None,
     })
 }
@@ -64,7 +72,7 @@ fn list(tree: &Tree) -> Option<Vec<Clause>> {
     }
 }
 
-fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
+pub(super) fn holds(predicate: &str, arguments: Vec<Phrase>) -> Clause {
     Clause::Holds {
         predicate: predicate.to_owned(),
         arguments,
@@ -90,18 +98,99 @@ fn affirmed(function: &str, arguments: &[Tree]) -> Option<Clause> {
         }
         ("holds_place" | "whether_place", [subject, place]) => {
             let (predicate, place) = place_of(place)?;
-            holds(predicate, vec![phrase(subject)?, place])
+            holds(&predicate, vec![phrase(subject)?, place])
         }
         ("is" | "whether_is", [subject, quality]) => Clause::Is {
             subject: phrase(subject)?,
             quality: quality_of(quality)?,
         },
-        ("exists" | "whether_exists", [what]) => Clause::Exists(phrase(what)?),
-        _ => return None,
+        ("vps" | "whether_vps", [subject, rest]) => several::clause(phrase(subject)?, rest)?,
+        ("exists_vps", [subject, rest]) => several::existing(phrase(subject)?, rest)?,
+        ("holds_converse" | "whether_converse", [subject, word, object]) => {
+            holds(&id(word)?, vec![phrase(object)?, phrase(subject)?])
+        }
+        ("holds_superlative", [subject, order, noun]) => {
+            let selected = questions::selected(described(noun)?, &id(order)?, None);
+            holds("identical", vec![phrase(subject)?, selected.into()])
+        }
+        ("holds_hang", [subject, mount]) => {
+            holds("hangs_on", vec![phrase(subject)?, phrase(mount)?])
+        }
+        ("holds_verb_list", [subject, word, items]) => {
+            let Clause::Exists(items) =
+                existence::from_tree("exists_list", std::slice::from_ref(items))?
+            else {
+                return None;
+            };
+            holds(&id(word)?, vec![phrase(subject)?, items])
+        }
+        ("whether_verb", [subject, word, object]) => {
+            holds(&id(word)?, vec![phrase(subject)?, phrase(object)?])
+        }
+        ("same_color" | "whether_same_color", [a, b]) => {
+            holds("same_color", vec![phrase(a)?, phrase(b)?])
+        }
+        ("same_material" | "whether_same_material", [a, b]) => {
+            holds("same_material", vec![phrase(a)?, phrase(b)?])
+        }
+        ("whether_between", [subject, a, b]) => {
+            holds("between", vec![phrase(subject)?, phrase(a)?, phrase(b)?])
+        }
+        ("whether_side", [subject, side]) => {
+            holds_of(phrase(subject)?, places::side_from_tree(side)?)
+        }
+        ("holds_mount" | "whether_mount", [subject, mount]) => holds(
+            "hangs_on",
+            vec![phrase(subject)?, places::mount_from_tree(mount)?],
+        ),
+        ("leads", [door, passage]) => holds_of(phrase(door)?, places::passage_from_tree(passage)?),
+        ("holds_side", [subject, side]) => {
+            holds_of(phrase(subject)?, places::side_from_tree(side)?)
+        }
+        ("list_holds", [items, word, object]) => {
+            holds(&id(word)?, vec![subjects(items)?, phrase(object)?])
+        }
+        ("list_holds_place", [items, place]) => {
+            let (predicate, place) = place_of(place)?;
+            holds(&predicate, vec![subjects(items)?, place])
+        }
+        ("list_is", [items, quality]) => Clause::Is {
+            subject: subjects(items)?,
+            quality: quality_of(quality)?,
+        },
+        _ => {
+            return existence::from_tree(function, arguments)
+                .or_else(|| rooms::from_tree(function, arguments));
+        }
     })
 }
 
-fn quality_of(tree: &Tree) -> Option<Quality> {
+/// The clause that a modifier ascribes to a subject.
+fn holds_of(subject: Phrase, modifier: Modifier) -> Clause {
+    let mut arguments = vec![subject];
+    arguments.extend(modifier.arguments);
+    holds(&modifier.predicate, arguments)
+}
+
+fn subjects(tree: &Tree) -> Option<Phrase> {
+    let mut items = Vec::new();
+    let mut rest = tree;
+    loop {
+        match parts(rest)? {
+            ("subjects_pair", [first, last]) => {
+                items.extend([phrase(first)?, phrase(last)?]);
+                return Some(Phrase::List(items));
+            }
+            ("subjects_more", [first, more]) => {
+                items.push(phrase(first)?);
+                rest = more;
+            }
+            _ => return None,
+        }
+    }
+}
+
+pub(super) fn quality_of(tree: &Tree) -> Option<Quality> {
     Some(match parts(tree)? {
         ("quality_color", [word]) => Quality::Color(id(word)?),
         ("quality_material", [word]) => Quality::Material(id(word)?),
@@ -118,20 +207,33 @@ fn size(tree: &Tree) -> Option<SizeClass> {
         .find(|size| size.word() == Some(&word))
 }
 
-fn place_of(tree: &Tree) -> Option<(&'static str, Phrase)> {
+pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
+    let any_room = || {
+        let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
+        Phrase::from(Description::new(Quantifier::Some, noun))
+    };
+    let of = |predicate: &str, phrase| (predicate.to_owned(), phrase);
     Some(match parts(tree)? {
-        ("place", [room]) => ("in_room", self::room(room)?),
-        ("on_storey", [place]) => ("on_storey", Phrase::Storey(number(place)?)),
+        ("place", [room]) => of("in_room", self::room(room)?),
+        ("place_spot", [spot, room]) => (id(spot)?, self::room(room)?),
+        ("place_corner", []) => of("in_corner_of", any_room()),
+        ("place_middle", []) => of("in_middle_of", any_room()),
+        ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
         _ => return None,
     })
 }
 
-fn room(tree: &Tree) -> Option<Phrase> {
+pub(super) fn room(tree: &Tree) -> Option<Phrase> {
     let (function, arguments) = parts(tree)?;
     let kind = |tree: &Tree, quantifier| match parts(tree)? {
         ("room_kind", [word]) => Some(Description::new(quantifier, Noun::Room(id(word)?))),
         _ => None,
     };
+    match (function, arguments) {
+        ("room_it", []) => return Some(Phrase::Pronoun),
+        ("room_subject", [inner]) => return room(inner),
+        _ => {}
+    }
     let description = match (function, arguments) {
         ("room_the", [own]) => kind(own, Quantifier::The)?,
         ("room_a", [own]) => kind(own, Quantifier::Some)?,
@@ -148,7 +250,7 @@ fn room(tree: &Tree) -> Option<Phrase> {
         ("room_with", [own, thing]) => Description {
             modifiers: vec![Modifier {
                 negated: false,
-                predicate: "contains".to_owned(),
+                predicate: "room_contains".to_owned(),
                 arguments: vec![phrase(thing)?],
             }],
             ..kind(own, Quantifier::The)?
@@ -158,12 +260,32 @@ fn room(tree: &Tree) -> Option<Phrase> {
     Some(description.into())
 }
 
-/// The noun phrase of a subtree; `None` for other parts.
-pub(super) fn noun_phrase(tree: &Tree) -> Option<Phrase> {
-    phrase(tree).or_else(|| room(tree))
+/// The noun phrases in a tree by their paths from it: argument numbers, counted from 0.
+pub(super) fn noun_phrases(tree: &Tree) -> BTreeMap<Vec<usize>, Phrase> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![(Vec::new(), tree)];
+    while let Some((path, tree)) = open.pop() {
+        // Clauses of existence say once what they add to each of their items.
+        found.extend(existence::item_phrases(tree, &path));
+        if !found.contains_key(&path)
+            && let Some(own) = phrase(tree).or_else(|| room(tree))
+        {
+            found.insert(path.clone(), own);
+        }
+        for (k, argument) in parts(tree)
+            .map_or(&[][..], |(_, arguments)| arguments)
+            .iter()
+            .enumerate()
+        {
+            let mut longer = path.clone();
+            longer.push(k);
+            open.push((longer, argument));
+        }
+    }
+    found
 }
 
-fn phrase(tree: &Tree) -> Option<Phrase> {
+pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     let (function, arguments) = parts(tree)?;
     let of = |quantifier, noun: &Tree| -> Option<Phrase> {
         Some(described(noun)?.with_quantifier(quantifier).into())
@@ -181,6 +303,18 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
             };
             Some(description.into())
         };
+    let first_in = |noun: &Tree, order: &str| -> Option<Phrase> {
+        let selection = PlaceInOrder {
+            order: order.to_owned(),
+            place: 1,
+            reference: None,
+        };
+        let description = Description {
+            selection: Some(selection),
+            ..described(noun)?.with_quantifier(Quantifier::The)
+        };
+        Some(description.into())
+    };
     let that = |quantifier, noun: &Tree, predicate: String, other: Phrase| -> Option<Phrase> {
         let mut description = described(noun)?.with_quantifier(quantifier);
         description.modifiers.push(Modifier {
@@ -207,11 +341,11 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("i_the_that_place", [noun, place]) => {
             let (predicate, place) = place_of(place)?;
-            that(Quantifier::The, noun, predicate.to_owned(), place)
+            that(Quantifier::The, noun, predicate, place)
         }
         ("i_some_that_place", [noun, place]) => {
             let (predicate, place) = place_of(place)?;
-            that(Quantifier::Some, noun, predicate.to_owned(), place)
+            that(Quantifier::Some, noun, predicate, place)
         }
         ("nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
         ("superlative", [order, noun]) => selected(noun, order, 1, None),
@@ -220,21 +354,71 @@ fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("by_id" | "i_by_id", [own]) => Some(Phrase::Id(number(own)?)),
         ("you" | "i_you", []) => Some(Phrase::Listener),
+        ("it" | "i_it", []) => Some(Phrase::Pronoun),
+        ("structure_np" | "i_structure", [noun]) => {
+            let noun = Noun::Structure(id(noun)?);
+            Some(Description::new(Quantifier::Some, noun).into())
+        }
+        ("np_nothing" | "np_something", [inner]) => nothing(inner).map(Phrase::from),
+        ("at_least_two" | "i_at_least_two", [noun]) => of(Quantifier::AtLeast(2), noun),
+        ("both", [noun]) => of(Quantifier::Exactly(2), noun),
+        ("i_something", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::Some, noun).into())
+        }
+        ("nth_left" | "i_nth_left", [noun]) => first_in(noun, "from_left"),
+        ("nth_right" | "i_nth_right", [noun]) => first_in(noun, "from_right"),
+        ("i_superlative", [order, noun]) => selected(noun, order, 1, None),
+        ("i_nth", [place, noun, order]) => selected(noun, order, number(place)?, None),
+        ("i_with", [noun, added]) => {
+            let noun = described(noun)?.with_quantifier(Quantifier::The);
+            Some(noun.with_modifier(modifier(added)?).into())
+        }
+        ("i_some_with", [noun, added]) => {
+            Some(described(noun)?.with_modifier(modifier(added)?).into())
+        }
         _ => None,
     }
 }
 
+fn nothing(tree: &Tree) -> Option<Description> {
+    match parts(tree)? {
+        ("nothing", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::No, noun))
+        }
+        ("something", []) => {
+            let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            Some(Description::new(Quantifier::Some, noun))
+        }
+        ("nothing_with" | "something_with", [inner, added]) => {
+            Some(nothing(inner)?.with_modifier(modifier(added)?))
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a noun names doors and archways, which lead from room to room.
+fn is_way(noun: &Noun) -> bool {
+    let ways = ["door", "arch", "archway", "doorway", "gate", "thing"];
+    matches!(noun, Noun::Object(noun) if ways.iter().any(|way| noun.ends_with(way)))
+}
+
 /// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.
-fn described(tree: &Tree) -> Option<Description> {
+pub(super) fn described(tree: &Tree) -> Option<Description> {
     let (function, arguments) = parts(tree)?;
     let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));
     Some(match (function, arguments) {
         ("plain", [inner]) => described(inner)?,
         ("with" | "but_not", [noun, added]) => {
             let mut description = described(noun)?;
+            let added = modifier(added)?;
+            if added.predicate.starts_with("leads_") && !is_way(&description.noun) {
+                return None;
+            }
             description.modifiers.push(Modifier {
                 negated: function == "but_not",
-                ..modifier(added)?
+                ..added
             });
             description
         }
@@ -246,6 +430,17 @@ fn described(tree: &Tree) -> Option<Description> {
             };
             description.noun = Noun::Object(format!("{} of {tail}", id(head)?));
             description
+        }
+        ("room_compound", [room, noun]) => {
+            let (room, noun) = (id(room)?, id(noun)?);
+            // "The balcony door" leads there, "the kitchen table" stands there.
+            let predicate = if noun.ends_with("door") {
+                "leads_to"
+            } else {
+                "in_room"
+            };
+            let room = Description::new(Quantifier::The, Noun::Room(room));
+            plain(noun).with_modifier(Modifier::new(predicate, [room.into()]))
         }
         ("color" | "color_tail", [word, inner]) => {
             let mut description = described(inner)?;
@@ -279,15 +474,25 @@ fn described(tree: &Tree) -> Option<Description> {
     })
 }
 
-fn modifier(tree: &Tree) -> Option<Modifier> {
+pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
     let (predicate, arguments) = match parts(tree)? {
+        ("modifier_state", [state]) => (id(state)?, Vec::new()),
+        ("modifier_state_not", [state]) => {
+            return Some(Modifier {
+                negated: true,
+                ..Modifier::new(&id(state)?, [])
+            });
+        }
+        ("modifier_source", [source]) => ("in_or_on".to_owned(), vec![phrase(source)?]),
+        ("modifier_carries", [load]) => ("supports".to_owned(), vec![phrase(load)?]),
+        ("modifier_holds_inside", [content]) => ("contains".to_owned(), vec![phrase(content)?]),
         ("modifier" | "modifier_verb", [word, other]) => (id(word)?, vec![phrase(other)?]),
         ("modifier_between", [a, b]) => ("between".to_owned(), vec![phrase(a)?, phrase(b)?]),
         ("modifier_place", [place]) => {
             let (predicate, place) = place_of(place)?;
-            (predicate.to_owned(), vec![place])
+            (predicate, vec![place])
         }
-        _ => return None,
+        (function, arguments) => return places::modifier_from_tree(function, arguments),
     };
     Some(Modifier {
         negated: false,
@@ -299,7 +504,11 @@ fn modifier(tree: &Tree) -> Option<Modifier> {
 fn plan(tree: &Tree) -> Option<Request> {
     match parts(tree)? {
         ("one_step", [only]) => Some(Request::Sequence(vec![step(only)?])),
-        ("then", [first, rest]) => {
+        ("unless", [condition, then]) => Some(Request::If(
+            Clause::Not(Box::new(simple(condition)?)),
+            step(then)?,
+        )),
+        ("then" | "steps", [first, rest]) => {
             let Request::Sequence(rest) = plan(rest)? else {
                 return None;
             };
@@ -313,8 +522,29 @@ fn plan(tree: &Tree) -> Option<Request> {
 }
 
 fn step(tree: &Tree) -> Option<RequestStep> {
+    let act = |verb: &str, object: &Tree| {
+        Some(RequestStep::Do {
+            verb: verb.to_owned(),
+            object: phrase(object)?,
+        })
+    };
     Some(match parts(tree)? {
         ("go_to", [to]) => RequestStep::GoTo(room(to)?),
+        ("do_from_room", [verb, object, from]) => {
+            let Phrase::Described(description) = phrase(object)? else {
+                return None;
+            };
+            let in_room = Modifier::new("in_room", [room(from)?]);
+            RequestStep::Do {
+                verb: id(verb)?,
+                object: description.with_modifier(in_room).into(),
+            }
+        }
+        ("do_on", [object]) => act("switch_on", object)?,
+        ("do_off", [object]) => act("switch_off", object)?,
+        ("do_pick_up", [object]) => act("pick_up", object)?,
+        ("do_drop", [object]) => act("drop", object)?,
+        ("do_bring_me", [object]) => act("bring_me", object)?,
         ("do", [verb, object]) => RequestStep::Do {
             verb: id(verb)?,
             object: phrase(object)?,
@@ -332,7 +562,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             let (predicate, to) = place_of(place)?;
             RequestStep::Put {
                 object: phrase(object)?,
-                predicate: predicate.to_owned(),
+                predicate,
                 to,
             }
         }
@@ -361,8 +591,20 @@ fn question(tree: &Tree) -> Option<Question> {
         };
         Some(Question::Which { kind, clause })
     };
+    if let Some(other) = questions::from_tree(function, arguments) {
+        return Some(other);
+    }
     match (function, arguments) {
         ("how_many", [what]) => Some(Question::HowMany(Box::new(described(what)?))),
+        ("how_many_rooms", [noun]) => {
+            let noun = Noun::Room(id(noun)?);
+            let what = Description::new(Quantifier::Some, noun);
+            Some(Question::HowMany(Box::new(what)))
+        }
+        ("how_many_storeys", []) => {
+            let what = Description::new(Quantifier::Some, Noun::Storey);
+            Some(Question::HowMany(Box::new(what)))
+        }
         ("how_many_of", [what, added]) => {
             let mut description = described(what)?;
             description.modifiers.push(modifier(added)?);
@@ -380,7 +622,7 @@ fn question(tree: &Tree) -> Option<Question> {
         }
         ("which_place", [kind, place]) => {
             let (predicate, place) = place_of(place)?;
-            which(Some(kind), holds(predicate, vec![Phrase::Hole, place]))
+            which(Some(kind), holds(&predicate, vec![Phrase::Hole, place]))
         }
         ("which_is", [kind, quality]) => {
             let quality = quality_of(quality)?;

@@ -13,6 +13,9 @@ pub(super) const NOUN: &str = "noun";
 pub(super) const GATHERING: &str = "gathering";
 pub(super) const GATHERED: &str = "gathered";
 pub(super) const ROOM: &str = "room";
+pub(super) const ROOM_NOUN: &str = "room_noun";
+pub(super) const ROOM_SPOT: &str = "room_spot";
+pub(super) const STRUCTURE: &str = "structure";
 pub(super) const RELATION: &str = "relation";
 pub(super) const VERB_RELATION: &str = "verb_relation";
 pub(super) const ADJECTIVE_STATE: &str = "adjective_state";
@@ -22,6 +25,8 @@ pub(super) const SUPERLATIVE: &str = "superlative";
 pub(super) const VERB: &str = "verb";
 
 type Texts = BTreeMap<String, Vec<String>>;
+/// Texts with one and with several.
+type TextPairs = BTreeMap<String, [Vec<String>; 2]>;
 
 /// `lexicon.toml`.
 #[derive(Deserialize)]
@@ -30,7 +35,13 @@ struct LexiconFile {
     counts: Vec<String>,
     ordinals: Vec<String>,
     relation: Texts,
-    verb_relation: BTreeMap<String, [Vec<String>; 2]>,
+    #[serde(default)]
+    converse: Texts,
+    #[serde(default)]
+    room_spot: Texts,
+    verb_relation: TextPairs,
+    noun: TextPairs,
+    structure: TextPairs,
     state: Texts,
     adjective_state: Texts,
     size: Texts,
@@ -40,19 +51,40 @@ struct LexiconFile {
     verb: Texts,
 }
 
-/// Adds a noun in singular and plural. Of "pair of shoes" only the noun after the "of" is added.
+/// Adds a noun in singular and plural. Of "pair of shoes" only the noun after the "of" is added; nouns of pieces of the building
+/// have a class of their own.
 pub(super) fn add_noun(lexicon: &mut Lexicon, one: &str, several: &str) {
+    if lexicon.find(STRUCTURE, one).is_some() {
+        return;
+    }
     if let Some((head, tail)) = one.split_once(" of ")
         && GATHERING_WORDS.contains(&head)
     {
         lexicon.add_texts(GATHERED, tail, &[&[tail]]);
+        // "The shoes", of which nobody counts the pairs.
+        lexicon.add_texts(NOUN, tail, &[&[], &[tail]]);
         return;
     }
     lexicon.add_texts(NOUN, one, &[&[one], &[several]]);
 }
 
-/// Adds a room's noun; `preposition` is that of being there: "in" or "on".
-pub(super) fn add_room(lexicon: &mut Lexicon, noun: &str, preposition: &str) {
+/// Adds the last word of a noun of several, where that is no noun yet: "rail" of "towel rail".
+fn add_head(lexicon: &mut Lexicon, noun: &str) {
+    let head = noun.rsplit(' ').next().unwrap_or(noun);
+    let mut rooms = room_kinds().rows().iter();
+    // "Kitchen" of "fitted kitchen" names a room.
+    if rooms.any(|kind| kind.singular == head || kind.synonyms.contains(&head)) {
+        return;
+    }
+    if noun.contains(" of ") || !noun.contains(' ') || lexicon.find(NOUN, head).is_some() {
+        return;
+    }
+    lexicon.add_texts(NOUN, head, &[&[head], &[&plural(head)]]);
+}
+
+/// Adds a room's noun in singular and plural; `preposition` is that of being there: "in" or "on".
+pub(super) fn add_room(lexicon: &mut Lexicon, noun: &str, several: &str, preposition: &str) {
+    lexicon.add_texts(ROOM_NOUN, noun, &[&[noun], &[several]]);
     if preposition == "on" {
         lexicon.add_texts(ROOM, noun, &[&[], &[noun]]);
     } else {
@@ -75,6 +107,8 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
     lexicon.set_numbers(&file.counts, &file.ordinals)?;
     let single = [
         (RELATION, &file.relation),
+        ("converse", &file.converse),
+        (ROOM_SPOT, &file.room_spot),
         ("state", &file.state),
         (ADJECTIVE_STATE, &file.adjective_state),
         ("size", &file.size),
@@ -88,8 +122,15 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
             lexicon.add_texts(class, id, &[&borrowed(texts)]);
         }
     }
-    for (id, [one, several]) in &file.verb_relation {
-        lexicon.add_texts(VERB_RELATION, id, &[&borrowed(one), &borrowed(several)]);
+    let pairs = [
+        (VERB_RELATION, &file.verb_relation),
+        (NOUN, &file.noun),
+        (STRUCTURE, &file.structure),
+    ];
+    for (class, entries) in pairs {
+        for (id, [one, several]) in entries {
+            lexicon.add_texts(class, id, &[&borrowed(one), &borrowed(several)]);
+        }
     }
     for one in GATHERING_WORDS {
         lexicon.add_texts(GATHERING, one, &[&[one], &[&plural(one)]]);
@@ -100,10 +141,16 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
             add_noun(&mut lexicon, synonym, &plural(synonym));
         }
     }
+    for row in categories().rows() {
+        add_head(&mut lexicon, row.singular);
+        for synonym in &row.synonyms {
+            add_head(&mut lexicon, synonym);
+        }
+    }
     for kind in room_kinds().rows() {
-        add_room(&mut lexicon, kind.singular, kind.preposition);
+        add_room(&mut lexicon, kind.singular, kind.plural, kind.preposition);
         for synonym in &kind.synonyms {
-            add_room(&mut lexicon, synonym, kind.preposition);
+            add_room(&mut lexicon, synonym, &plural(synonym), kind.preposition);
         }
     }
     for word in ColorVocabulary::Plain.words() {

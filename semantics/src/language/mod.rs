@@ -3,13 +3,20 @@
 //! A text that a [`Language`] makes of a form reads back as that form, the preferred one of its readings; `docs/words.md` describes
 //! the grammar.
 
+mod existence;
 mod from_tree;
 mod lexicon;
+mod places;
+mod questions;
 mod read;
+mod rooms;
 mod say;
+mod several;
 mod to_tree;
 
-pub use read::{MAX_TEXT_BYTES, MAX_WORDS, ReadError, Readings, UnknownWord};
+pub use read::{
+    MAX_TEXT_BYTES, MAX_WORDS, ReadError, Readings, SentenceError, SentenceReadings, UnknownWord,
+};
 pub use say::{PhraseSpan, Sentence};
 
 use crate::grammar::{Grammar, GrammarError};
@@ -52,20 +59,20 @@ impl Language {
         &ENGLISH
     }
 
-    /// Returns the same language with more nouns of things, each in singular and plural, and of rooms, each with its preposition,
-    /// "in" or "on".
+    /// Returns the same language with more nouns of things, each in singular and plural, and of rooms, each in singular and plural
+    /// with its preposition, "in" or "on".
     #[must_use]
     pub fn with_nouns<'a>(
         &self,
         things: impl IntoIterator<Item = (&'a str, &'a str)>,
-        rooms: impl IntoIterator<Item = (&'a str, &'a str)>,
+        rooms: impl IntoIterator<Item = (&'a str, &'a str, &'a str)>,
     ) -> Self {
         let mut lexicon = self.grammar.lexicon().clone();
         for (one, several) in things {
             lexicon::add_noun(&mut lexicon, one, several);
         }
-        for (noun, preposition) in rooms {
-            lexicon::add_room(&mut lexicon, noun, preposition);
+        for (noun, several, preposition) in rooms {
+            lexicon::add_room(&mut lexicon, noun, several, preposition);
         }
         Self {
             grammar: self.grammar.with_lexicon(lexicon),

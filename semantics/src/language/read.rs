@@ -3,11 +3,12 @@
 use super::{Language, from_tree};
 use crate::form::Form;
 use crate::grammar::words;
+use dwell_scene::interrupt;
 
 /// Largest length of a text, bytes.
 pub const MAX_TEXT_BYTES: usize = 4096;
 /// Largest number of words in a sentence.
-pub const MAX_WORDS: usize = 60;
+pub const MAX_WORDS: usize = 80;
 /// Largest number of suggestions for an unknown word.
 const MOST_NEAREST: usize = 5;
 
@@ -40,6 +41,9 @@ pub enum ReadError {
     /// Some words are not in the language.
     #[error("unknown {}", list_unknown(.0))]
     UnknownWords(Vec<UnknownWord>),
+    /// A pronoun stands for nothing that was named before.
+    #[error("\"it\" stands for nothing that the sentence before is about")]
+    NoAntecedent,
     /// All words are known, but they form no sentence of the grammar.
     #[error(
         "understood as far as {understood:?}; then {found} was found, and one of {expected:?} can follow"
@@ -73,7 +77,84 @@ pub struct Readings {
     pub forms: Vec<Form>,
 }
 
+/// A sentence of a longer text with its readings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SentenceReadings {
+    /// The first byte.
+    pub start: usize,
+    /// The byte after the last.
+    pub end: usize,
+    /// Forms with antecedents in place of pronouns, the preferred one first; at least one.
+    pub forms: Vec<Form>,
+}
+
+/// A sentence of a longer text that has no reading.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{sentence:?}: {error}")]
+pub struct SentenceError {
+    /// The first byte of the sentence.
+    pub start: usize,
+    /// The sentence.
+    pub sentence: String,
+    /// The reason.
+    pub error: ReadError,
+}
+
+/// The places of the sentences of a text: each ends with a mark before a space, or with a line.
+fn sentences(text: &str) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut start = 0;
+    let mut letters = text.char_indices().peekable();
+    while let Some((at, letter)) = letters.next() {
+        let following = letters.peek().map(|(_, next)| *next);
+        let ends = match letter {
+            '.' | '?' | '!' => following.is_none_or(char::is_whitespace),
+            '\n' => true,
+            _ => false,
+        };
+        if ends {
+            found.push((start, at + letter.len_utf8()));
+            start = at + letter.len_utf8();
+        }
+    }
+    found.push((start, text.len()));
+    let trimmed = found.into_iter().map(|(start, end)| {
+        let whole = &text[start..end];
+        let start = end - whole.trim_start().len();
+        (start, start + text[start..end].trim_end().len())
+    });
+    trimmed.filter(|(start, end)| start < end).collect()
+}
+
 impl Language {
+    /// Returns the readings of every sentence of `text`. "It" stands for the subject of the sentence before.
+    ///
+    /// # Errors
+    /// [`SentenceError`] of the first sentence that has none.
+    pub fn read_text(&self, text: &str) -> Result<Vec<SentenceReadings>, SentenceError> {
+        let mut read: Vec<SentenceReadings> = Vec::new();
+        for (start, end) in sentences(text) {
+            interrupt::check();
+            let fault = |error| SentenceError {
+                start,
+                sentence: text[start..end].to_owned(),
+                error,
+            };
+            let found = self.read(&text[start..end]).map_err(fault)?;
+            let before = read.last().and_then(|last| last.forms.first());
+            let antecedent = before.and_then(Form::subject);
+            let forms = found.forms.iter();
+            let forms: Vec<Form> = forms
+                .filter_map(|form| form.with_antecedent(antecedent))
+                .collect();
+            if forms.is_empty() {
+                return Err(fault(ReadError::NoAntecedent));
+            }
+            read.push(SentenceReadings { start, end, forms });
+        }
+        Ok(read)
+    }
+
     /// Returns the readings of `text`, one sentence. Case, articles before the only noun, known synonyms and the order of
     /// adjectives do not matter.
     ///
@@ -95,6 +176,16 @@ impl Language {
         if words.len() > MAX_WORDS {
             return Err(too_long("words", words.len(), MAX_WORDS));
         }
+        self.read_words(&words).or_else(|error| {
+            let paraphrase = self.grammar.paraphrase(&words);
+            if paraphrase == words || paraphrase.is_empty() {
+                return Err(error);
+            }
+            self.read_words(&paraphrase)
+        })
+    }
+
+    fn read_words(&self, words: &[String]) -> Result<Readings, ReadError> {
         let unknown = words.iter().filter(|word| !self.grammar.has_word(word));
         let unknown: Vec<UnknownWord> = unknown
             .map(|word| UnknownWord {
@@ -105,11 +196,17 @@ impl Language {
         if !unknown.is_empty() {
             return Err(ReadError::UnknownWords(unknown));
         }
-        let parse = self.grammar.parse(&words);
+        let parse = self.grammar.parse(words);
         let mut forms: Vec<Form> = Vec::new();
         for (_, tree) in &parse.trees {
-            let form = from_tree::form(tree);
-            forms.extend(form.filter(|form| !forms.contains(form)));
+            for form in from_tree::form(tree)
+                .iter()
+                .flat_map(Form::with_own_antecedents)
+            {
+                if !forms.contains(&form) {
+                    forms.push(form);
+                }
+            }
         }
         if forms.is_empty() {
             let found = words.get(parse.understood);
@@ -250,7 +347,7 @@ mod tests {
             told("find")
         );
         assert!(told(&"the left of ".repeat(10_000)).contains("allowed are 4096"));
-        assert!(told(&"to the left of ".repeat(20)).contains("allowed are 60"));
+        assert!(told(&"to the left of ".repeat(25)).contains("allowed are 80"));
         assert!(told(&"(".repeat(50)).contains("unknown word \"(\""));
         assert!(told("find the \u{0} cup").contains("unknown word"));
     }

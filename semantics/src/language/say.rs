@@ -4,11 +4,12 @@ use super::Language;
 use super::from_tree;
 use super::to_tree::TreeBuilder;
 use crate::form::{Form, Phrase};
-use crate::grammar::Tree;
+use crate::grammar::Span;
 use dwell_scene::random::RandomKey;
+use serde::{Deserialize, Serialize};
 
 /// The place of a noun phrase in the text of a form.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PhraseSpan {
     /// The phrase.
     pub phrase: Phrase,
@@ -25,13 +26,6 @@ pub struct Sentence {
     pub text: String,
     /// The places of noun phrases, the outer before the inner, from left to right.
     pub phrases: Vec<PhraseSpan>,
-}
-
-fn at<'a>(tree: &'a Tree, path: &[usize]) -> Option<&'a Tree> {
-    path.iter().try_fold(tree, |tree, step| match tree {
-        Tree::Apply { arguments, .. } => arguments.get(*step),
-        Tree::Entry { .. } | Tree::Number { .. } => None,
-    })
 }
 
 impl Language {
@@ -51,16 +45,28 @@ impl Language {
                 .as_mut()
                 .map_or(0, |stream| (stream.bits() % count as u64) as usize)
         };
-        let (text, spans) = self.grammar.linearize(&tree, &mut choose)?;
-        let phrases = spans.iter().filter_map(|span| {
-            Some(PhraseSpan {
-                phrase: from_tree::noun_phrase(at(&tree, &span.path)?)?,
-                start: span.start,
-                end: span.end,
-            })
-        });
-        let mut phrases: Vec<PhraseSpan> = phrases.collect();
-        phrases.sort_by_key(|span| (span.start, usize::MAX - span.end));
+        let (mut text, spans) = self.grammar.linearize(&tree, &mut choose)?;
+        if matches!(form, Form::NounPhrase(_))
+            && let Some(first) = text.get_mut(..1)
+        {
+            first.make_ascii_lowercase();
+        }
+        let known = from_tree::noun_phrases(&tree);
+        let mut phrases: Vec<PhraseSpan> = Vec::new();
+        let mut sorted: Vec<&Span> = spans.iter().collect();
+        sorted.sort_by_key(|span| (span.start, usize::MAX - span.end, span.path.len()));
+        for Span { path, start, end } in sorted {
+            // A noun phrase that another wraps without adding a word is one phrase, the outer one.
+            let same = phrases.last();
+            if same.is_some_and(|last| (last.start, last.end) == (*start, *end)) {
+                continue;
+            }
+            phrases.extend(known.get(path).map(|phrase| PhraseSpan {
+                phrase: phrase.clone(),
+                start: *start,
+                end: *end,
+            }));
+        }
         Some(Sentence { text, phrases })
     }
 }

@@ -1,9 +1,11 @@
 //! Forms to trees: the functions of the grammar that express a form.
 
+use super::existence::is_bare;
 use super::lexicon::{
-    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, SUPERLATIVE, VERB,
-    VERB_RELATION,
+    ADJECTIVE_STATE, GATHERED, GATHERING, NOUN, ORDER, ORDER_TO, RELATION, ROOM, ROOM_NOUN,
+    ROOM_SPOT, STRUCTURE, SUPERLATIVE, VERB, VERB_RELATION,
 };
+use super::places;
 use crate::form::{
     AttributeKind, Clause, Description, Form, Modifier, Noun, Phrase, PlaceInOrder, Quality,
     Quantifier, Question, Request, RequestStep,
@@ -16,12 +18,12 @@ pub(super) struct TreeBuilder<'a> {
     pub(super) lexicon: &'a Lexicon,
 }
 
-fn count(value: u32) -> Tree {
+pub(super) fn count(value: u32) -> Tree {
     let class = "count".to_owned();
     Tree::Number { class, value }
 }
 
-fn digits(value: u32) -> Tree {
+pub(super) fn digits(value: u32) -> Tree {
     let class = "digits".to_owned();
     Tree::Number { class, value }
 }
@@ -33,7 +35,7 @@ fn ordinal(value: u32) -> Tree {
 
 /// The position of a noun phrase. Landmarks have grammar functions of their own (`i_the`), with fewer modifiers.
 #[derive(Clone, Copy, PartialEq)]
-enum Position {
+pub(super) enum Position {
     /// Subject, object, or the topic of a question.
     Free,
     /// Inside another noun phrase.
@@ -45,7 +47,7 @@ impl TreeBuilder<'_> {
         self.lexicon.find(class, id).is_some()
     }
 
-    fn known(&self, class: &str, id: &str) -> Option<Tree> {
+    pub(super) fn known(&self, class: &str, id: &str) -> Option<Tree> {
         self.has(class, id).then(|| Tree::entry(class, id))
     }
 
@@ -54,6 +56,10 @@ impl TreeBuilder<'_> {
             Form::Claim(clause) => Tree::apply("claim", [self.clause(clause)?]),
             Form::Request(plan) => Tree::apply("request", [self.plan(plan)?]),
             Form::Question(question) => Tree::apply("ask", [self.question(question)?]),
+            Form::NounPhrase(phrase) => match self.room(phrase) {
+                Some(room) => Tree::apply("phrase_room", [room]),
+                None => Tree::apply("phrase", [self.phrase(phrase, Position::Free)?]),
+            },
         })
     }
 
@@ -94,6 +100,12 @@ impl TreeBuilder<'_> {
                 let (name, trees) = self.relation(predicate, arguments)?;
                 Tree::apply(&function(name), trees)
             }
+            Clause::Is {
+                subject: Phrase::List(items),
+                quality,
+            } if !negated => {
+                Tree::apply("list_is", [self.subjects(items)?, self.quality(quality)?])
+            }
             Clause::Is { subject, quality } => Tree::apply(
                 &function("is"),
                 [
@@ -101,9 +113,13 @@ impl TreeBuilder<'_> {
                     self.quality(quality)?,
                 ],
             ),
-            Clause::Exists(what) => {
-                Tree::apply(&function("exists"), [self.phrase(what, Position::Free)?])
-            }
+            Clause::Exists(what) => self.existence(what, negated)?,
+            Clause::Area {
+                room,
+                square_metres,
+            } if !negated => self.area(room, *square_metres)?,
+            Clause::HasSurfaces { room, surfaces } if !negated => self.surfaces(room, surfaces)?,
+            Clause::Area { .. } | Clause::HasSurfaces { .. } => return None,
             Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
         })
     }
@@ -112,8 +128,35 @@ impl TreeBuilder<'_> {
     fn relation(&self, predicate: &str, arguments: &[Phrase]) -> Option<(&'static str, Vec<Tree>)> {
         let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
         match (predicate, arguments) {
+            ("in_room" | "on_storey", [Phrase::List(items), place]) => Some((
+                "list_holds_place",
+                vec![self.subjects(items)?, self.place(place)?],
+            )),
             ("in_room" | "on_storey", [subject, place]) => {
                 Some(("holds_place", vec![free(subject)?, self.place(place)?]))
+            }
+            ("in_corner_of" | "in_middle_of", [subject, place]) if self.room(place).is_some() => {
+                Some((
+                    "holds_place",
+                    vec![free(subject)?, self.spot(predicate, place)?],
+                ))
+            }
+            ("open_to", [from, to]) => self.open_to(from, to),
+            ("leads_to" | "leads_from" | "leads_outside", [door, others @ ..]) => {
+                let passage = self.passage(predicate, others)?;
+                Some(("leads", vec![free(door)?, passage]))
+            }
+            ("hangs_on", [subject, mount]) if places::mount_to_tree(mount).is_some() => Some((
+                "holds_mount",
+                vec![free(subject)?, places::mount_to_tree(mount)?],
+            )),
+            (side, [subject]) => Some(("holds_side", vec![free(subject)?, places::side_of(side)?])),
+            (_, [Phrase::List(items), object]) => {
+                let word = self.known(RELATION, predicate)?;
+                Some((
+                    "list_holds",
+                    vec![self.subjects(items)?, word, free(object)?],
+                ))
             }
             ("between", [subject, a, b]) => {
                 Some(("holds_between", vec![free(subject)?, free(a)?, free(b)?]))
@@ -130,11 +173,29 @@ impl TreeBuilder<'_> {
         }
     }
 
-    fn place(&self, place: &Phrase) -> Option<Tree> {
+    fn subjects(&self, items: &[Phrase]) -> Option<Tree> {
+        let free = |phrase: &Phrase| self.phrase(phrase, Position::Free);
+        match items {
+            [first, last] => Some(Tree::apply("subjects_pair", [free(first)?, free(last)?])),
+            [first, rest @ ..] if rest.len() > 1 => Some(Tree::apply(
+                "subjects_more",
+                [free(first)?, self.subjects(rest)?],
+            )),
+            _ => None,
+        }
+    }
+
+    pub(super) fn place(&self, place: &Phrase) -> Option<Tree> {
         match place {
             Phrase::Storey(number) => Some(Tree::apply("on_storey", [ordinal(*number)])),
             place => Some(Tree::apply("place", [self.room(place)?])),
         }
+    }
+
+    /// A place within a room: "in the corner of the kitchen".
+    fn spot(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
+        let word = self.known(ROOM_SPOT, predicate)?;
+        Some(Tree::apply("place_spot", [word, self.room(place)?]))
     }
 
     fn quality(&self, quality: &Quality) -> Option<Tree> {
@@ -148,7 +209,7 @@ impl TreeBuilder<'_> {
         })
     }
 
-    fn room(&self, phrase: &Phrase) -> Option<Tree> {
+    pub(super) fn room(&self, phrase: &Phrase) -> Option<Tree> {
         let Phrase::Described(description) = phrase else {
             return None;
         };
@@ -171,7 +232,9 @@ impl TreeBuilder<'_> {
             (Some(selection), [], Quantifier::The) if selection.order == PlaceInOrder::OF_HOUSE => {
                 Some(Tree::apply("room_nth", [ordinal(selection.place), kind]))
             }
-            (None, [with], Quantifier::The) if with.predicate == "contains" && !with.negated => {
+            (None, [with], Quantifier::The)
+                if with.predicate == "room_contains" && !with.negated =>
+            {
                 let [thing] = &with.arguments[..] else {
                     return None;
                 };
@@ -194,17 +257,55 @@ impl TreeBuilder<'_> {
         }
     }
 
-    fn phrase(&self, phrase: &Phrase, position: Position) -> Option<Tree> {
+    pub(super) fn phrase(&self, phrase: &Phrase, position: Position) -> Option<Tree> {
         let landmark = position == Position::Landmark;
         Some(match phrase {
+            Phrase::Pronoun => Tree::apply(if landmark { "i_it" } else { "it" }, []),
+            Phrase::Described(description) if matches!(description.noun, Noun::Structure(_)) => {
+                let function = if landmark {
+                    "i_structure"
+                } else {
+                    "structure_np"
+                };
+                Tree::apply(function, [self.structure(description)?])
+            }
             Phrase::Id(id) => {
                 Tree::apply(if landmark { "i_by_id" } else { "by_id" }, [digits(*id)])
             }
             Phrase::Listener => Tree::apply(if landmark { "i_you" } else { "you" }, []),
             Phrase::Described(description) if landmark => self.landmark(description)?,
             Phrase::Described(description) => self.described(description)?,
-            Phrase::Storey(_) | Phrase::Hole => return None,
+            Phrase::Storey(_) | Phrase::Hole | Phrase::List(_) => return None,
         })
+    }
+
+    /// The noun of "the wall", which means any of that kind.
+    fn structure(&self, description: &Description) -> Option<Tree> {
+        let Noun::Structure(noun) = &description.noun else {
+            return None;
+        };
+        let is_any = description.quantifier == Quantifier::Some && is_bare(description);
+        is_any.then(|| self.known(STRUCTURE, noun)).flatten()
+    }
+
+    /// "Nothing", with modifiers.
+    fn nothing(&self, description: &Description) -> Option<Tree> {
+        let bare = Description {
+            modifiers: Vec::new(),
+            ..description.clone()
+        };
+        let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
+        if description.quantifier != Quantifier::No || description.noun != any || !is_bare(&bare) {
+            return None;
+        }
+        let mut tree = Tree::apply("nothing", []);
+        for modifier in &description.modifiers {
+            if modifier.negated {
+                return None;
+            }
+            tree = Tree::apply("nothing_with", [tree, self.modifier(modifier)?]);
+        }
+        Some(Tree::apply("np_nothing", [tree]))
     }
 
     fn landmark(&self, description: &Description) -> Option<Tree> {
@@ -244,6 +345,9 @@ impl TreeBuilder<'_> {
     }
 
     fn described(&self, description: &Description) -> Option<Tree> {
+        if let Some(nothing) = self.nothing(description) {
+            return Some(nothing);
+        }
         let noun = self.with_modifiers(description)?;
         if let Some(selection) = &description.selection {
             return self.selected(selection, description.quantifier, noun);
@@ -298,10 +402,16 @@ impl TreeBuilder<'_> {
 
     fn modifier(&self, modifier: &Modifier) -> Option<Tree> {
         let landmark = |phrase: &Phrase| self.phrase(phrase, Position::Landmark);
+        if let Some(place) = self.place_modifier(modifier) {
+            return Some(place);
+        }
         match (modifier.predicate.as_str(), &modifier.arguments[..]) {
             ("in_room" | "on_storey", [place]) => {
                 Some(Tree::apply("modifier_place", [self.place(place)?]))
             }
+            ("in_corner_of" | "in_middle_of", [place]) if self.room(place).is_some() => Some(
+                Tree::apply("modifier_place", [self.spot(&modifier.predicate, place)?]),
+            ),
             ("between", [a, b]) => Some(Tree::apply(
                 "modifier_between",
                 [landmark(a)?, landmark(b)?],
@@ -402,7 +512,13 @@ impl TreeBuilder<'_> {
     fn question(&self, question: &Question) -> Option<Tree> {
         Some(match question {
             Question::Whether(clause) => self.whether(clause)?,
-            Question::HowMany(what) => Tree::apply("how_many", [self.with_modifiers(what)?]),
+            Question::HowMany(what) => match &what.noun {
+                Noun::Room(noun) if is_bare(what) => {
+                    Tree::apply("how_many_rooms", [self.known(ROOM_NOUN, noun)?])
+                }
+                Noun::Storey if is_bare(what) => Tree::apply("how_many_storeys", []),
+                _ => Tree::apply("how_many", [self.with_modifiers(what)?]),
+            },
             Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
             Question::Attribute { kind, of } => {
                 let function = match kind {
@@ -426,6 +542,7 @@ impl TreeBuilder<'_> {
                 let function = match name {
                     "holds" => "whether_holds",
                     "holds_place" => "whether_place",
+                    "holds_mount" => "whether_mount",
                     _ => return None,
                 };
                 (function, arguments)
@@ -434,8 +551,8 @@ impl TreeBuilder<'_> {
                 let subject = self.phrase(subject, Position::Free)?;
                 ("whether_is", vec![subject, self.quality(quality)?])
             }
-            Clause::Exists(what) => ("whether_exists", vec![self.phrase(what, Position::Free)?]),
-            Clause::Not(_) | Clause::All(_) | Clause::Any(_) => return None,
+            Clause::Exists(what) => ("whether_exists", vec![self.item(what)?]),
+            _ => return None,
         };
         Some(Tree::apply(function, arguments))
     }

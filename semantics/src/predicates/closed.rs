@@ -1,11 +1,9 @@
 //! The predicate `closed`.
 
+use super::openness::{CLOSED, openness_is};
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
-use crate::truth::{Truth, UndecidedReason};
-
-/// The openness up to which a thing is closed.
-const CLOSED: f32 = 0.02;
+use crate::truth::Truth;
 
 /// See [`Predicate::definition`].
 pub(super) struct Closed;
@@ -29,17 +27,12 @@ impl Predicate for Closed {
 
     fn properties(&self) -> RelationProperties {
         RelationProperties {
-            excludes: &["open"],
+            excludes: &["open", "half_open"],
             ..RelationProperties::default()
         }
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        let openness = args[0]
-            .object()
-            .and_then(|id| scene.state.openness(scene.house(), id));
-        openness.map_or(Truth::Undecided(UndecidedReason::DoesNotOpen), |share| {
-            Truth::from(share <= CLOSED)
-        })
+        openness_is(scene, args[0], |share| share <= CLOSED)
     }
 }

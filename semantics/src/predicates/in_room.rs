@@ -36,6 +36,7 @@ impl Predicate for InRoom {
             antisymmetric: true,
             irreflexive: true,
             functional: true,
+            converse: Some("room_contains"),
             ..RelationProperties::default()
         }
     }

@@ -13,33 +13,47 @@ mod between;
 mod closed;
 mod container;
 mod contains;
+mod doors;
 mod empty;
 mod facing;
 mod far;
 mod front;
 mod full;
+mod half_open;
 mod hangs_on;
+mod held;
 mod held_by;
 mod holds;
+mod identical;
 mod in_corner_of;
 mod in_front_of;
 mod in_middle_of;
+mod in_or_on;
 mod in_room;
 mod inside;
 mod larger_than;
+mod leads_from;
+mod leads_outside;
+mod leads_to;
 mod left_of;
 mod mount;
 mod near;
 mod next_to;
 mod on;
+mod on_left;
+mod on_right;
 mod on_storey;
 mod open;
+mod open_to;
+mod openness;
 mod reachable;
 mod right_of;
+mod room_contains;
 mod same_color;
 mod same_kind;
 mod same_material;
 mod shape;
+mod straight_ahead;
 mod support;
 mod supports;
 mod switched_off;
@@ -198,11 +212,17 @@ const THING: &[TermKind] = &[TermKind::Object, TermKind::Structure, TermKind::Ag
 pub fn all() -> &'static [&'static dyn Predicate] {
     &[
         &in_room::InRoom,
+        &room_contains::RoomContains,
         &on_storey::OnStorey,
+        &open_to::OpenTo,
+        &leads_to::LeadsTo,
+        &leads_from::LeadsFrom,
+        &leads_outside::LeadsOutside,
         &inside::Inside,
         &contains::Contains,
         &on::On,
         &supports::Supports,
+        &in_or_on::InOrOn,
         &hangs_on::HangsOn,
         &attached_to::AttachedTo,
         &touching::Touching,
@@ -220,6 +240,9 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &right_of::RightOf,
         &in_front_of::InFrontOf,
         &behind::Behind,
+        &on_left::OnLeft,
+        &straight_ahead::StraightAhead,
+        &on_right::OnRight,
         &at_front_of::AtFrontOf,
         &at_back_of::AtBackOf,
         &facing::Facing,
@@ -228,6 +251,8 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &reachable::Reachable,
         &holds::Holds,
         &held_by::HeldBy,
+        &held::Held,
+        &identical::Identical,
         &same_kind::SameKind,
         &same_color::SameColor,
         &same_material::SameMaterial,
@@ -235,6 +260,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &taller_than::TallerThan,
         &wider_than::WiderThan,
         &open::Open,
+        &half_open::HalfOpen,
         &closed::Closed,
         &switched_on::SwitchedOn,
         &switched_off::SwitchedOff,

@@ -1,11 +1,9 @@
 //! The predicate `open`.
 
+use super::openness::{OPEN, openness_is};
 use super::{OBJECT, Predicate, RelationProperties};
 use crate::scene::{SemanticScene, Term, TermKind, Viewer};
-use crate::truth::{Truth, UndecidedReason};
-
-/// The openness beyond which a thing is open.
-const OPEN: f32 = 0.5;
+use crate::truth::Truth;
 
 /// See [`Predicate::definition`].
 pub(super) struct Open;
@@ -30,17 +28,12 @@ impl Predicate for Open {
 
     fn properties(&self) -> RelationProperties {
         RelationProperties {
-            excludes: &["closed"],
+            excludes: &["closed", "half_open"],
             ..RelationProperties::default()
         }
     }
 
     fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
-        let openness = args[0]
-            .object()
-            .and_then(|id| scene.state.openness(scene.house(), id));
-        openness.map_or(Truth::Undecided(UndecidedReason::DoesNotOpen), |share| {
-            Truth::from(share > OPEN)
-        })
+        openness_is(scene, args[0], |share| share > OPEN)
     }
 }

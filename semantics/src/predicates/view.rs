@@ -1,14 +1,24 @@
 //! Where things fall in a viewer's picture.
 
-use super::shape::bounds_of;
+use super::shape::shape_of;
 use crate::scene::{SemanticScene, Term, Viewer};
 use dwell_scene::Pose;
+use dwell_scene::space::azimuth_elevation;
 use glam::Vec3;
 
 /// The least depth of what is in front of a viewer, m.
 const LEAST_DEPTH_M: f32 = 0.05;
 /// The largest tangent that is still in front: 75 degrees to the side.
 const WIDEST_TANGENT: f32 = 3.73;
+
+/// Half the width of "straight ahead", rad: 12 degrees.
+pub(super) const AHEAD_RAD: f32 = 0.21;
+
+/// The direction of a thing's middle, rad to the left of where the viewer looks, seen from above.
+pub(super) fn azimuth_rad(scene: &SemanticScene<'_>, viewer: &Viewer, term: Term) -> Option<f32> {
+    let middle = viewer.upright_from_world(scene.center(term)?);
+    Some(azimuth_elevation(middle).0)
+}
 
 /// Returns where a thing's middle falls in the viewer's picture: x over depth, growing to the right; `None` when it is not in
 /// front of the viewer.
@@ -72,18 +82,18 @@ impl Sights {
         }
     }
 
-    /// The left and the right edge of a thing's box in the picture, tangents.
+    /// The left and the right edge of a thing's outline in the picture, tangents: columns depend on the outline from above alone.
     fn edges(&self, scene: &SemanticScene<'_>, k: usize) -> Option<(f32, f32)> {
-        let bounds = bounds_of(scene, self.terms[k])?;
-        let tangents = bounds.corners().into_iter().map(|corner| {
-            let point = self.upright_from_world.transform_point(corner);
+        let shape = shape_of(scene, self.terms[k])?;
+        let tangents = shape.outline.points().iter().map(|point| {
+            let point = Vec3::new(point.x, 0.0, point.y);
+            let point = self.upright_from_world.transform_point(point);
             let x = point.x / (-point.z).max(LEAST_DEPTH_M);
             x.clamp(-WIDEST_TANGENT, WIDEST_TANGENT)
         });
-        Some(
-            tangents.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            }),
-        )
+        let edges = tangents.fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| {
+            (low.min(x), high.max(x))
+        });
+        (edges.0 <= edges.1).then_some(edges)
     }
 }

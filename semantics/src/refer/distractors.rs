@@ -1,6 +1,6 @@
 //! Distinguishing attributes of things of one noun, counted once for all of them.
 
-use super::expression::{ReferringExpression, Relation};
+use crate::form::{Description, Modifier, Noun, Phrase};
 use crate::predicates;
 use crate::scene::{
     Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs, SemanticScene,
@@ -30,6 +30,17 @@ fn push(lists: &mut BTreeMap<Attribute, Vec<ObjectId>>, key: Attribute, id: Obje
     let list = lists.entry(key).or_default();
     if list.last() != Some(&id) {
         list.push(id);
+    }
+}
+
+/// The room that a modifier places things in, by its noun.
+fn room_noun(modifier: &Modifier) -> Option<&str> {
+    match (modifier.predicate.as_str(), &modifier.arguments[..]) {
+        ("in_room", [Phrase::Described(room)]) => match &room.noun {
+            Noun::Room(noun) => Some(noun),
+            _ => None,
+        },
+        _ => None,
     }
 }
 
@@ -100,16 +111,18 @@ impl DistractorSet {
         })
     }
 
-    /// The things that a description with their noun fits, regardless of its relation; ascending.
+    /// The things that a description with their noun fits, regardless of its relation to a landmark; ascending.
     pub(super) fn matching(
         &self,
         scene: &SemanticScene<'_>,
-        expression: &ReferringExpression,
+        description: &Description,
     ) -> ObjectList {
-        let colors = expression.colors.iter().cloned().map(Attribute::Color);
-        let material = expression.material.iter().cloned().map(Attribute::Material);
-        let size = expression.size.map(Attribute::Size);
-        let room = expression.room.iter().cloned().map(Attribute::Room);
+        let colors = description.colors.iter().cloned().map(Attribute::Color);
+        let material = description.material.iter().cloned();
+        let material = material.map(Attribute::Material);
+        let size = description.size.map(Attribute::Size);
+        let room = description.modifiers.iter().filter_map(room_noun);
+        let room = room.map(|noun| Attribute::Room(noun.to_owned()));
         let traits: Vec<Attribute> = colors.chain(material).chain(size).chain(room).collect();
         if traits.is_empty() {
             return self.things.clone();
@@ -150,28 +163,33 @@ impl DistractorSet {
         })
     }
 
-    /// The things that have an informative relation to something that its landmark fits; ascending.
+    /// The things that have an informative relation to something that the landmark of `modifier` fits; ascending.
     pub(super) fn with_landmark(
         &self,
         scene: &SemanticScene<'_>,
-        relation: &Relation,
+        modifier: &Modifier,
     ) -> ObjectList {
-        let landmark = &relation.landmark;
+        let [Phrase::Described(landmark)] = &modifier.arguments[..] else {
+            return ObjectList::default();
+        };
+        let Noun::Object(noun) = &landmark.noun else {
+            return ObjectList::default();
+        };
         let mark = LandmarkQuery {
-            predicate: relation.predicate.clone(),
-            noun: landmark.noun.clone(),
+            predicate: modifier.predicate.clone(),
+            noun: noun.clone(),
             colors: landmark.colors.clone(),
         };
         if let Some(known) = self.marked.borrow().get(&mark) {
             return known.clone();
         }
         let pairs = self.pairs(scene);
-        let name = TELLING.iter().find(|name| **name == relation.predicate);
+        let name = TELLING.iter().find(|name| **name == modifier.predicate);
         let mut found: Vec<ObjectId> = Vec::new();
-        for kind in scene.semantics.kinds_called(&landmark.noun) {
+        for kind in scene.semantics.kinds_called(noun) {
             let pairs = name.and_then(|name| pairs.get(&(*name, kind)));
             for (id, other) in pairs.into_iter().flatten() {
-                if found.last() != Some(id) && landmark.fits_object(scene, *other) {
+                if found.last() != Some(id) && scene.facts(*other).fits(landmark) {
                     found.push(*id);
                 }
             }

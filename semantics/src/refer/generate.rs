@@ -1,7 +1,8 @@
-//! The shortest description that means exactly one thing.
+//! The shortest description that fits exactly one thing.
 
 use super::distractors::{TELLING, common};
-use super::expression::{ReferringExpression, Relation};
+use super::room::noun_quantifier;
+use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
 use crate::scene::{ObjectList, SemanticScene};
 use dwell_scene::ObjectId;
@@ -9,9 +10,9 @@ use dwell_scene::interrupt;
 use std::collections::BTreeSet;
 
 /// The descriptions of `target` by its own properties, shortest first.
-fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<ReferringExpression> {
+fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Description> {
     let facts = scene.facts(target);
-    let noun = ReferringExpression::noun(&facts.noun);
+    let noun = Description::new(Quantifier::The, Noun::Object(facts.noun.clone()));
     // A thing without a prevailing colour is not identified by one.
     let spoken: &[_] = if facts.spoken_colors().is_empty() {
         &[]
@@ -26,39 +27,39 @@ fn by_properties(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<ReferringEx
     let material = facts.material_word().map(str::to_owned);
     let size = facts.size.word().map(|_| facts.size);
     let mut found = vec![noun.clone()];
-    found.extend(color.iter().map(|colors| ReferringExpression {
+    found.extend(color.iter().map(|colors| Description {
         colors: colors.clone(),
         ..noun.clone()
     }));
-    found.extend(material.iter().map(|word| ReferringExpression {
+    found.extend(material.iter().map(|word| Description {
         material: Some(word.clone()),
         ..noun.clone()
     }));
-    found.extend(size.map(|size| ReferringExpression {
+    found.extend(size.map(|size| Description {
         size: Some(size),
         ..noun.clone()
     }));
     if let (Some(colors), Some(word)) = (&color, &material) {
-        found.push(ReferringExpression {
+        found.push(Description {
             colors: colors.clone(),
             material: Some(word.clone()),
             ..noun.clone()
         });
     }
     if let (Some(colors), Some(size)) = (&color, size) {
-        found.push(ReferringExpression {
+        found.push(Description {
             colors: colors.clone(),
             size: Some(size),
             ..noun.clone()
         });
     }
-    found.extend(two.map(|colors| ReferringExpression { colors, ..noun }));
+    found.extend(two.map(|colors| Description { colors, ..noun }));
     found
 }
 
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
-fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
-    let mut found: Vec<Relation> = Vec::new();
+fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
+    let mut found: Vec<Modifier> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     for name in TELLING {
         let Ok(predicate) = predicates::find(name) else {
@@ -78,19 +79,32 @@ fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
                 if !known.insert((name, facts.noun.as_str(), color)) {
                     continue;
                 }
-                let landmark = ReferringExpression {
+                let noun = Noun::Object(facts.noun.clone());
+                let landmark = Description {
                     colors: color.map(str::to_owned).into_iter().collect(),
-                    ..ReferringExpression::noun(&facts.noun)
+                    ..Description::new(Quantifier::Some, noun)
                 };
-                found.push(Relation {
-                    predicate: name.to_owned(),
-                    landmark: Box::new(landmark),
-                    definite: false,
-                });
+                found.push(Modifier::new(name, [landmark.into()]));
             }
         }
     }
     found
+}
+
+/// The same relation with "the" before a landmark that is the only one of its description in the house.
+fn with_article(scene: &SemanticScene<'_>, relation: Modifier) -> Modifier {
+    let [crate::form::Phrase::Described(landmark)] = &relation.arguments[..] else {
+        return relation;
+    };
+    let Noun::Object(noun) = &landmark.noun else {
+        return relation;
+    };
+    let is_only = scene.distractors(noun).matching(scene, landmark).len() == 1;
+    if !is_only {
+        return relation;
+    }
+    let definite = landmark.as_ref().clone().with_quantifier(Quantifier::The);
+    Modifier::new(&relation.predicate, [definite.into()])
 }
 
 /// The shortest description of `target` that fits nothing else in the house, or `None` when properties, room and one
@@ -99,29 +113,35 @@ fn by_relations(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Relation> {
 /// # Source
 /// After the incremental algorithm of R. Dale and E. Reiter, Cognitive Science 19, 233 (1995); here every candidate is
 /// checked against all objects, so that a result is unique by construction.
-pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<ReferringExpression> {
+pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description> {
     // All candidates share the noun, so only things that it may name can fit them.
     let facts = scene.facts(target);
     let alike = scene.distractors(&facts.noun);
-    let unique = |expression: &ReferringExpression| *alike.matching(scene, expression) == [target];
-    let room = scene
-        .room_of(target)
-        .map(|room| scene.semantics.room(room).noun.clone());
+    let unique = |description: &Description| *alike.matching(scene, description) == [target];
+    let room = scene.room_of(target).map(|room| {
+        let noun = scene.semantics.room(room).noun.clone();
+        let quantifier = noun_quantifier(scene, &noun);
+        Modifier::new(
+            "in_room",
+            [Description::new(quantifier, Noun::Room(noun)).into()],
+        )
+    });
     let own = by_properties(scene, target);
-    let in_room: Vec<ReferringExpression> = own
-        .iter()
-        .map(|expression| ReferringExpression {
-            room: room.clone(),
-            ..expression.clone()
-        })
-        .collect();
+    let in_room: Vec<Description> = match &room {
+        None => own.clone(),
+        Some(room) => {
+            let own = own.iter().cloned();
+            own.map(|description| description.with_modifier(room.clone()))
+                .collect()
+        }
+    };
     // The noun, then the noun with the room, then adjectives without and with the room.
     let plain = own[..1]
         .iter()
         .chain(&in_room[..1])
         .chain(&own)
         .chain(&in_room);
-    if let Some(found) = plain.into_iter().find(|expression| unique(expression)) {
+    if let Some(found) = plain.into_iter().find(|description| unique(description)) {
         return Some(found.clone());
     }
     let relations = by_relations(scene, target);
@@ -130,16 +150,15 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<ReferringExp
         alike.with_landmark(scene, relation)
     });
     let marked: Vec<ObjectList> = marked.collect();
-    for expression in own.iter().chain(&in_room).take(8) {
-        let fitting = alike.matching(scene, expression);
+    for description in own.iter().chain(&in_room).take(8) {
+        let fitting = alike.matching(scene, description);
         for (relation, marked) in relations.iter().zip(&marked) {
             if common(&[&fitting, marked], 2) == [target] {
-                let mut relation = relation.clone();
-                relation.definite = relation.landmark.matches(scene).len() == 1;
-                return Some(ReferringExpression {
-                    relation: Some(relation),
-                    ..expression.clone()
-                });
+                let mut description = description.clone();
+                let relation = with_article(scene, relation.clone());
+                // "The lamp on the table in the kitchen": the relation before the room.
+                description.modifiers.insert(0, relation);
+                return Some(description);
             }
         }
     }

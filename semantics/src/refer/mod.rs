@@ -1,10 +1,8 @@
-//! Referring expressions: words that mean exactly one thing.
+//! Referring expressions: descriptions that fit exactly one thing.
 
 mod distractors;
-mod expression;
 mod generate;
 mod room;
 
-pub use expression::{ReferringExpression, Relation};
 pub use generate::refer;
-pub use room::{RoomExpression, refer_to_room};
+pub use room::{refer_to_room, room_phrase};

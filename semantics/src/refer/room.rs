@@ -1,60 +1,53 @@
-//! Descriptions of rooms that mean exactly one.
+//! Descriptions of rooms that fit exactly one.
 
-use crate::english::with_article;
+use crate::form::{Description, Modifier, Noun, Phrase, PlaceInOrder, Quantifier};
 use crate::scene::SemanticScene;
 use dwell_scene::RoomId;
 use dwell_scene::interrupt;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A description of a room: its noun, and a kind of thing that it alone holds when there are several such rooms.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct RoomExpression {
-    /// Spoken noun.
-    pub noun: String,
-    /// Spoken noun of a thing in it.
-    pub with: Option<String>,
+fn called(scene: &SemanticScene<'_>, noun: &str) -> Vec<RoomId> {
+    let rooms = scene.house().rooms.ids();
+    rooms
+        .filter(|room| scene.semantics.room(*room).is_called(noun))
+        .collect()
 }
 
-impl RoomExpression {
-    /// Every room that fits, in order.
-    pub fn matches(&self, scene: &SemanticScene<'_>) -> Vec<RoomId> {
-        let with = self.with.as_ref().map(|noun| scene.distractors(noun));
-        let holds = |room: &RoomId| {
-            let with = with.as_ref();
-            with.is_none_or(|things| things.in_rooms().contains_key(room))
-        };
-        scene
-            .house()
-            .rooms
-            .ids()
-            .filter(|room| scene.semantics.room(*room).is_called(&self.noun))
-            .filter(holds)
-            .collect()
-    }
-
-    /// "the bedroom with a desk".
-    pub fn definite(&self) -> String {
-        let with = self
-            .with
-            .as_ref()
-            .map_or_else(String::new, |noun| format!(" with {}", with_article(noun)));
-        format!("the {}{with}", self.noun)
+/// "The" for the noun of one room of the house, "a" for that of several.
+pub(crate) fn noun_quantifier(scene: &SemanticScene<'_>, noun: &str) -> Quantifier {
+    if called(scene, noun).len() == 1 {
+        Quantifier::The
+    } else {
+        Quantifier::Some
     }
 }
 
-/// The shortest description of `room` that fits no other; `None` when there is none, and for rooms without a kind.
+/// The phrase that fits `room` and no other by noun and place in the house's own list: "the kitchen", "the second bedroom".
+pub fn room_phrase(scene: &SemanticScene<'_>, room: RoomId) -> Phrase {
+    let noun = &scene.semantics.room(room).noun;
+    let alike = called(scene, noun);
+    let mut description = Description::new(Quantifier::The, Noun::Room(noun.clone()));
+    if alike.len() > 1 {
+        let before = alike.iter().filter(|other| **other < room).count();
+        description.selection = Some(PlaceInOrder {
+            order: PlaceInOrder::OF_HOUSE.to_owned(),
+            place: before as u32 + 1,
+            reference: None,
+        });
+    }
+    description.into()
+}
+
+/// The shortest description of `room` that fits no other: its noun, and a kind of thing that it alone holds where there are
+/// several such rooms. `None` when there is none, and for rooms without a kind.
 ///
 /// Of the things that only this room holds, the largest kind is named: it is seen first.
-pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<RoomExpression> {
+pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<Description> {
     let facts = scene.semantics.room(room);
-    let unnamed = facts.kind.is_none_or(|kind| kind.name == "room");
-    let unique = |expression: &RoomExpression| expression.matches(scene) == [room];
-    let plain = RoomExpression {
-        noun: facts.noun.clone(),
-        with: None,
-    };
-    if !unnamed && unique(&plain) {
+    let unnamed = facts.kind.is_none_or(|kind| kind.name == Noun::ANY_ROOM);
+    let alike = called(scene, &facts.noun);
+    let plain = Description::new(Quantifier::The, Noun::Room(facts.noun.clone()));
+    if !unnamed && alike == [room] {
         return Some(plain);
     }
     let mut things: BTreeMap<&str, f32> = BTreeMap::new();
@@ -72,11 +65,14 @@ pub fn refer_to_room(scene: &SemanticScene<'_>, room: RoomId) -> Option<RoomExpr
     }
     let mut things: Vec<(&str, f32)> = things.into_iter().collect();
     things.sort_by(|p, q| q.1.total_cmp(&p.1).then(p.0.cmp(q.0)));
-    things
-        .into_iter()
-        .map(|(noun, _)| RoomExpression {
-            noun: facts.noun.clone(),
-            with: Some(noun.to_owned()),
-        })
-        .find(unique)
+    let alone = |noun: &&str| {
+        let things = scene.distractors(noun);
+        let mut holding = alike
+            .iter()
+            .filter(|other| things.in_rooms().contains_key(other));
+        holding.next() == Some(&room) && holding.next().is_none()
+    };
+    let noun = things.into_iter().map(|(noun, _)| noun).find(alone)?;
+    let thing = Description::new(Quantifier::Some, Noun::Object(noun.to_owned()));
+    Some(plain.with_modifier(Modifier::new("room_contains", [thing.into()])))
 }

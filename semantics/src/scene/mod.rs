@@ -37,7 +37,6 @@ pub struct SemanticScene<'a> {
     known: IdVec<ObjectId, ObjectCache>,
     boxes: OnceCell<BoxTree>,
     in_rooms: OnceCell<IdVec<RoomId, Vec<ObjectId>>>,
-    windows: OnceCell<IdVec<RoomId, usize>>,
     /// The loads of each carrier and the contents of each container; filled by predicates.
     pub(crate) loads: OnceCell<BTreeMap<Term, Vec<ObjectId>>>,
     pub(crate) contents: OnceCell<BTreeMap<ObjectId, Vec<ObjectId>>>,
@@ -56,7 +55,6 @@ impl<'a> SemanticScene<'a> {
             known: (0..count).map(|_| ObjectCache::default()).collect(),
             boxes: OnceCell::new(),
             in_rooms: OnceCell::new(),
-            windows: OnceCell::new(),
             loads: OnceCell::new(),
             contents: OnceCell::new(),
             rays: OnceCell::new(),
@@ -220,20 +218,6 @@ impl<'a> SemanticScene<'a> {
         let area = Rc::new(self.semantics.reachable_area(self.state, agent)?);
         self.reach.borrow_mut().insert(agent, area.clone());
         Some(area)
-    }
-
-    /// Returns the number of windows of a room.
-    pub(crate) fn windows_in(&self, room: RoomId) -> usize {
-        let rooms = self.windows.get_or_init(|| {
-            let mut rooms = IdVec::filled(0, self.house().rooms.len());
-            for window in self.semantics.kinds().windows() {
-                if let Some(room) = self.room_of(*window) {
-                    rooms[room] += 1;
-                }
-            }
-            rooms
-        });
-        rooms[room]
     }
 
     /// The things that each noun can name, of the nouns that were looked up so far.

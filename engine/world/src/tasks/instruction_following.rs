@@ -268,7 +268,9 @@ impl Task for InstructionFollowing {
                 "no instruction has a goal that can be walked to from the asked distance",
             ));
         };
-        let instruction = instruct::choose(std::slice::from_ref(&offer.instruction), key)
+        let engines = world.engines().clone();
+        let offered = std::slice::from_ref(&offer.instruction);
+        let instruction = instruct::choose(engines.semantics(), offered, key)
             .ok_or_else(|| unplayable("no wording fits"))?;
         let yaw_rad = key
             .child("yaw")

@@ -1,0 +1,170 @@
+//! Texts about houses for Python, with the things that they are about.
+
+use crate::answers::Answer;
+use crate::errors::PyFault;
+use dwell_scene::House;
+use dwell_scene::random::RandomKey;
+use dwell_semantics::check::{GroundedPhrase, Listener};
+use dwell_semantics::describe::{
+    GroundedText, captions, describe_house, describe_rooms, describe_view,
+};
+use dwell_semantics::graph::scene_graph;
+use dwell_semantics::instruct::{
+    Instruction, InstructionGoal, InstructionKind, candidates, choose,
+};
+use dwell_semantics::{SemanticScene, Term};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+/// The levels of texts, in the order of the documentation.
+const LEVELS: &str = "object, room, house, view, graph, instructions";
+
+/// The things of a text by their ids.
+#[derive(Serialize)]
+struct ThingIds {
+    /// The sensors' ids of objects, agents and pieces of the building, ascending.
+    ids: Vec<i32>,
+    /// Rooms, counted from 0, ascending.
+    rooms: Vec<u32>,
+}
+
+impl ThingIds {
+    fn of(house: &House, terms: &[Term]) -> Self {
+        let (mut ids, mut rooms) = (Vec::new(), Vec::new());
+        for term in terms {
+            match term {
+                Term::Object(id) => ids.push(house.entity_of_object(*id).0),
+                Term::Structure(id) => ids.push(house.entity_of_structure(*id).0),
+                Term::Agent(id) => ids.push(house.entity_of_agent(*id).0),
+                Term::Room(id) => rooms.push(id.0),
+                Term::Storey(_) | Term::Part(_) => {}
+            }
+        }
+        ids.sort_unstable();
+        rooms.sort_unstable();
+        Self { ids, rooms }
+    }
+}
+
+/// The number of letters before a byte of a text: Python counts letters.
+pub(crate) fn letters(text: &str, byte: usize) -> usize {
+    if text.is_ascii() {
+        byte
+    } else {
+        text[..byte].chars().count()
+    }
+}
+
+fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
+    let spans = phrases.iter().map(|phrase| {
+        let ThingIds { ids, rooms } = ThingIds::of(house, &phrase.terms);
+        json!({
+            "start": letters(text, phrase.start),
+            "end": letters(text, phrase.end),
+            "ids": ids,
+            "rooms": rooms,
+        })
+    });
+    spans.collect()
+}
+
+fn text_row(house: &House, text: &GroundedText) -> Result<Value, PyFault> {
+    let mut claims = Vec::with_capacity(text.claims.len());
+    let mut all: Vec<Term> = Vec::new();
+    for claim in &text.claims {
+        let ThingIds { ids, rooms } = ThingIds::of(house, &claim.terms);
+        all.extend_from_slice(&claim.terms);
+        claims.push(json!({
+            "start": letters(&text.text, claim.start),
+            "end": letters(&text.text, claim.end),
+            "form": serde_json::to_value(&claim.form)?,
+            "ids": ids,
+            "rooms": rooms,
+        }));
+    }
+    all.sort_unstable();
+    all.dedup();
+    let ThingIds { ids, rooms } = ThingIds::of(house, &all);
+    Ok(json!({
+        "text": text.text,
+        "spans": spans(house, &text.text, &text.phrases),
+        "claims": claims,
+        "ids": ids,
+        "rooms": rooms,
+    }))
+}
+
+/// Returns an instruction with its goal and its noun phrases, by the ids of sensors and of the scene graph.
+fn instruction_row(scene: &SemanticScene<'_>, instruction: &Instruction) -> Result<Value, PyFault> {
+    let house = scene.house();
+    let phrases = instruction.ground(scene);
+    Ok(json!({
+        "kind": instruction.kind.name(),
+        "text": instruction.text,
+        "form": serde_json::to_value(&instruction.form)?,
+        "spans": spans(house, &instruction.text, &phrases),
+        "goal": goal(house, &instruction.goal),
+    }))
+}
+
+/// Returns the goal of an instruction: ids of objects, rooms counted from 0.
+fn goal(house: &House, goal: &InstructionGoal) -> Value {
+    let ids = goal.objects.iter().map(|id| house.entity_of_object(*id).0);
+    json!({
+        "rooms": goal.rooms,
+        "objects": ids.collect::<Vec<_>>(),
+        "radius_m": goal.radius_m,
+        "in_sight": goal.in_sight,
+    })
+}
+
+/// Texts about a house as it stands in a state: a mapping each.
+///
+/// # Errors
+/// [`PyFault::Config`] for an unknown level.
+pub(crate) fn describe_level(
+    scene: &SemanticScene<'_>,
+    listener: Listener,
+    level: &str,
+    seed: Option<u64>,
+) -> Result<Answer, PyFault> {
+    let house = scene.house();
+    // One seed does not choose the same wordings in every house.
+    let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
+    let texts = match level {
+        "house" => vec![describe_house(scene, wording)],
+        "room" => describe_rooms(scene, wording),
+        "object" => captions(scene, wording),
+        "view" if listener.viewer.is_none() => {
+            return Err(PyFault::Config(
+                "level is \"view\": World.describe has it, with viewer or agent".to_owned(),
+            ));
+        }
+        "view" => vec![describe_view(scene, listener, wording)],
+        "graph" => {
+            let text = serde_json::to_string(&scene_graph(scene, None))?;
+            return Answer::of(&[json!({ "text": text })]);
+        }
+        "instructions" => {
+            let mut rows = Vec::new();
+            for kind in InstructionKind::ALL {
+                for (k, instruction) in candidates(scene, kind).into_iter().enumerate() {
+                    let worded = seed.and_then(|seed| {
+                        let key = RandomKey::root(seed).child(k as u64);
+                        choose(scene.semantics, std::slice::from_ref(&instruction), key)
+                    });
+                    rows.push(instruction_row(scene, &worded.unwrap_or(instruction))?);
+                }
+            }
+            return Answer::of(&rows);
+        }
+        other => {
+            return Err(PyFault::Config(format!(
+                "level is {other:?}; allowed are {LEVELS}"
+            )));
+        }
+    };
+    let rows: Result<Vec<Value>, PyFault> =
+        texts.iter().map(|text| text_row(house, text)).collect();
+    Answer::of(&rows?)
+}

@@ -1,0 +1,44 @@
+//! Clauses about rooms: area and surfaces.
+
+use super::Checker;
+use super::witness::Judged;
+use crate::form::{RoomSurface, RoomSurfaceKind};
+use crate::scene::Term;
+use crate::truth::{Truth, UndecidedReason};
+
+/// A room's area in the whole numbers that people say, m².
+pub(crate) fn spoken_area_m2(area_m2: f32) -> u32 {
+    area_m2.round().max(1.0) as u32
+}
+
+impl Checker<'_> {
+    pub(super) fn has_area(&self, term: Term, square_metres: u32) -> Judged {
+        let Term::Room(room) = term else {
+            return Judged::undecided(UndecidedReason::WrongKind);
+        };
+        let area_m2 = self.scene.semantics.room(room).area_m2;
+        let truth = Truth::from(spoken_area_m2(area_m2) == square_metres);
+        Judged::fact("area", &[term], truth)
+    }
+
+    pub(super) fn has_surfaces(&self, term: Term, surfaces: &[RoomSurface]) -> Judged {
+        let Term::Room(room) = term else {
+            return Judged::undecided(UndecidedReason::WrongKind);
+        };
+        let facts = self.scene.semantics.room(room);
+        Judged::all(surfaces.iter().map(|surface| {
+            let (name, color, material) = match surface.kind {
+                RoomSurfaceKind::Floor => ("floor", facts.floor_color, facts.floor_word),
+                RoomSurfaceKind::Walls => ("walls", facts.wall_color, None),
+            };
+            let is = |own: Option<&str>, stated: &Option<String>| match (own, stated) {
+                (_, None) => Truth::True,
+                (Some(own), Some(stated)) => Truth::from(own == stated),
+                // No colour or substance covers half of it.
+                (None, Some(_)) => Truth::False,
+            };
+            let truth = is(color, &surface.color).and(is(material, &surface.material));
+            Judged::fact(name, &[term], truth)
+        }))
+    }
+}

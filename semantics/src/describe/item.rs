@@ -1,0 +1,120 @@
+//! Things of one kind as an item of a list: "four brown wooden chairs".
+
+use crate::form::{Description, Noun, Quantifier};
+use crate::predicates;
+use crate::scene::{SemanticScene, Term};
+use dwell_scene::ObjectId;
+use std::collections::BTreeMap;
+
+/// Things of one noun.
+pub(super) struct NounGroup {
+    /// The things, in order.
+    pub(super) objects: Vec<ObjectId>,
+}
+
+/// The states of joints that a description names, with a test whether it is worth a word.
+const JOINT_STATES: [&str; 3] = ["open", "half_open", "closed"];
+
+/// The state of a thing that a description names: how far it is open, of doors also that it is closed.
+fn joint_state(scene: &SemanticScene<'_>, object: ObjectId) -> Option<&'static str> {
+    let state = JOINT_STATES
+        .into_iter()
+        .find(|name| holds(scene, name, object))?;
+    // A cupboard is closed as a rule; a door's state is always of interest.
+    (state != "closed" || scene.facts(object).is_opening()).then_some(state)
+}
+
+fn holds(scene: &SemanticScene<'_>, name: &str, object: ObjectId) -> bool {
+    predicates::find(name).is_ok_and(|predicate| {
+        predicate
+            .holds(scene, &[Term::Object(object)], None)
+            .is_true()
+    })
+}
+
+/// A description of a thing by its noun, size, openness, colours and main substance.
+pub(super) fn appearance(scene: &SemanticScene<'_>, object: ObjectId) -> Description {
+    let facts = scene.facts(object);
+    let colors = facts.spoken_colors().iter();
+    Description {
+        size: facts.size.word().map(|_| facts.size),
+        state: joint_state(scene, object).map(str::to_owned),
+        colors: colors.map(|(word, _)| (*word).to_owned()).collect(),
+        material: facts.material_word().map(str::to_owned),
+        ..Description::new(Quantifier::Some, Noun::Object(facts.noun.clone()))
+    }
+}
+
+/// Returns whether a thing fits what [`appearance`] may say of another.
+fn fits(scene: &SemanticScene<'_>, object: ObjectId, description: &Description) -> bool {
+    let in_state = |name: &String| holds(scene, name, object);
+    scene.facts(object).fits(description) && description.state.as_ref().is_none_or(in_state)
+}
+
+impl NounGroup {
+    /// The group as an item of the list of what is in a place: with the adjectives that all of it share, and with the number of
+    /// things in that place that fit. `candidates` are all things in the place.
+    pub(super) fn item(&self, scene: &SemanticScene<'_>, candidates: &[ObjectId]) -> Description {
+        let mut shared = appearance(scene, self.objects[0]);
+        for object in &self.objects[1..] {
+            let other = appearance(scene, *object);
+            shared.size = shared.size.filter(|size| other.size == Some(*size));
+            shared.state = shared
+                .state
+                .filter(|state| other.state.as_ref() == Some(state));
+            shared.material = shared
+                .material
+                .filter(|material| other.material.as_ref() == Some(material));
+            if shared.colors != other.colors {
+                shared.colors.clear();
+            }
+        }
+        let fitting = candidates
+            .iter()
+            .filter(|object| fits(scene, **object, &shared));
+        let fitting: Vec<ObjectId> = fitting.copied().collect();
+        let noun = &scene.facts(self.objects[0]).noun;
+        let alike = |object: &ObjectId| scene.facts(*object).noun == *noun;
+        let number = self.objects.len() as u32;
+        // "Two tables" would be false beside a coffee table, which is a table, too.
+        let quantifier = match (number, fitting.iter().all(alike)) {
+            (1, _) => Quantifier::Some,
+            (_, true) => Quantifier::Exactly(fitting.len() as u32),
+            (number, false) => Quantifier::AtLeast(number),
+        };
+        shared.with_quantifier(quantifier)
+    }
+}
+
+/// `objects` by spoken noun, the largest things first (they are seen first), then by noun.
+pub(super) fn grouped(scene: &SemanticScene<'_>, objects: &[ObjectId]) -> Vec<NounGroup> {
+    let mut groups: Vec<(f32, &str, NounGroup)> = Vec::new();
+    let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+    for object in objects {
+        let noun = scene.facts(*object).noun.as_str();
+        let volume = scene.extent(*object).bounds.volume();
+        let next = groups.len();
+        let k = *known.entry(noun).or_insert(next);
+        if k == next {
+            let objects = Vec::new();
+            groups.push((volume, noun, NounGroup { objects }));
+        }
+        let (largest, _, group) = &mut groups[k];
+        *largest = largest.max(volume);
+        group.objects.push(*object);
+    }
+    groups.sort_by(|p, q| q.0.total_cmp(&p.0).then(p.1.cmp(q.1)));
+    groups.into_iter().map(|(_, _, group)| group).collect()
+}
+
+/// The items of the list of `objects`, which are among the `candidates` of one place.
+pub(super) fn items(
+    scene: &SemanticScene<'_>,
+    objects: &[ObjectId],
+    candidates: &[ObjectId],
+) -> Vec<Description> {
+    grouped(scene, objects)
+        .iter()
+        .map(|group| group.item(scene, candidates))
+        .collect()
+}

@@ -1,0 +1,359 @@
+//! Clauses of existence: "there is a chair", "on the table there are a cup and two plates", "on your left you see a lamp".
+
+use super::from_tree::{Parts, number, parts, phrase, place_of, room};
+use super::lexicon::{RELATION, ROOM_NOUN};
+use super::places;
+use super::to_tree::{Position, TreeBuilder, count};
+use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quantifier};
+use crate::grammar::Tree;
+
+/// The predicate of what is seen.
+const SEEN: &str = "visible";
+
+/// Returns whether a modifier takes no other thing.
+fn is_seen(modifier: &Modifier) -> bool {
+    modifier.predicate == SEEN && !modifier.negated && modifier.arguments.is_empty()
+}
+
+fn items_of(what: &Phrase) -> &[Phrase] {
+    match what {
+        Phrase::List(items) => items,
+        one => std::slice::from_ref(one),
+    }
+}
+
+fn description(phrase: &Phrase) -> Option<&Description> {
+    match phrase {
+        Phrase::Described(description) => Some(description),
+        _ => None,
+    }
+}
+
+/// The last modifiers of every item, at most `most` of them, that all items share; in order.
+fn shared_modifiers(items: &[Phrase], most: usize) -> Vec<Modifier> {
+    let Some(first) = items.first().and_then(description) else {
+        return Vec::new();
+    };
+    let last = |description: &Description, k: usize| -> Option<Modifier> {
+        let at = description.modifiers.len().checked_sub(k + 1)?;
+        description.modifiers.get(at).cloned()
+    };
+    let mut shared = Vec::new();
+    for k in 0..most {
+        let Some(modifier) = last(first, k) else {
+            break;
+        };
+        let has = |item: &Phrase| {
+            description(item).and_then(|own| last(own, k)).as_ref() == Some(&modifier)
+        };
+        if modifier.negated || !items.iter().all(has) {
+            break;
+        }
+        shared.insert(0, modifier);
+    }
+    shared
+}
+
+fn without_last(items: &[Phrase], number: usize) -> Option<Vec<Phrase>> {
+    let shorter = items.iter().map(|item| {
+        let mut own = description(item)?.clone();
+        own.modifiers
+            .truncate(own.modifiers.len().checked_sub(number)?);
+        Some(own.into())
+    });
+    shorter.collect()
+}
+
+/// Returns whether a landmark cannot stand inside another noun phrase without "that is".
+fn is_modified(phrase: &Phrase) -> bool {
+    match phrase {
+        Phrase::Described(description) => {
+            matches!(description.noun, Noun::Object(_))
+                && (!description.modifiers.is_empty() || description.selection.is_some())
+        }
+        Phrase::Pronoun => true,
+        _ => false,
+    }
+}
+
+impl TreeBuilder<'_> {
+    /// The tree of "there is `what`".
+    pub(super) fn existence(&self, what: &Phrase, negated: bool) -> Option<Tree> {
+        let items = items_of(what);
+        if negated {
+            let [only] = items else {
+                return None;
+            };
+            return Some(Tree::apply("exists_not", [self.item(only)?]));
+        }
+        let shared = shared_modifiers(items, 1);
+        if shared.iter().any(is_seen) {
+            return self.seen(&without_last(items, 1)?);
+        }
+        if let Some((front, number)) = self.front(items) {
+            let rest = self.items(&without_last(items, number)?)?;
+            return Some(Tree::apply(list_name("exists_front", items), [front, rest]));
+        }
+        let all = self.items(items)?;
+        Some(Tree::apply(list_name("exists", items), [all]))
+    }
+
+    fn seen(&self, items: &[Phrase]) -> Option<Tree> {
+        let shared = shared_modifiers(items, 1);
+        let side = shared.first().and_then(places::side_to_tree);
+        if let Some(side) = side {
+            let rest = self.items(&without_last(items, 1)?)?;
+            return Some(Tree::apply(list_name("see_front", items), [side, rest]));
+        }
+        Some(Tree::apply(list_name("see", items), [self.items(items)?]))
+    }
+
+    /// The place that stands before the verb, and the number of modifiers that it says.
+    fn front(&self, items: &[Phrase]) -> Option<(Tree, usize)> {
+        let shared = shared_modifiers(items, 2);
+        let [.., last] = &shared[..] else {
+            return None;
+        };
+        // Rooms have no modifiers behind them: "on the first floor there are two bedrooms".
+        let is_room =
+            |item: &Phrase| description(item).is_some_and(|own| matches!(own.noun, Noun::Room(_)));
+        let is_plain = last.predicate != "leads_from" && !last.arguments.iter().any(is_modified);
+        if items.len() == 1 && is_plain && !is_room(&items[0]) {
+            return None;
+        }
+        if let [mount, place] = &shared[..]
+            && mount.predicate == "hangs_on"
+            && place.predicate == "in_room"
+            && let Some(mount) = places::mount_to_tree(mount.arguments.first()?)
+        {
+            let room = self.room(place.arguments.first()?)?;
+            return Some((Tree::apply("front_mount", [mount, room]), 2));
+        }
+        let tree = match (last.predicate.as_str(), &last.arguments[..]) {
+            ("in_room" | "on_storey", [place]) => Tree::apply("front_place", [self.place(place)?]),
+            ("leads_from", [room]) => Tree::apply("front_from", [self.room(room)?]),
+            ("between", [a, b]) => {
+                let free = |phrase| self.phrase(phrase, Position::Free);
+                Tree::apply("front_between", [free(a)?, free(b)?])
+            }
+            (predicate, [landmark]) => {
+                let relation = self.known(RELATION, predicate)?;
+                let landmark = self.phrase(landmark, Position::Free)?;
+                Tree::apply("front_relation", [relation, landmark])
+            }
+            _ => return None,
+        };
+        Some((tree, 1))
+    }
+
+    fn items(&self, items: &[Phrase]) -> Option<Tree> {
+        match items {
+            [] => None,
+            [only] => self.item(only),
+            [first, last] => Some(Tree::apply(
+                "list_pair",
+                [self.item(first)?, self.item(last)?],
+            )),
+            [first, rest @ ..] => Some(Tree::apply(
+                "list_more",
+                [self.item(first)?, self.items(rest)?],
+            )),
+        }
+    }
+
+    pub(super) fn item(&self, item: &Phrase) -> Option<Tree> {
+        let Some(own) = description(item) else {
+            return Some(Tree::apply("item", [self.phrase(item, Position::Free)?]));
+        };
+        match (&own.noun, own.quantifier) {
+            (Noun::Storey, Quantifier::Exactly(1)) if is_bare(own) => {
+                Some(Tree::apply("item_storey", []))
+            }
+            (Noun::Storey, Quantifier::Exactly(number)) if is_bare(own) => {
+                Some(Tree::apply("item_storeys", [count(number)]))
+            }
+            (Noun::Room(noun), Quantifier::Exactly(number) | Quantifier::AtLeast(number))
+                if is_bare(own) =>
+            {
+                let function = match own.quantifier {
+                    Quantifier::AtLeast(_) => "item_rooms_at_least",
+                    _ => "item_rooms",
+                };
+                let noun = self.known(ROOM_NOUN, noun)?;
+                Some(Tree::apply(function, [count(number), noun]))
+            }
+            (Noun::Room(_), _) => Some(Tree::apply("item_room", [self.room(item)?])),
+            _ => Some(Tree::apply("item", [self.phrase(item, Position::Free)?])),
+        }
+    }
+}
+
+/// Returns whether a description has a quantifier and a noun only.
+pub(super) fn is_bare(description: &Description) -> bool {
+    let plain = Description::new(description.quantifier, description.noun.clone());
+    *description == plain
+}
+
+fn list_name(function: &str, items: &[Phrase]) -> &'static str {
+    match (function, items.len()) {
+        ("exists", 1) => "exists",
+        ("exists", _) => "exists_list",
+        ("exists_front", 1) => "exists_front",
+        ("exists_front", _) => "exists_front_list",
+        ("see", 1) => "see",
+        ("see", _) => "see_list",
+        (_, 1) => "see_front",
+        _ => "see_front_list",
+    }
+}
+
+/// The modifiers that a clause adds to each of its items, and the tree of the items.
+struct Added<'a> {
+    modifiers: Vec<Modifier>,
+    items: &'a Tree,
+}
+
+fn added<'a>(function: &str, arguments: &'a [Tree]) -> Option<Added<'a>> {
+    let seen = || Modifier::new(SEEN, []);
+    Some(match (function, arguments) {
+        ("exists" | "exists_list" | "whether_exists", [items]) => Added {
+            modifiers: Vec::new(),
+            items,
+        },
+        ("exists_front" | "exists_front_list", [front, items]) => Added {
+            modifiers: front_from_tree(front)?,
+            items,
+        },
+        ("room_has" | "room_has_list" | "whether_room_has", [place, items]) => Added {
+            modifiers: vec![Modifier::new("in_room", [room(place)?])],
+            items,
+        },
+        ("whether_seen", [items]) => Added {
+            modifiers: vec![seen()],
+            items,
+        },
+        ("see" | "see_list", [items]) => Added {
+            modifiers: vec![seen()],
+            items,
+        },
+        ("see_front" | "see_front_list", [side, items]) => Added {
+            modifiers: vec![places::side_from_tree(side)?, seen()],
+            items,
+        },
+        _ => return None,
+    })
+}
+
+fn front_from_tree(tree: &Tree) -> Option<Vec<Modifier>> {
+    Some(match parts(tree)? {
+        ("front_place", [place]) => {
+            let (predicate, place) = place_of(place)?;
+            vec![Modifier::new(&predicate, [place])]
+        }
+        ("front_relation", [Tree::Entry { id, .. }, landmark]) => {
+            vec![Modifier::new(id, [phrase(landmark)?])]
+        }
+        ("front_between", [a, b]) => vec![Modifier::new("between", [phrase(a)?, phrase(b)?])],
+        ("front_mount", [mount, place]) => vec![
+            Modifier::new("hangs_on", [places::mount_from_tree(mount)?]),
+            Modifier::new("in_room", [room(place)?]),
+        ],
+        ("front_from", [place]) => vec![Modifier::new("leads_from", [room(place)?])],
+        _ => return None,
+    })
+}
+
+/// The clause of a tree of existence; `None` for other trees.
+pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
+    let Added { modifiers, items } = added(function, arguments)?;
+    let mut found = Vec::new();
+    collect(items, &modifiers, &mut found)?;
+    if found.len() == 1 {
+        return Some(Clause::Exists(found.remove(0)));
+    }
+    Some(Clause::Exists(Phrase::List(found)))
+}
+
+fn collect(items: &Tree, modifiers: &[Modifier], into: &mut Vec<Phrase>) -> Option<()> {
+    match parts(items)? {
+        ("list_pair" | "list_more", [first, rest]) => {
+            collect(first, modifiers, into)?;
+            collect(rest, modifiers, into)
+        }
+        _ => {
+            into.push(with_modifiers(item_from_tree(items)?, modifiers)?);
+            Some(())
+        }
+    }
+}
+
+fn with_modifiers(item: Phrase, modifiers: &[Modifier]) -> Option<Phrase> {
+    if modifiers.is_empty() {
+        return Some(item);
+    }
+    match item {
+        Phrase::Described(mut description) => {
+            description.modifiers.extend_from_slice(modifiers);
+            Some(Phrase::Described(description))
+        }
+        _ => None,
+    }
+}
+
+/// The phrase of an item; `None` for other trees.
+pub(super) fn item_from_tree(tree: &Tree) -> Option<Phrase> {
+    let bare = |quantifier, noun| Some(Description::new(quantifier, noun).into());
+    match parts(tree)? {
+        ("item", [inner]) => phrase(inner),
+        ("item_room", [inner]) => room(inner),
+        ("item_rooms", [number_of, Tree::Entry { id, .. }]) => bare(
+            Quantifier::Exactly(number(number_of)?),
+            Noun::Room(id.clone()),
+        ),
+        ("item_rooms_at_least", [number_of, Tree::Entry { id, .. }]) => bare(
+            Quantifier::AtLeast(number(number_of)?),
+            Noun::Room(id.clone()),
+        ),
+        ("item_storey", []) => bare(Quantifier::Exactly(1), Noun::Storey),
+        ("item_storeys", [number_of]) => {
+            bare(Quantifier::Exactly(number(number_of)?), Noun::Storey)
+        }
+        _ => None,
+    }
+}
+
+/// The phrases of the items of a clause of existence, with the modifiers that the clause adds, by their paths from the clause.
+pub(super) fn item_phrases(clause: &Tree, path: &[usize]) -> Vec<(Vec<usize>, Phrase)> {
+    let Some((function, arguments)): Option<Parts<'_>> = parts(clause) else {
+        return Vec::new();
+    };
+    let Some(Added { modifiers, items }) = added(function, arguments) else {
+        return Vec::new();
+    };
+    let mut path = path.to_vec();
+    path.push(arguments.len() - 1);
+    let mut found = Vec::new();
+    let mut open = vec![(path, items)];
+    while let Some((path, tree)) = open.pop() {
+        let step = |k: usize| {
+            let mut longer = path.clone();
+            longer.push(k);
+            longer
+        };
+        match parts(tree) {
+            Some(("list_pair" | "list_more", [first, rest])) => {
+                open.push((step(0), first));
+                open.push((step(1), rest));
+            }
+            _ => {
+                let phrase = item_from_tree(tree).and_then(|item| with_modifiers(item, &modifiers));
+                // The item and the noun phrase in it have the same text.
+                if matches!(parts(tree), Some(("item" | "item_room", _))) {
+                    found.extend(phrase.clone().map(|phrase| (step(0), phrase)));
+                }
+                found.extend(phrase.map(|phrase| (path, phrase)));
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,31 @@
+//! The predicate `leads_outside`.
+
+use super::doors::doorway_of;
+use super::{OBJECT, Predicate};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
+
+/// See [`Predicate::definition`].
+pub(super) struct LeadsOutside;
+
+impl Predicate for LeadsOutside {
+    fn name(&self) -> &'static str {
+        "leads_outside"
+    }
+
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[OBJECT]
+    }
+
+    fn definition(&self) -> &'static str {
+        "A door or archway has the open air, outside of every room, on one of its sides."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here; the sides of a door are looked up 0.35 m beyond its frame."
+    }
+
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], _: Option<&Viewer>) -> Truth {
+        doorway_of(scene, args[0], |doorway| doorway.outside)
+    }
+}

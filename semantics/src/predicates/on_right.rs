@@ -1,0 +1,44 @@
+//! The predicate `on_right`.
+
+use super::view::{AHEAD_RAD, azimuth_rad};
+use super::{Predicate, RelationProperties, THING};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
+
+/// See [`Predicate::definition`].
+pub(super) struct OnRight;
+
+impl Predicate for OnRight {
+    fn name(&self) -> &'static str {
+        "on_right"
+    }
+
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING]
+    }
+
+    fn definition(&self) -> &'static str {
+        "Its middle lies more than 12 degrees to the right of \
+         where the viewer looks, seen from above."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here."
+    }
+
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
+            excludes: &["on_left", "straight_ahead"],
+            ..RelationProperties::default()
+        }
+    }
+
+    fn needs_viewer(&self) -> bool {
+        true
+    }
+
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        let azimuth = viewer.and_then(|viewer| azimuth_rad(scene, viewer, args[0]));
+        Truth::from(azimuth.is_some_and(|azimuth| azimuth < -AHEAD_RAD))
+    }
+}

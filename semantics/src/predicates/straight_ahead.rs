@@ -1,0 +1,44 @@
+//! The predicate `straight_ahead`.
+
+use super::view::{AHEAD_RAD, azimuth_rad};
+use super::{Predicate, RelationProperties, THING};
+use crate::scene::{SemanticScene, Term, TermKind, Viewer};
+use crate::truth::Truth;
+
+/// See [`Predicate::definition`].
+pub(super) struct StraightAhead;
+
+impl Predicate for StraightAhead {
+    fn name(&self) -> &'static str {
+        "straight_ahead"
+    }
+
+    fn places(&self) -> &'static [&'static [TermKind]] {
+        &[THING]
+    }
+
+    fn definition(&self) -> &'static str {
+        "Its middle lies at most 12 degrees to either side of \
+         where the viewer looks, seen from above."
+    }
+
+    fn source(&self) -> &'static str {
+        "Chosen here."
+    }
+
+    fn properties(&self) -> RelationProperties {
+        RelationProperties {
+            excludes: &["on_left", "on_right"],
+            ..RelationProperties::default()
+        }
+    }
+
+    fn needs_viewer(&self) -> bool {
+        true
+    }
+
+    fn decide(&self, scene: &SemanticScene<'_>, args: &[Term], viewer: Option<&Viewer>) -> Truth {
+        let azimuth = viewer.and_then(|viewer| azimuth_rad(scene, viewer, args[0]));
+        Truth::from(azimuth.is_some_and(|azimuth| azimuth.abs() <= AHEAD_RAD))
+    }
+}
