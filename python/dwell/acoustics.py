@@ -205,7 +205,7 @@ class AcousticScene:
         Returns:
             For each ``points`` (the source, where it is reflected, the microphone; m) and ``path``:
             ``length_m``, ``energy`` of each octave band from 62.5 Hz against a free path of 1 m,
-            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through, ``bends``
+            ``arrival`` and ``departure`` (directions), ``walls`` that it passes through, ``diffraction_points``
             (where it goes around edges).
 
         Raises:

@@ -63,7 +63,7 @@ fn heard_rms(world: &mut World, steps: usize) -> f64 {
 fn sound_meets_the_areas_of_what_the_rooms_are_covered_with() {
     let house = Arc::new(built(rooms(json!([]))));
     let scene = AcousticScene::new(house, AcousticConfig::rl()).unwrap();
-    let told = scene.explain();
+    let told = scene.material_report();
     let area = |substance: &str| -> f64 {
         let rows = told
             .materials

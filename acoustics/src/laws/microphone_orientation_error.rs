@@ -32,7 +32,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
 
 fn turn(values: LawValues<'_>, effects: &mut PathEffects) {
     let names = ["yaw_deg", "pitch_deg", "roll_deg"];
-    for (sum, name) in effects.receiver_turn_deg.iter_mut().zip(names) {
+    for (sum, name) in effects.receiver_rotation_deg.iter_mut().zip(names) {
         *sum += values.get(name) as f32;
     }
 }

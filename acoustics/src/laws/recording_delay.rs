@@ -88,11 +88,11 @@ fn sinc(fraction: f64, half: usize) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{RATE_HZ, law, recorded};
+    use super::super::testing::{RATE_HZ, law, microphone_output};
     use realfft::num_complex::Complex;
 
     fn delayed(delay_s: f64) -> Vec<f32> {
-        recorded(
+        microphone_output(
             &[law("recording_delay", &[("delay_s", delay_s)])],
             0,
             &[1.0],

@@ -66,7 +66,7 @@ impl Hall {
     }
 
     pub(crate) fn echogram(&self, source: Vec3, receiver: Vec3, key: RandomKey) -> Echogram {
-        let source = SoundSourcePose::at(source);
+        let source = SoundSourcePose::omni(source);
         let threads = Threads::exactly(2);
         self.scene
             .echogram(&self.rays, &source, receiver, key, threads)

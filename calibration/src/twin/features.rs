@@ -198,7 +198,7 @@ mod tests {
         let speed = 343.2;
         let path = |delay_s: f64, energy: f32| PropagationPath {
             planes: vec![],
-            bends: Vec::new(),
+            diffraction_points: Vec::new(),
             length_m: delay_s * speed,
             energy: [energy; BAND_COUNT],
             arrival: Vec3::X,

@@ -197,7 +197,7 @@ impl RoomTwin {
             let echogram = scene
                 .echogram(
                     &self.rays,
-                    &SoundSourcePose::at(*source),
+                    &SoundSourcePose::omni(*source),
                     *receiver,
                     key,
                     Threads::ONE,

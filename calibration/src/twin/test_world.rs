@@ -150,7 +150,7 @@ impl TestWorld {
 
     /// Adopts changes of the state.
     pub(crate) fn adopt(&mut self) -> Result<(), CalibrationError> {
-        let adopted = self.world.adopt(&mut self.state);
+        let adopted = self.world.adopt_state(&mut self.state);
         adopted.map_err(|error| CalibrationError::simulation("a start", error))
     }
 

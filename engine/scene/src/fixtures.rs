@@ -119,7 +119,7 @@ fn is_zero(value: &f32) -> bool {
 pub struct SoundFile {
     /// The file's name, unique in the house: `"kettle.wav"`.
     pub name: String,
-    /// Its bytes; at most [`SoundFile::MOST_BYTES`].
+    /// Its bytes; at most [`SoundFile::MAX_BYTES`].
     pub bytes: Vec<u8>,
 }
 

@@ -315,7 +315,7 @@ impl Batch {
             // The first time: loops of sound take longest, and need nothing of the world.
             let threads = batch.threads;
             let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let make = || signals::make(&names, rate_hz, threads);
+            let make = || signals::presynthesize(&names, rate_hz, threads);
             threads.both(make, || batch.change(&active, reset)).1?;
             Ok(())
         })
@@ -327,7 +327,7 @@ impl Batch {
         let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
         for (names, rate) in beginning.map(|(env, _)| env.signals()) {
             let unmade = names.into_iter();
-            all.extend(unmade.filter(|name| signals::is_to_be_made(name, rate)));
+            all.extend(unmade.filter(|name| signals::needs_synthesis(name, rate)));
             rate_hz = rate_hz.max(rate);
         }
         (all.into_iter().collect(), rate_hz)

@@ -47,7 +47,7 @@ impl World {
             physics,
             (self.sound.to_bytes(), self.key, self.past.clone()),
         );
-        let most = physics.largest_snapshot() - told.len() - MAGIC.len() - size_of::<u64>();
+        let most = physics.target_snapshot_bytes() - told.len() - MAGIC.len() - size_of::<u64>();
         told.extend_from_slice(&pack_within(&body, &base.bytes, most));
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&xxh3_64(&told).to_le_bytes());

@@ -101,15 +101,15 @@ impl ActionContext<'_> {
         let (code, sentence) = match aim.entity {
             Entity::Object(object) => return Ok((object, aim)),
             Entity::Agent(agent) if agent == actor.id => (
-                OutcomeCode::Oneself,
+                OutcomeCode::TargetIsSelf,
                 "That is you. Choose a thing.".to_owned(),
             ),
             Entity::Agent(agent) => (
-                OutcomeCode::NotAThing,
+                OutcomeCode::NotAnObject,
                 format!("That is agent {}, not a thing. Choose a thing.", agent.0),
             ),
             Entity::Structure(id) => (
-                OutcomeCode::NotAThing,
+                OutcomeCode::NotAnObject,
                 format!(
                     "The {} is part of the building. Choose a thing.",
                     self.surface_name(SurfaceOwner::Structure(id))

@@ -57,13 +57,13 @@ pub(crate) fn drive(
         }
         _ => return None,
     };
-    let odometry = PlanarPose::from_array(agent.base.odometry).advanced(&believed, seconds);
+    let odometry = PlanarPose::from_array(agent.base.odometry).integrated(&believed, seconds);
     agent.base.odometry = odometry.to_array();
     let here = PlanarPose {
         heading_rad: f64::from(agent.yaw_rad),
         ..PlanarPose::default()
     };
-    let there = here.advanced(&true_twist, seconds);
+    let there = here.integrated(&true_twist, seconds);
     if !agent.grounded {
         let level = Vec3::new(agent.velocity.x, 0.0, agent.velocity.z);
         agent.base.kept_back = [0.0; 3];
@@ -110,7 +110,7 @@ fn roll(
         wheels: WheelGeometry::from(truth),
         rate_rad_s: [0.0; 2],
         acceleration_rad_s2: [0.0; 2],
-        slip: [0.0; 2],
+        slip_ratio: [0.0; 2],
     };
     let most = f64::from(truth.max_wheel_acceleration_rad_s2);
     for (side, told) in told.into_iter().enumerate() {
@@ -135,7 +135,7 @@ impl BaseMotion {
     }
 
     /// Keeps the rounding remainder of a displacement that nothing stopped.
-    pub(crate) fn settle(&self, agent: &mut AgentState, before: Vec3) {
+    pub(crate) fn store_rounding_remainder(&self, agent: &mut AgentState, before: Vec3) {
         if self.displacement == Vec3::ZERO {
             return;
         }

@@ -82,11 +82,11 @@ pub(crate) fn install(
         let effects = (law.acts)(law.values, model, state)?;
         installed.add(law.values.spec.clone(), effects);
     }
-    let remembered = before.memory();
+    let remembered = before.law_states();
     let predecessors = LawSpec::predecessors(before.specs(), installed.specs());
     for (law, old) in predecessors.into_iter().enumerate() {
         if let Some(old) = old {
-            installed.restore_memory(law, &remembered[old]);
+            installed.restore_law_state(law, &remembered[old]);
         }
     }
     Ok(installed)

@@ -14,7 +14,7 @@ fn doorway(half: Vec3, grasp: Grasp) -> (Run, AgentId, ObjectId) {
     let thing = build.movable("thing", Piece::cuboid(half, Vec3::new(2.5, half.y, 4.6)));
     let mut run = build.run();
     run.state.joint_position[joint] = 1.55;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     let agent = run.agent(Vec3::new(2.5, 0.0, 5.2), 0.0);
     run.steps(2);
     let told = run.act(
@@ -139,7 +139,7 @@ fn taking_a_thing_beside_a_wall_leaves_it_on_this_side() {
     run.steps(2);
     let told = run.act(agent, actions::Pick::new(thing));
     assert!(
-        told.success || told.code == OutcomeCode::Behind,
+        told.success || told.code == OutcomeCode::BehindAgent,
         "{}",
         told.sentence
     );

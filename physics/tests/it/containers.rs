@@ -50,7 +50,7 @@ fn put_in(container: ObjectId) -> impl HandAction {
 impl Room {
     fn open(&mut self) {
         self.run.state.joint_position[self.drawer] = 0.34;
-        self.run.world.adopt(&mut self.run.state).unwrap();
+        self.run.world.adopt_state(&mut self.run.state).unwrap();
         self.run.rays.update(&self.run.state);
     }
 }

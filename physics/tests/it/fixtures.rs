@@ -101,7 +101,7 @@ fn a_tap_follows_its_lever() {
     assert!(run.state.is_on(&run.house, tap));
     run.state.joint_position[lever] = 0.02;
     run.state.joint_command[lever] = JointCommand::Off;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     assert!(!run.state.is_on(&run.house, tap));
 }
 
@@ -163,7 +163,7 @@ fn things_go_into_an_open_bin_only() {
         .find(|place| (0.4..0.6).contains(&place.distance(stands)) && place.distance(middle) > 0.5);
     let root = run.root(fruit);
     run.state.part_pose[root].position = floor.unwrap() + Vec3::Y * 0.06;
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.steps(10);
     let told = run.act(agent, actions::Pick::new(fruit));
     assert!(told.success, "{}", told.sentence);

@@ -47,7 +47,7 @@ fn table(piece: Piece, clutter: &[Vec3]) -> Setting {
     run.steps(1);
     let thing_at = run.root(thing);
     run.state.part_pose[thing_at].position = Vec3::new(3.2, 1.0, 2.3);
-    run.world.adopt(&mut run.state).unwrap();
+    run.world.adopt_state(&mut run.state).unwrap();
     run.rays.update(&run.state);
     let told = run.act(agent, actions::Pick::new(thing));
     assert!(told.success, "{}", told.sentence);
@@ -314,7 +314,7 @@ fn the_apartments_things_stand_on_its_table() {
         let mut run = start.clone();
         let (eye, root) = (run.state.agents[agent].eye_position(), run.root(*object));
         run.state.part_pose[root].position = eye + ahead * 0.5 - Vec3::Y * 0.1;
-        run.world.adopt(&mut run.state).unwrap();
+        run.world.adopt_state(&mut run.state).unwrap();
         run.rays.update(&run.state);
         let told = run.act(agent, actions::Pick::new(*object));
         if !told.success {

@@ -259,7 +259,7 @@ fn worlds_over_one_model_share_its_shapes() {
     let worlds: Vec<_> = states
         .iter_mut()
         .map(|state| {
-            PhysicsWorld::over(model.clone(), &PhysicsConfig::default(), state)
+            PhysicsWorld::with_model(model.clone(), &PhysicsConfig::default(), state)
                 .unwrap()
                 .0
         })

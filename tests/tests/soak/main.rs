@@ -200,7 +200,7 @@ fn play_watched(engines: &Arc<Engines>, steps: usize) -> u64 {
         play.step();
         check(&play.world, &before, k);
         for lost in play.world.notices() {
-            if lost.outcome.code == OutcomeCode::Lost {
+            if lost.outcome.code == OutcomeCode::NonFiniteState {
                 println!(
                     "  control step {k}: {} Before: {:?}",
                     lost.outcome.sentence, play.lately

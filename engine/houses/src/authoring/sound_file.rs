@@ -15,7 +15,7 @@ const BEGINNINGS: [&[u8]; 3] = [b"RIFF", b"fLaC", b"OggS"];
 /// Reads a sound file.
 ///
 /// # Errors
-/// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MOST_BYTES`], and
+/// [`HousesError::PathLeavesRoot`], [`HousesError::Io`], [`HousesError::TooLarge`] above [`SoundFile::MAX_BYTES`], and
 /// [`HousesError::Spec`] for a file of another form.
 pub(super) fn load(files: &FileAccess, file: &str) -> Result<SoundFile, HousesError> {
     let path = files.path("file", file)?;

@@ -107,7 +107,7 @@ impl World {
 
     /// Returns the outcomes, in the last step, of actions that take time.
     pub fn notices(&self) -> &[DelayedOutcome] {
-        self.physics().notices()
+        self.physics().delayed_outcomes()
     }
 }
 

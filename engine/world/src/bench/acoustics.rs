@@ -46,7 +46,7 @@ pub(super) fn run(
                 let receiver = Receiver::binaural(Pose::from_position(ear));
                 scene.impulse_response(
                     &rays,
-                    &SoundSourcePose::at(*source),
+                    &SoundSourcePose::omni(*source),
                     &receiver,
                     RandomKey::root(k as u64),
                     threads,
@@ -189,9 +189,9 @@ fn wanted(
 ) -> Result<Metrics, WorldError> {
     let (position, head) = figure.place(BLOCKS - 1);
     let scene = engines.acoustics("reference", 16_000)?;
-    let source = SoundSourcePose::at(position);
+    let source = SoundSourcePose::omni(position);
     let echogram = scene.echogram(rays, &source, head.position, RandomKey::root(1), threads)?;
-    Ok(metrics::of_echogram(&echogram))
+    Ok(metrics::echogram_metrics(&echogram))
 }
 
 /// Walks on one thread.
@@ -222,7 +222,7 @@ fn walk(
     }
     let seconds = start.elapsed().as_secs_f64();
     let mut heard = stream.echograms();
-    let found = heard.next().map(|(_, e)| metrics::of_echogram(&e));
+    let found = heard.next().map(|(_, e)| metrics::echogram_metrics(&e));
     let found = found.unwrap_or_default();
     let mean = |off: fn(&BandMetrics, &BandMetrics) -> Option<f64>| {
         let bands = found.iter().zip(wanted).skip(2).take(5);

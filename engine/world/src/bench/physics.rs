@@ -117,7 +117,7 @@ impl BenchStart {
         config: &PhysicsConfig,
     ) -> Result<(Self, dwell_physics::StartReport), WorldError> {
         let mut state = State::new(house);
-        let (world, report) = PhysicsWorld::over(model.clone(), config, &mut state)?;
+        let (world, report) = PhysicsWorld::with_model(model.clone(), config, &mut state)?;
         Ok((Self { world, state }, report))
     }
 

@@ -55,7 +55,8 @@ impl InitialWorld {
             physics_rate_hz: config.physics_rate_hz as f32,
             ..PhysicsConfig::default()
         };
-        let (mut physics, report) = PhysicsWorld::over(model.clone(), &physics_config, &mut state)?;
+        let (mut physics, report) =
+            PhysicsWorld::with_model(model.clone(), &physics_config, &mut state)?;
         physics.settle(&mut state, config.settle_s.unwrap_or_default())?;
         Ok(Self {
             state,

@@ -64,7 +64,7 @@ pub(crate) fn body(
 ) -> Vec<u8> {
     let parts = SnapshotParts {
         state: state.to_bytes(house),
-        physics: physics.moment(),
+        physics: physics.unpacked_snapshot(),
         sound,
         key,
         past,

@@ -39,7 +39,7 @@ impl AgentEars {
         };
         let pose = agent.world_from_head();
         let receiver = match self.head {
-            Some(head) => Receiver::wearing(head, pose),
+            Some(head) => Receiver::with_head(head, pose),
             None => Receiver::binaural(pose),
         };
         let active = sort_by_loudness(house, sources, agent.eye_position());

@@ -165,10 +165,10 @@ impl WorldSound {
                 length_s: 2.0 * step.length_s as f32,
                 partners: partners(step, event),
                 key: place.child(self.blocks),
-                place,
+                contact_key: place,
             };
             let id = FIRST_RUB_ID + (a.rotate_left(20) ^ b) % FIRST_BLOW_ID;
-            self.add(step, id, 0.0, ContactSound::Rub(sound));
+            self.add(step, id, 0.0, ContactSound::Friction(sound));
         }
     }
 
@@ -186,7 +186,7 @@ impl WorldSound {
         let leaf = part(house, state, of.child);
         let frame = match of.parent {
             Some(parent) => part(house, state, parent),
-            None => ContactPartner::leaf("wood", FRAME_KG_M2),
+            None => ContactPartner::panel("wood", FRAME_KG_M2),
         };
         let parent = of
             .parent
@@ -203,9 +203,9 @@ impl WorldSound {
                 length_s: step.length_s as f32,
                 friction_n_m: friction,
                 partners: partners.clone(),
-                place,
+                hinge_key: place,
             }),
-            JointKind::Slide => ContactSound::Rub(FrictionSound {
+            JointKind::Slide => ContactSound::Friction(FrictionSound {
                 position: middle,
                 kind: FrictionSoundKind::Slide,
                 force_n: friction / library().pair("wood", "wood").friction.max(0.1),
@@ -213,7 +213,7 @@ impl WorldSound {
                 length_s: 2.0 * step.length_s as f32,
                 partners: partners.clone(),
                 key: place.child(self.blocks),
-                place,
+                contact_key: place,
             }),
         };
         if friction > 0.0 {
@@ -293,7 +293,7 @@ impl WorldSound {
                 ),
                 FootEvent::Wheels { speed_m_s } => (
                     0.0,
-                    ContactSound::Rub(FrictionSound {
+                    ContactSound::Friction(FrictionSound {
                         position: foot,
                         kind: FrictionSoundKind::Roll,
                         force_n: mass_kg(agent.body.height_m) * 9.8,
@@ -301,7 +301,7 @@ impl WorldSound {
                         length_s: 2.0 * step.length_s as f32,
                         partners: [agent_partner(agent.body.height_m, "plastic"), floor],
                         key: key.child(self.blocks),
-                        place: key,
+                        contact_key: key,
                     }),
                 ),
             };
@@ -361,7 +361,7 @@ fn partners(step: &StepContext<'_>, event: &ContactEvent) -> [ContactPartner; 2]
 fn leaf(substance: &str, floor: bool) -> ContactPartner {
     let own = library().get_or_default(substance).surface_density_kg_m2;
     let least = if floor { FLOOR_KG_M2 } else { WALL_KG_M2 };
-    ContactPartner::leaf(substance, own.max(least))
+    ContactPartner::panel(substance, own.max(least))
 }
 
 fn agent(state: &State, id: AgentId, substance: &str) -> ContactPartner {

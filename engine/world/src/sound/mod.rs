@@ -190,7 +190,7 @@ impl WorldSound {
         };
         let own = key.child("ears").child(u64::from(agent.0));
         // One background noise for all ears of a world.
-        Ok(Stream::new(scene, config, own, Threads::ONE)?.in_room(key.child("room")))
+        Ok(Stream::new(scene, config, own, Threads::ONE)?.with_room_key(key.child("room")))
     }
 
     /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.

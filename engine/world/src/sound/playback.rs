@@ -237,7 +237,7 @@ impl Playback {
 /// [`WorldError::Acoustics`] for a signal that does not exist.
 pub fn usual_level_db(sound: &SoundName) -> Result<Option<f32>, WorldError> {
     match sound {
-        SoundName::Signal(name) => Ok(Some(signals::info(name)?.usual_level_db)),
+        SoundName::Signal(name) => Ok(Some(signals::info(name)?.typical_level_db)),
         SoundName::File(_) => Ok(None),
     }
 }

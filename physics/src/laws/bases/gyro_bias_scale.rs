@@ -64,7 +64,7 @@ fn install(
 }
 
 impl BaseLaw for GyroBiasScale {
-    fn gyro(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
+    fn gyro_reading(&self, agent: AgentId, rate_rad_s: f32) -> f32 {
         if self.riders.holds(agent) {
             self.scale * rate_rad_s + self.bias_rad_s
         } else {
