@@ -120,7 +120,7 @@ impl MicrophoneChain {
             memories.push(link.stage.state());
             link.hear(listener, false, &mut old);
         }
-        let predecessors = LawSpec::predecessors(&before, &self.chain);
+        let predecessors = LawSpec::predecessor_indices(&before, &self.chain);
         for (link, predecessor) in self.chain.iter_mut().zip(predecessors) {
             if let Some(predecessor) = predecessor {
                 link.stage.restore(&memories[predecessor]);

@@ -63,7 +63,7 @@ impl AcousticSurface {
             },
             scattering,
             transmitted: loss_db.map(|db| {
-                if db >= Material::OPAQUE_TO_SOUND_DB {
+                if db >= Material::MAX_TRANSMISSION_LOSS_DB {
                     0.0
                 } else {
                     libm::powf(10.0, -db / 10.0)

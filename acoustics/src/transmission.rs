@@ -36,13 +36,13 @@ pub(crate) fn transmitted_path(
     let mut near_m = 0.0;
     let mut walls: Vec<TransmittingWall> = Vec::new();
     for _ in 0..MOST_SURFACES {
-        let Some(hit) = rays.closest(&whole.between(near_m, whole.far_m), RayMask::EAR) else {
+        let Some(hit) = rays.closest(&whole.with_range(near_m, whole.far_m), RayMask::EAR) else {
             let fractions = walls.iter().fold([1.0; BAND_COUNT], |product, wall| {
                 std::array::from_fn(|band| product[band] * wall.passed[band])
             });
             return Some((fractions, walls.len()));
         };
-        near_m = hit.distance_m + ray_offset_m(whole.at(hit.distance_m));
+        near_m = hit.distance_m + ray_offset_m(whole.point_at(hit.distance_m));
         let here = TransmittingWall::new(data, rays, &hit);
         // Both faces of a solid, or both shells of a wall, are one wall: it counts once, by its better insulator.
         if let Some(wall) = walls.iter_mut().find(|wall| wall.is_same(&here)) {
@@ -81,8 +81,8 @@ pub(crate) fn exit_behind_wall(
         if wall.passed.iter().all(|passed| *passed <= 0.0) {
             return None;
         }
-        let near_m = last_m + ray_offset_m(ray.at(last_m));
-        let rest = ray.between(near_m, hit.distance_m + THICKEST_WALL_M);
+        let near_m = last_m + ray_offset_m(ray.point_at(last_m));
+        let rest = ray.with_range(near_m, hit.distance_m + THICKEST_WALL_M);
         let next = rays.closest(&rest, RayMask::EAR);
         match next.map(|next| (TransmittingWall::new(data, rays, &next), next.distance_m)) {
             Some((here, distance_m)) if wall.is_same(&here) => {
@@ -91,7 +91,7 @@ pub(crate) fn exit_behind_wall(
             }
             _ => {
                 return Some(WallExit {
-                    start: ray.at(near_m),
+                    start: ray.point_at(near_m),
                     transmitted_energy: wall.passed,
                 });
             }

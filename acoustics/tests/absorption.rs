@@ -211,7 +211,7 @@ fn source_and_receiver_may_change_places() {
                     &SoundSourcePose::omni(from),
                     to,
                     key,
-                    Threads::exactly(2),
+                    Threads::new(2),
                 )
                 .unwrap()
         };

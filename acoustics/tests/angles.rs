@@ -239,7 +239,7 @@ fn the_tail_of_a_long_room_is_that_of_a_diffuse_field() {
             let angle = f32::to_radians(30.0 * k as f32);
             let source =
                 SoundSourcePose::omni(middle + 2.0 * Vec3::new(angle.cos(), 0.0, angle.sin()));
-            let (key, threads) = (RandomKey::root(0), Threads::exactly(2));
+            let (key, threads) = (RandomKey::root(0), Threads::new(2));
             let heard = hall
                 .scene
                 .impulse_response(&hall.rays, &source, &receiver, key, threads)

@@ -210,7 +210,7 @@ fn a_directive_source_fills_the_room_with_less() {
     let hall = box_of(0.2, 1.0, 20_000);
     let (place, ear) = (Vec3::new(3.0, 1.5, 2.5), Vec3::new(4.6, 1.5, 2.5));
     let hear = |source: &SoundSourcePose| {
-        let threads = Threads::exactly(2);
+        let threads = Threads::new(2);
         hall.scene
             .echogram(&hall.rays, source, ear, RandomKey::root(3), threads)
             .unwrap()
@@ -282,7 +282,7 @@ fn tracing_ends_when_the_error_is_small_enough() {
                 &source,
                 ear,
                 RandomKey::root(1),
-                Threads::exactly(threads),
+                Threads::new(threads),
             )
             .unwrap()
     });

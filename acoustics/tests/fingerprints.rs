@@ -76,7 +76,7 @@ fn heard(
 ) -> ImpulseResponse {
     let mut scene = hall.scene.clone();
     scene.update(&state(hall, hidden.to_vec()));
-    let threads = Threads::exactly(2);
+    let threads = Threads::new(2);
     let response =
         scene.impulse_response(&hall.rays, source, receiver, RandomKey::root(1), threads);
     response.unwrap()

@@ -400,7 +400,7 @@ fn threads_and_readings_do_not_matter() {
     };
     let one = hear(&WHOLE, Threads::ONE);
     for (head, threads) in [(&*WHOLE, 2), (&again, 7)] {
-        assert_eq!(one, hear(head, Threads::exactly(threads)));
+        assert_eq!(one, hear(head, Threads::new(threads)));
     }
 }
 

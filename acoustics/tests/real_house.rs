@@ -76,7 +76,7 @@ fn rooms_sound_like_rooms(house: &Arc<House>) {
                 &SoundSourcePose::omni(from),
                 &receiver,
                 RandomKey::root(1),
-                Threads::exactly(2),
+                Threads::new(2),
             )
             .unwrap();
         assert!(

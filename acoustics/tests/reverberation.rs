@@ -248,7 +248,7 @@ fn threads_do_not_change_a_bit() {
     let source = SoundSourcePose::omni(Vec3::new(1.2, 1.5, 1.4));
     let ear = Receiver::omni(Vec3::new(4.6, 1.2, 3.3));
     let [one, two, seven] = [1, 2, 7].map(|threads| {
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         hall.scene
             .impulse_response(&hall.rays, &source, &ear, RandomKey::root(5), threads)
             .unwrap()

@@ -243,7 +243,7 @@ fn a_door_with_many_sounds_takes_little_in_each_block() {
         ..StreamConfig::full()
     };
     let new = |hall: &Hall, threads: usize| {
-        let threads = Threads::exactly(threads);
+        let threads = Threads::new(threads);
         Stream::new(hall.scene.clone(), config, RandomKey::root(8), threads).unwrap()
     };
     let receiver = Receiver::binaural(Pose::from_position(EAR));
@@ -362,7 +362,9 @@ fn direct_sound_passes_a_solid_wall_once() {
     let path = direct(30.0, true).unwrap();
     assert_eq!(path.walls, 1);
     assert!((f64::from(path.energy[4]) * 36.0 / 1e-3 - 1.0).abs() < 1e-5);
-    assert!(direct(30.0, false).is_none() && direct(Material::OPAQUE_TO_SOUND_DB, true).is_none());
+    assert!(
+        direct(30.0, false).is_none() && direct(Material::MAX_TRANSMISSION_LOSS_DB, true).is_none()
+    );
 }
 
 #[test]

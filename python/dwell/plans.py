@@ -84,7 +84,7 @@ def floor_plan(
     for stroke, way in strokes:
         _way(draw, stroke, [place(x, z) for x, _, z in way], line)
     for room in plan["rooms"]:
-        _name(draw, room, place(*room["place"]), _FINER * edge)
+        _name(draw, room, place(*room["label_position"]), _FINER * edge)
     _scale(draw, canvas.size, scale, foot, line)
     return _smooth(canvas)
 

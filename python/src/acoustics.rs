@@ -44,7 +44,7 @@ impl PyAcousticScene {
             let config: AcousticConfig = config.read()?;
             let laws: Vec<LawSpec> = laws.read()?;
             let parameters: BTreeMap<String, f64> = parameters.read()?;
-            let state = dwell::laws::start(&house, &laws, &parameters)?;
+            let state = dwell::laws::state_with_laws(&house, &laws, &parameters)?;
             let mut scene = AcousticScene::new(house.clone(), config)?;
             scene.update(&state);
             Ok(Self {

@@ -126,9 +126,9 @@ fn discover(data: &PropagationData, rays: &RayScene, receiver: Vec3) -> BTreeSet
             backwards.push(id);
             found.insert(backwards.iter().rev().copied().collect());
             let normal = data.planes()[id as usize].normal.as_vec3();
-            let point = ray.at(hit.distance_m);
+            let point = ray.point_at(hit.distance_m);
             let direction = ray.direction - 2.0 * ray.direction.dot(normal) * normal;
-            ray = Ray::new(point, direction).between(ray_offset_m(point), f32::INFINITY);
+            ray = Ray::new(point, direction).with_range(ray_offset_m(point), f32::INFINITY);
         }
     }
     found

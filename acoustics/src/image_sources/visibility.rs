@@ -125,6 +125,6 @@ impl<'a> ImageValidator<'a> {
         } else {
             length + TOLERANCE_M.max(1e-5 * length)
         };
-        Ray::new(start, (to - from).as_vec3()).between(near, far)
+        Ray::new(start, (to - from).as_vec3()).with_range(near, far)
     }
 }

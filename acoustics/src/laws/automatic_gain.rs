@@ -64,7 +64,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 a passage to its end, and lifts tails that were loud at first; a clip touches only peaks; absorption \
                                 and gains do not depend on the level",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 /// Squares below this are silence, Pa².

@@ -68,7 +68,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 in both at low frequencies, self-noise is not; play the same sound louder: a second slope of the decay \
                                 rises with it, noise does not",
     },
-    acts: SignalStage::Field(install),
+    effect: SignalStage::Field(install),
 };
 
 /// Least half frame, s.

@@ -40,7 +40,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "measure the length or pitch of the excitation itself in the recording: a clock changes it as much as \
                                 the arrivals, warmth leaves it; by size: one kelvin is 1700 ppm, clocks are off by 10 to 100 ppm",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 /// Taps on either side of a point between samples.

@@ -40,7 +40,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 (of an exponential sweep they stand before time 0); automatic gain changes whole passages, all others \
                                 do not depend on the level",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {

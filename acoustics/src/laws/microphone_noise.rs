@@ -28,7 +28,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 unlike in two microphones, background noise is neither; play the same sound louder: a \
                                 second slope of the decay rises with it, noise does not",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, _rate_hz: f64) -> Box<dyn MicrophoneStage> {

@@ -27,7 +27,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "compare from where known sources on two sides are heard: all are turned by the same angles, while times \
                                 of arrival and what an omnidirectional microphone hears stay",
     },
-    acts: SignalStage::Propagation(turn),
+    effect: SignalStage::Propagation(turn),
 };
 
 fn turn(values: LawValues<'_>, effects: &mut PathEffects) {

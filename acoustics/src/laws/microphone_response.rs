@@ -27,7 +27,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 absorption grows with time; with all sources off, background noise bears the response of the \
                                 microphone and not that of a source",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {

@@ -117,8 +117,8 @@ fn bands_db(values: LawValues<'_>) -> BandValues {
 /// Returns the installed laws' effects on air and sources.
 pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
     let mut effects = PathEffects::default();
-    for law in LAWS.acting(installed) {
-        if let SignalStage::Propagation(change) = law.acts {
+    for law in LAWS.active(installed) {
+        if let SignalStage::Propagation(change) = law.effect {
             change(law.values, &mut effects);
         }
     }
@@ -127,8 +127,8 @@ pub(crate) fn path_effects(installed: &[LawSpec]) -> PathEffects {
 
 /// Returns the stage of a law that acts on pressure and has an effect.
 pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn MicrophoneStage>> {
-    let law = LAWS.acting(std::slice::from_ref(spec)).next()?;
-    match law.acts {
+    let law = LAWS.active(std::slice::from_ref(spec)).next()?;
+    match law.effect {
         SignalStage::Propagation(_) => None,
         SignalStage::Field(install) | SignalStage::Microphones(install) => {
             Some(install(law.values, rate_hz))
@@ -139,8 +139,8 @@ pub(crate) fn microphone_stage(spec: &LawSpec, rate_hz: f64) -> Option<Box<dyn M
 /// Returns the laws with an effect on pressure, with their indices in the list, in the order in which they act.
 pub(crate) fn pressure_laws(installed: &[LawSpec]) -> impl Iterator<Item = (u64, &LawSpec)> {
     let those = move |wanted: fn(&SignalStage) -> bool| {
-        let acting = LAWS.acting(installed).filter(move |law| wanted(law.acts));
-        acting.map(|law| (law.place as u64, law.values.spec))
+        let acting = LAWS.active(installed).filter(move |law| wanted(law.effect));
+        acting.map(|law| (law.index as u64, law.values.spec))
     };
     let fields = those(|acts| matches!(acts, SignalStage::Field(_)));
     fields.chain(those(|acts| matches!(acts, SignalStage::Microphones(_))))

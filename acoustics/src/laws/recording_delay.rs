@@ -35,7 +35,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
         separating_experiment: "record at two or more distances: a delay shifts all arrivals by the same time at all places, warmth and \
                                 clocks in proportion to the time, a wrong position each path by another",
     },
-    acts: SignalStage::Microphones(install),
+    effect: SignalStage::Microphones(install),
 };
 
 fn install(values: LawValues<'_>, rate_hz: f64) -> Box<dyn MicrophoneStage> {

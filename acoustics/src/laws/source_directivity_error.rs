@@ -41,7 +41,7 @@ pub(super) const LAW: AcousticLaw = AcousticLaw {
                                 stated for each turn, high octaves most, late sound hardly; a gain or a response changes by the \
                                 same for all turns",
     },
-    acts: SignalStage::Propagation(turn),
+    effect: SignalStage::Propagation(turn),
 };
 
 fn turn(values: LawValues<'_>, effects: &mut PathEffects) {

@@ -209,7 +209,7 @@ mod tests {
         const RATE_HZ: u32 = 9_000;
         let names = ["fan", "television", "gramophone", "clock"];
         assert!(needs_synthesis("clock", RATE_HZ) && !needs_synthesis("gramophone", RATE_HZ));
-        presynthesize(&names, RATE_HZ, Threads::exactly(4));
+        presynthesize(&names, RATE_HZ, Threads::new(4));
         assert!(!needs_synthesis("clock", RATE_HZ));
         let opened = Signal::open("television", RATE_HZ).unwrap();
         let info = info("television").unwrap();

@@ -134,7 +134,7 @@ impl TailNoise<'_> {
             // Keyed by the bin, so that draws in one bin do not depend on the others.
             let mut stream = key.child(k as u64).stream();
             let count = poisson(self.arrivals_per_s * tail.bin_s, &mut stream).max(1);
-            poll.turns(count);
+            poll.count_many(count);
             let amplitude: BandValues =
                 std::array::from_fn(|b| (bin[b] / count as f64).sqrt() as f32);
             for _ in 0..count {

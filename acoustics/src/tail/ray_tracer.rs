@@ -201,7 +201,7 @@ impl RayTracer<'_> {
             {
                 self.pass(&one, &hit, random.aside, beyond);
             }
-            let point = one.ray.at(hit.distance_m);
+            let point = one.ray.point_at(hit.distance_m);
             let cosine = surface.normal.dot(one.ray.direction);
             let normal = if cosine > 0.0 {
                 -surface.normal
@@ -304,7 +304,7 @@ impl RayTracer<'_> {
                 .transmitted_energy
                 .map(|p| p / self.transmission_probability),
         );
-        let inside_m = exit.start.distance(one.ray.at(hit.distance_m));
+        let inside_m = exit.start.distance(one.ray.point_at(hit.distance_m));
         beyond.push(TracedRay {
             ray: Ray::new(exit.start, one.ray.direction),
             energy,
@@ -338,7 +338,7 @@ impl RayTracer<'_> {
             };
             // Only the visible part of the sphere counts: one point of the segment represents it.
             let along = crossing.enter_m + place * (crossing.leave_m - crossing.enter_m);
-            let point = one.ray.at(along);
+            let point = one.ray.point_at(along);
             let sight = Ray::segment(listener.position, point, 0.0);
             if self.rays.occluded(&sight, RayMask::EAR) {
                 continue;

@@ -125,7 +125,7 @@ pub struct SoundFile {
 
 impl SoundFile {
     /// The most bytes that a sound file may have.
-    pub const MOST_BYTES: u64 = 64 << 20;
+    pub const MAX_BYTES: u64 = 64 << 20;
 }
 
 /// The kind of a receptacle.

@@ -103,7 +103,7 @@ impl Recordings {
     ///
     /// # Errors
     /// [`WorldError::Acoustics`] for what is no sound, and where all that sound have more than [`MOST_KEPT`] samples together.
-    pub(crate) fn of_house(
+    pub(crate) fn house_sound_file(
         &self,
         house: &House,
         id: SoundFileId,

@@ -90,7 +90,7 @@ impl ActionContext<'_> {
             let body = self.dynamics.model.body_of_part[part]?;
             self.dynamics.model.bodies[body as usize].joint
         };
-        let opens = |id: &JointId| house.joints[*id].opens();
+        let opens = |id: &JointId| house.joints[*id].is_openable();
         let one = aim.part.and_then(moved_by).filter(opens);
         one.map_or_else(
             || house.joints_of(object).filter(opens).collect(),

@@ -79,7 +79,7 @@ impl ActionContext<'_> {
         let loaded = house
             .objects
             .ids()
-            .any(|other| state.rests_on(house, other).contains(&Some(object)));
+            .any(|other| state.supports_of(house, other).contains(&Some(object)));
         let grip = HeldObject::new(
             &self.dynamics.model,
             body as u32,

@@ -204,7 +204,7 @@ impl ActionContext<'_> {
                 yaw + LOOK_STEP_RAD * x as f32,
                 pitch + LOOK_STEP_RAD * y as f32,
             );
-            let ray = Ray::new(eye, turned * Vec3::NEG_Z).between(0.0, actor.body.body.reach_m);
+            let ray = Ray::new(eye, turned * Vec3::NEG_Z).with_range(0.0, actor.body.body.reach_m);
             let Some(hit) = actor.rays.closest_excluding(&ray, RayMask::EYE, held) else {
                 continue;
             };
@@ -219,7 +219,7 @@ impl ActionContext<'_> {
                     (SupportFilter::Object(object), Some(object))
                 }
             };
-            let foot = ray.at(hit.distance_m) + Vec3::Y * RING_M;
+            let foot = ray.point_at(hit.distance_m) + Vec3::Y * RING_M;
             let feet: Vec<Vec3> = self
                 .dynamics
                 .support_heights(grip.body as usize, ground, foot, 2.0 * RING_M)

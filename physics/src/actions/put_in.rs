@@ -168,7 +168,7 @@ impl ActionContext<'_> {
         let loose_with_lid = !house.parts[root].fixed
             && house
                 .joints_of(space.object)
-                .any(|id| house.joints[id].opens());
+                .any(|id| house.joints[id].is_openable());
         for stance in self.stable_poses(body) {
             let size = size_in(plan, &stance, &world_from_part);
             let room = inside.size();

@@ -177,7 +177,7 @@ impl ActionContext<'_> {
                     continue;
                 }
                 found.push((id, object));
-                open.extend(state.rests_on(house, object).into_iter().flatten());
+                open.extend(state.supports_of(house, object).into_iter().flatten());
             }
         }
         found

@@ -50,7 +50,7 @@ impl ActionContext<'_> {
         let house = self.dynamics.model.house.clone();
         let levers: Vec<JointId> = house
             .joints_of(object)
-            .filter(|id| house.joints[*id].switches)
+            .filter(|id| house.joints[*id].toggles_switch)
             .collect();
         let word = if state.switched_on[object] {
             "off"

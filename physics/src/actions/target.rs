@@ -133,7 +133,7 @@ impl ActionContext<'_> {
     ) -> Result<ResolvedTarget, Box<ActionOutcome>> {
         let house = &self.dynamics.model.house;
         let direction = direction.normalize_or_zero();
-        let ray = Ray::new(origin, direction).between(0.0, MAX_RAY_M);
+        let ray = Ray::new(origin, direction).with_range(0.0, MAX_RAY_M);
         let held = actor
             .body
             .holding

@@ -63,7 +63,7 @@ impl JointSystem {
             state.joint_position[joint.id] = if shut { closed } else { position };
             state.joint_velocity[joint.id] = if shut { 0.0 } else { velocity };
         }
-        state.follow_switches(&dynamics.model.house);
+        state.update_switches(&dynamics.model.house);
     }
 
     /// Moves jointed bodies along with their parents.

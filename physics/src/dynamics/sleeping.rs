@@ -81,7 +81,7 @@ impl Dynamics {
             (
                 contact.a,
                 contact.b,
-                contact.rest == SupportRelation::Beside,
+                contact.support_relation == SupportRelation::NoSupport,
             )
         });
         contacts.dedup_by_key(|contact| (contact.a, contact.b));

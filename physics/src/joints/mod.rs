@@ -131,7 +131,7 @@ pub(crate) fn insert(
             body_from_parent,
             parent_from_joint,
             child_from_joint,
-            latchable: standing && joint.opens(),
+            latchable: standing && joint.is_openable(),
             values,
         });
     }

@@ -24,7 +24,7 @@ use crate::joints::{self, HandDrives, JointActuation};
 use crate::laws::{self, LawSet};
 use crate::limits::PairDensity;
 use dwell_scene::columnar;
-use dwell_scene::packing::{pack_within, unpack};
+use dwell_scene::packing::{pack_to_size, unpack};
 use dwell_scene::{AgentId, Id, State};
 use rapier3d::dynamics::{ImpulseJointSet, IslandManager, RigidBodySet};
 use rapier3d::geometry::{BroadPhaseBvh, NarrowPhase};
@@ -101,7 +101,7 @@ impl PhysicsWorld {
     /// Never: writing plain data to memory cannot fail.
     pub fn snapshot(&self) -> Vec<u8> {
         let most = self.target_snapshot_bytes() - HEADER;
-        self.with_header(MAGIC, &pack_within(&self.body(), &[], most))
+        self.with_header(MAGIC, &pack_to_size(&self.body(), &[], most))
     }
 
     /// Returns the target size of a snapshot: 256 KiB and 2 KiB for each body that can move. A larger one is packed harder;

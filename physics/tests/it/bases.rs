@@ -78,7 +78,7 @@ fn constant_wheel_speeds_draw_the_circle_of_their_closed_form() {
         let [x, y, heading] = agent.base.odometry;
         assert!((x - pose.x_m).abs() < 1e-5 && (y - pose.y_m).abs() < 1e-5);
         assert!((heading - pose.heading_rad).abs() < 1e-5);
-        let [left, right] = agent.base.wheel_turned_rad;
+        let [left, right] = agent.base.wheel_rotation_rad;
         assert!((left - 5.0 * t).abs() < 1e-4 && (right - 7.0 * t).abs() < 1e-4);
     }
 }
@@ -158,7 +158,7 @@ fn against_a_wall_wheels_slip_and_odometry_is_deceived() {
         agent.position
     );
     assert!((agent.base.odometry[0] - 1.5).abs() < 1e-5);
-    assert!((agent.base.wheel_turned_rad[0] - 30.0).abs() < 1e-4);
+    assert!((agent.base.wheel_rotation_rad[0] - 30.0).abs() < 1e-4);
 }
 
 #[test]

@@ -234,7 +234,7 @@ fn what_stands_on_a_thing_comes_along_when_it_is_taken() {
     let mut run = build.run();
     let agent = run.agent(Vec3::new(3.0, 0.0, 2.9), 0.0);
     run.steps(10);
-    assert_eq!(run.state.rests_on(&run.house, block), [Some(tray)]);
+    assert_eq!(run.state.supports_of(&run.house, block), [Some(tray)]);
     assert!(run.act(agent, actions::Pick::new(tray)).success);
     run.steps(60);
     run.walk(40, &[forward(-0.3)]);

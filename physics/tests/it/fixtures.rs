@@ -36,7 +36,10 @@ fn before(run: &mut Run, point: Vec3) -> AgentId {
 /// Everything with a tap: the object, its lever, and the room.
 fn taps(run: &Run) -> Vec<(ObjectId, JointId, String)> {
     let house = &run.house;
-    let levers = house.joints.iter_ids().filter(|(_, joint)| joint.switches);
+    let levers = house
+        .joints
+        .iter_ids()
+        .filter(|(_, joint)| joint.toggles_switch);
     let taps = levers.map(|(id, joint)| {
         let room = house.objects[joint.object].room.unwrap();
         (joint.object, id, house.rooms[room].kind().to_owned())

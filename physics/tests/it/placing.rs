@@ -105,7 +105,7 @@ fn things_of_all_shapes_stand_where_they_are_put() {
             moved < MOVES_M && turn < TURNS_DEG,
             "{k}: {moved} m, {turn} degrees"
         );
-        let table = on.run.state.rests_on(&on.run.house, on.thing);
+        let table = on.run.state.supports_of(&on.run.house, on.thing);
         assert_eq!(table, [Some(on.table)], "{k}");
     }
 }
@@ -252,7 +252,7 @@ fn a_thing_is_put_on_what_is_seen_and_on_the_floor_where_a_ray_meets_it() {
     assert!((at - spot).with_y(0.0).length() < 0.02, "{at}");
     let (moved, turn) = stays(&mut on.run, on.thing);
     assert!(moved < MOVES_M && turn < TURNS_DEG);
-    assert_eq!(on.run.state.rests_on(&on.run.house, on.thing), [None]);
+    assert_eq!(on.run.state.supports_of(&on.run.house, on.thing), [None]);
 }
 
 #[test]
@@ -269,14 +269,14 @@ fn what_rests_on_what_follows_a_stack() {
     });
     let mut run = build.run();
     run.steps(40);
-    let rests = |run: &Run, object| run.state.rests_on(&run.house, object);
+    let rests = |run: &Run, object| run.state.supports_of(&run.house, object);
     assert_eq!(rests(&run, low), [None]);
     assert_eq!(rests(&run, high), [Some(low)]);
     assert_eq!(rests(&run, beside), [None]);
     for contact in &run.state.contacts {
         if contact.b.is_none() {
             assert_eq!(
-                contact.rest,
+                contact.support_relation,
                 SupportRelation::AOnB,
                 "everything stands on the floor"
             );

@@ -2,7 +2,7 @@
 
 mod snapshot_base;
 
-pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, body};
+pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, unpacked_body};
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
@@ -17,13 +17,17 @@ use std::sync::{Arc, OnceLock};
 pub(crate) struct InitialWorld {
     pub(crate) state: State,
     pub(crate) physics: PhysicsWorld,
-    pub(crate) report: StartReport,
+    pub(crate) start_report: StartReport,
     base: OnceLock<SnapshotBase>,
 }
 
 impl InitialWorld {
     /// Returns the bytes that snapshots are packed beside, made at first use.
-    pub(crate) fn base(&self, model: &Arc<PhysicsModel>, config: &WorldConfig) -> &SnapshotBase {
+    pub(crate) fn snapshot_base(
+        &self,
+        model: &Arc<PhysicsModel>,
+        config: &WorldConfig,
+    ) -> &SnapshotBase {
         self.base.get_or_init(|| SnapshotBase::of(model, config))
     }
 
@@ -61,7 +65,7 @@ impl InitialWorld {
         Ok(Self {
             state,
             physics,
-            report,
+            start_report: report,
             base: OnceLock::new(),
         })
     }

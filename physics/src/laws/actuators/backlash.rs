@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 between the two branches whatever the speed, latency a gap that grows with it, and \
                                 friction one that shrinks with the servo's stiffness",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The backlash state of a motor.

@@ -36,7 +36,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 load; a wrong torque constant or mass shows in efforts and not at a motor that carries its \
                                 weight ahead",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

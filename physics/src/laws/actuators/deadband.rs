@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 width whatever came before, backlash depends on the last turn, and static friction can be \
                                 seen when the joint is pushed with the motor off",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

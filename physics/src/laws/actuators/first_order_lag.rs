@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 delay takes none and its phase grows in proportion to frequency; steps of two sizes tell \
                                 it from a rate limit",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

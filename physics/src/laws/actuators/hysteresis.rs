@@ -45,7 +45,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 lie anywhere within its gap without an effort; what a motor's drive gives is seen under its load \
                                 only",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The state of a joint's hysteresis spring.

@@ -69,7 +69,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 not; hold it still from above and from below for Coulomb and load; creep for Stribeck; \
                                 drive it and be driven by it with the same load for direction",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The numbers of the law, in its equation's order.

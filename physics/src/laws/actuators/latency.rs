@@ -32,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 its phase grows with frequency without end; a lag rounds the step and its phase ends at \
                                 90 degrees; an offset between clocks also shifts what no motor causes",
     },
-    acts: install,
+    effect: install,
 };
 
 /// The commands of a joint in past physics steps, newest first: as many as the delay reaches back, initially the command at

@@ -78,7 +78,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 second, viscous friction both; repeat a motion with a known load added: a torque constant \
                                 scales with it, a wrong mass or rotor does not",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

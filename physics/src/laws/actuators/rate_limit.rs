@@ -31,7 +31,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tell it steps of two sizes: with a rate limit the slope is the same for both and the time \
                                 grows with the size, with a lag the time is the same",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -30,7 +30,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "sweep the amplitude of a sine or lift growing loads: below its bound a saturated motor is \
                                 exact, friction errs from the smallest effort on, a wrong constant in proportion",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -41,7 +41,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 time also at rest, a scale errs with the angle and with its sign, and a wrong wheel base \
                                 shows in the wheels' odometry and not in the gyro",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the same way in space, a wrong base turns both too far or too little, and only straight \
                                 runs against a tape show the size; a gyro's bias grows with time also at rest",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

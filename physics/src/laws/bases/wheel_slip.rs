@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "drive the same way once slowly and once with hard starts and soft stops: a wrong radius \
                                 errs with the way whatever the speed, slip only where the speed changes",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -37,7 +37,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 bodies of the same shape and different mass: drag alone bends the path in proportion \
                                 to v^2/m, gravity and clocks do not",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -40,7 +40,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "throw the object twice alike with the spin turned round, its spin measured: only lift \
                                 changes sides; a tilted frame and wind push the same way both times",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

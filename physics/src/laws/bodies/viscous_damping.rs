@@ -43,7 +43,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 takes the same share of the speed in each second, quadratic drag a share that grows with \
                                 it; friction acts in contact only",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

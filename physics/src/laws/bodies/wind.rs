@@ -72,7 +72,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "put a light and a heavy object of one shape side by side, or switch the fan off: wind moves \
                                 the light one, a tilted floor or frame both",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -57,7 +57,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 freely in the same directions: a tilted floor or frame also bends the flight, or pulls to \
                                 one side only",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

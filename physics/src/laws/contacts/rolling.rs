@@ -35,7 +35,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 rolling resistance slows it alike each time, a tilted floor helps one way, air takes more \
                                 from the faster one",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -48,7 +48,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "tilt the floor slowly until the object starts to slide, then until one that was pushed \
                                 stops: two angles mean two frictions; a single coefficient, and play, have one",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -34,7 +34,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
         separating_experiment: "spin the object on the floor at two speeds, and in the air: friction of the patch takes the \
                                 same spin from it in each second and nothing in flight",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]

@@ -44,7 +44,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                                 the share of the speed that is left: one restitution leaves the same share everywhere, and \
                                 air takes speed between the bounces as well",
     },
-    acts: install,
+    effect: install,
 };
 
 #[derive(Clone, Debug)]
