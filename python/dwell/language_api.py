@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from dwell import _native
+from dwell.arguments import integer_in_range
 from dwell.arguments import text as checked_text
-from dwell.arguments import whole
 from dwell.relation_api import RelationApi, Viewer, viewer_argument
 
 
@@ -50,7 +50,7 @@ class LanguageApi(RelationApi):
             ...
             dwell.ConfigError: unknown word "sofaa" (known are sofa, sofas...
         """
-        listener = None if agent is None else whole("agent", agent, high=2**31 - 1)
+        listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
         sentence = checked_text("sentence", sentence)
         found: dict[str, Any] = _native.world_check_text(
             self._native, sentence, viewer_argument(viewer), listener

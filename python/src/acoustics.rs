@@ -141,7 +141,7 @@ impl PyAcousticScene {
         })
     }
 
-    fn explain(&self, py: Python<'_>) -> PyResult<Answer> {
+    fn material_report(&self, py: Python<'_>) -> PyResult<Answer> {
         py.engine(|| Answer::of(&self.scene.material_report()))
     }
 

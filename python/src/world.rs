@@ -192,7 +192,7 @@ impl PyWorld {
         })
     }
 
-    fn notices(&self, py: Python<'_>) -> PyResult<Answer> {
+    fn delayed_outcomes(&self, py: Python<'_>) -> PyResult<Answer> {
         self.look(py, |running| {
             let mut notices = Vec::new();
             for notice in running.world.notices() {

@@ -87,7 +87,7 @@ def test_a_door_tells_when_it_has_opened(world: dwell.World) -> None:
     told = []
     for _ in range(80):
         world.step()
-        told += world.notices()
+        told += world.delayed_outcomes()
     assert [(who, outcome.object) for who, outcome in told] == [(0, doors[0]["name"])]
 
 
