@@ -135,7 +135,7 @@ impl Stream {
             match want.need() {
                 // The situation is again that of the response.
                 UpdateUrgency::None if want.started().is_some() => {
-                    want.partial_trace = PartialTrace::None
+                    want.partial_trace = PartialTrace::None;
                 }
                 UpdateUrgency::None => {}
                 _ => order.push(want),

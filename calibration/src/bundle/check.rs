@@ -564,7 +564,7 @@ pub(super) fn check_sufficient_data(bundle: &Bundle) -> CheckResult {
             poses::check_poses(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
         BundleKind::Drive => {
-            odometry::check_drives(&bundle.name, &bundle.manifest, &bundle.episodes)?
+            odometry::check_drives(&bundle.name, &bundle.manifest, &bundle.episodes)?;
         }
         BundleKind::Trajectory | BundleKind::Servo | BundleKind::ImpulseResponse => {}
     }

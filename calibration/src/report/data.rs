@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum CalibrationVerdict {
     /// Nothing is missing above the limits of the data.
+    #[serde(rename = "nothing")]
     NoEffect,
     /// A cause, or two, is named.
     Named {

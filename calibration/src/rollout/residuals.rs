@@ -57,6 +57,7 @@ pub struct Quantiles {
     /// The model.
     pub model: String,
     /// Rising.
+    #[serde(rename = "at")]
     pub values: [f64; 5],
 }
 

@@ -105,7 +105,7 @@ impl ShadingMaterial {
     }
 
     /// As rows: colour and opacity; emission and pixels of the image; the image and whether it is a mirror.
-    pub(crate) fn to_rows(&self) -> [PackedRow; 3] {
+    pub(crate) fn packed_rows(&self) -> [PackedRow; 3] {
         let row = |[x, y, z]: [f32; 3], last: f32| [x, y, z, last].map(f32::to_bits);
         [
             row(self.base, self.opacity),

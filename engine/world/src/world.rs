@@ -37,7 +37,7 @@ pub struct World {
     /// Memory for it.
     before: PreviousState,
     /// The state that [`World::reset`] goes back to; worlds of one config share it.
-    pub(crate) initial_world: Arc<InitialWorld>,
+    pub(crate) initial: Arc<InitialWorld>,
 }
 
 impl World {
@@ -70,7 +70,7 @@ impl World {
             key: RandomKey::root(0),
             motion_history: MotionHistory::default(),
             before: PreviousState::default(),
-            initial_world: start,
+            initial: start,
         })
     }
 
@@ -79,8 +79,8 @@ impl World {
     /// # Errors
     /// None so far: the start is a copy of one that was possible.
     pub fn reset(&mut self, key: RandomKey) -> Result<(), WorldError> {
-        self.state.clone_from(&self.initial_world.state);
-        self.physics.clone_from(&self.initial_world.physics);
+        self.state.clone_from(&self.initial.state);
+        self.physics.clone_from(&self.initial.physics);
         self.rays.update(&self.state);
         self.sound.reset();
         self.events.clear();
@@ -251,7 +251,7 @@ impl World {
 
     /// Returns what had to be moved or frozen so that the world could start.
     pub fn start_report(&self) -> &StartReport {
-        &self.initial_world.start_report
+        &self.initial.start_report
     }
 
     /// Returns the parameter at an address.

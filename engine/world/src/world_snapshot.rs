@@ -127,6 +127,6 @@ impl World {
 
     fn base(&self) -> &SnapshotBase {
         let model = self.engines.physics_model();
-        self.initial_world.snapshot_base(model, &self.config)
+        self.initial.snapshot_base(model, &self.config)
     }
 }

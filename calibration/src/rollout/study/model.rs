@@ -15,6 +15,7 @@ pub struct ContactParameter {
     /// The range that is searched.
     pub range: [f64; 2],
     /// True if the search takes equal ratios for equal steps.
+    #[serde(rename = "by_ratio")]
     pub is_logarithmic: bool,
 }
 

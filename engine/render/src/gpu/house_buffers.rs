@@ -115,7 +115,7 @@ impl HouseBuffers {
         let looks = tables.add(
             cpu.shading_materials
                 .iter()
-                .flat_map(crate::material::ShadingMaterial::to_rows),
+                .flat_map(crate::material::ShadingMaterial::packed_rows),
         );
         let classes = cpu.classes(ClassSet::Coarse).all();
         let class_rows = tables.add(rows_of_words(classes.iter().map(|class| *class as u32)));

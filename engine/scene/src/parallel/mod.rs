@@ -71,7 +71,7 @@ impl Threads {
                     .enumerate()
                     .with_max_len(1)
                     .for_each(|(k, item)| {
-                        interrupt::run_with_token(token.as_ref(), || work(k, item))
+                        interrupt::run_with_token(token.as_ref(), || work(k, item));
                     });
             });
             return;

@@ -123,7 +123,7 @@ pub(crate) fn encode(house: &HouseData, storage: Storage) -> Result<WrittenGlb, 
             match storage {
                 Storage::Inside => image["bufferView"] = json!(binary.add_buffer_view(&bytes)),
                 Storage::Shared => {
-                    image["uri"] = json!(binary.add_sidecar("texture", "png", bytes))
+                    image["uri"] = json!(binary.add_sidecar("texture", "png", bytes));
                 }
             }
             Ok(image)
