@@ -251,7 +251,7 @@ impl<'a> TailTrace<'a> {
             bins_per_direction: bins_per_direction(config),
             direction_time_bins: times,
             roulette_threshold: libm::pow(10.0, -0.1 * config.roulette_db) as f32,
-            transmission_probability: if config.transmission && hidden {
+            wall_probability: if config.transmission && hidden {
                 TRANSMISSION_PROBABILITY
             } else {
                 0.0

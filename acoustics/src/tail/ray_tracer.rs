@@ -55,7 +55,7 @@ pub(super) struct RayTracer<'a> {
     /// Energy of a band in all rays of a chunk, re the start, below which it counts less and rays become fewer.
     pub(super) roulette_threshold: f32,
     /// Probability that a ray also goes on behind a wall; 0 without a receiver there.
-    pub(super) transmission_probability: f32,
+    pub(super) wall_probability: f32,
 }
 
 /// Random streams: of rays that never went through a wall, and of all others.
@@ -196,9 +196,7 @@ impl RayTracer<'_> {
             }
             let surface = self.rays.surface(&hit);
             let material = self.data.surface(surface.material);
-            if self.transmission_probability > 0.0
-                && material.transmitted.iter().any(|passed| *passed > 0.0)
-            {
+            if self.wall_probability > 0.0 && material.transmitted.iter().any(|p| *p > 0.0) {
                 self.pass(&one, &hit, random.aside, beyond);
             }
             let point = one.ray.point_at(hit.distance_m);
@@ -234,8 +232,8 @@ impl RayTracer<'_> {
         aside: &mut RandomStream,
         chunk: &mut RayChunk,
     ) {
-        let looks_through = self.transmission_probability > 0.0
-            && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
+        let looks_through =
+            self.wall_probability > 0.0 && aside.uniform_f32() < WALL_SHADOW_RAY_PROBABILITY;
         for (receiver, listener) in self.listeners.iter().enumerate() {
             if one.walls > 0 && !listener.is_occluded {
                 continue;
@@ -284,9 +282,7 @@ impl RayTracer<'_> {
         aside: &mut RandomStream,
         beyond: &mut Vec<TracedRay>,
     ) {
-        if one.walls == transmission::MAX_WALLS
-            || aside.uniform_f32() >= self.transmission_probability
-        {
+        if one.walls == transmission::MAX_WALLS || aside.uniform_f32() >= self.wall_probability {
             return;
         }
         // Furniture does not separate rooms.
@@ -298,12 +294,8 @@ impl RayTracer<'_> {
             return;
         };
         let mut energy = one.energy;
-        multiply(
-            &mut energy,
-            &exit
-                .transmitted_energy
-                .map(|p| p / self.transmission_probability),
-        );
+        let passed = exit.transmitted_energy.map(|p| p / self.wall_probability);
+        multiply(&mut energy, &passed);
         let inside_m = exit.start.distance(one.ray.point_at(hit.distance_m));
         beyond.push(TracedRay {
             ray: Ray::new(exit.start, one.ray.direction),

@@ -241,12 +241,12 @@ pub struct SensorKind {
     pub build: SensorBuilder,
     /// The fields of its settings.
     pub settings: fn() -> Vec<FieldSchema>,
-    /// The image sensor's part in [`World::look`].
+    /// The image sensor's part in [`World::image_observations`].
     pub(crate) image: Option<image::ClassImageSensor>,
 }
 
 impl SensorKind {
-    /// Returns whether it is an image sensor: [`World::look`] knows it.
+    /// Returns whether it is an image sensor: [`World::image_observations`] knows it.
     pub fn is_image_sensor(&self) -> bool {
         self.image.is_some()
     }

@@ -2,7 +2,7 @@
 //!
 //! Rule. Let `t` be the smallest distance of any hit. A hit at `s` is coincident with it when its plane passes within
 //! the tolerance of the nearest hit, `(s - t) cos <= 10 um + 1e-6 s`, where `cos` is that of the angle between ray and
-//! normal, taken as at least 1 / [`MIN_FOOTPRINT_COSINE`]. Of the coincident hits the lowest (id, source, triangle) is the answer.
+//! normal, taken as at least 1 / [`GRAZING`]. Of the coincident hits the lowest (id, source, triangle) is the answer.
 //! The rule is stated for the set of hits, not for an order, so every tree and every kernel must agree. The code below
 //! applies it while hits come in any order with the memory of one hit, and detects when that was too little
 //! ([`ClosestHit::is_ambiguous`]); then a second pass, which starts from the known `t`, settles it.
