@@ -19,7 +19,7 @@
 //! let (source, ear) = (SoundSourcePose::omni(Vec3::new(1.2, 1.4, 1.5)), Receiver::omni(Vec3::new(4.6, 1.2, 3.3)));
 //! let response = scene.impulse_response(&rays, &source, &ear, RandomKey::root(1), Threads::ONE)?;
 //! assert_eq!(response.echogram.paths[0].order(), 0);
-//! assert!(metrics::of_echogram(&response.echogram)[4].edt_s.unwrap() > 0.1);
+//! assert!(metrics::echogram_metrics(&response.echogram)[4].edt_s.unwrap() > 0.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

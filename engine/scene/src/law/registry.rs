@@ -40,11 +40,11 @@ pub struct Law<A> {
 ///         rivals: &["offset"],
 ///         separating_experiment: "measure at two inputs",
 ///     },
-///     acts: |factor, x| factor * x,
+///     effect: |factor, x| factor * x,
 /// }]);
 ///
 /// let specs = [LawSpec::new("gain", 1, &[("factor", 2.0)]), LawSpec::new("gain", 1, &[])];
-/// let y = LAWS.acting(&specs).fold(3.0, |x, law| (law.acts)(law.values.get("factor"), x));
+/// let y = LAWS.active(&specs).fold(3.0, |x, law| (law.effect)(law.values.get("factor"), x));
 /// assert_eq!(y, 6.0);
 /// ```
 #[derive(Debug)]
